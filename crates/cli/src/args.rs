@@ -89,7 +89,7 @@ pub(crate) enum Command {
     Schema(SchemaArgs),
 }
 
-/// The commands by their purpose, in the order of the help text.
+/// The commands, grouped by purpose, in the order of the help text.
 const GROUPS: [(&str, &[&str]); 4] = [
     (
         "Measure and compare",
@@ -108,7 +108,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Files", &["rays", "schema"]),
 ];
 
-/// Returns the list of the commands, in their groups, for the help text.
+/// Returns the list of the commands for the help text, in groups.
 fn grouped(command: &clap::Command) -> String {
     let mut list = String::new();
     for (heading, names) in GROUPS {
@@ -125,14 +125,14 @@ fn grouped(command: &clap::Command) -> String {
 }
 
 impl Cli {
-    /// The command with its grouped help.
+    /// Returns the command-line parser, with its commands in groups.
     fn grouped_command() -> clap::Command {
         let command = <Self as CommandFactory>::command();
         let list = grouped(&command);
         command.before_help(list.trim_end().to_owned())
     }
 
-    /// Parses a command line whose first word is the program.
+    /// Parses a command line whose first word is the name of the program.
     pub(crate) fn parse_line(
         line: impl IntoIterator<Item = impl Into<OsString> + Clone>,
     ) -> Result<Self, clap::Error> {
@@ -146,8 +146,8 @@ impl Cli {
     }
 }
 
-/// Adds the command that was probably meant to an error; clap itself does not detect swapped
-/// letters.
+/// Adds to an error the name of the command that was probably meant, because clap itself does not
+/// detect swapped letters.
 fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
     let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
     let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();

@@ -1,4 +1,4 @@
-//! `etendue bandwidth`: how finely a glossy reflection must be sampled.
+//! Implements `etendue bandwidth`: how finely a glossy reflection must be sampled.
 
 use crate::args::BandwidthArgs;
 use crate::print::{deliver, say};
@@ -15,7 +15,7 @@ use etendue_sweep::values::{points, shown};
 use etendue_sweep::{BandwidthRow, bandwidths, scene_at};
 use std::path::PathBuf;
 
-/// `etendue bandwidth`: returns the exit code.
+/// Runs `etendue bandwidth`; returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
     let at = |point| scene_at(&args.scene.source(), point, |run| args.photons.set(run));
@@ -109,7 +109,7 @@ fn cells(row: &BandwidthRow) -> Vec<String> {
     cells
 }
 
-/// The row with all digits; fields without a number are empty.
+/// Returns a row of the table with all digits; fields without a number are empty.
 fn record(row: &BandwidthRow) -> Vec<String> {
     let digits = |x: &f64| format!("{x:?}");
     let mut cells: Vec<String> = row.point.iter().map(digits).collect();
@@ -119,7 +119,7 @@ fn record(row: &BandwidthRow) -> Vec<String> {
     cells
 }
 
-/// The table as CSV.
+/// Returns the table of bandwidths as CSV.
 fn csv_of(header: &[String], rows: &[BandwidthRow]) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let lines = rows.iter().map(record);

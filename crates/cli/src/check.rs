@@ -1,4 +1,4 @@
-//! `etendue check`: describes a scene, and which theory applies to each plane.
+//! Implements `etendue check`: describes a scene, and the theory that applies to each plane.
 
 use crate::args::CheckArgs;
 use crate::print::{deliver, say};
@@ -16,7 +16,7 @@ use etendue_theory::rays::AffineChain;
 use std::num::NonZero;
 use std::thread::available_parallelism;
 
-/// `etendue check`: returns the exit code.
+/// Runs `etendue check`; returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
     let inputs = load::inputs(&args.scene.source(), &scene);
@@ -37,14 +37,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         say(&format!("\ndrawn in {}", path.display()));
     }
     warnings::tell(&scene, false);
-    // The number of threads that `run` uses by default.
+    // The number of threads that `etendue run` uses by default.
     let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
     say(&expected(&scene, &theories, threads));
     Ok(0)
 }
 
-/// Returns the approximate time and memory that a run takes.
+/// Returns the approximate time and memory that a run of the scene takes.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
     let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
     let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;
@@ -53,7 +53,7 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     )
 }
 
-/// The lengths of the legs, with the surface at which each ends.
+/// Returns the lengths of the legs of the path, with the surface at which each leg ends.
 fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {
@@ -63,7 +63,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// The ray map of the light, z' = A z, and the foci of parallel rays.
+/// Describes the ray map of the light, z' = A z, and the foci of parallel rays.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

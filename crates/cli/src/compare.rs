@@ -1,4 +1,5 @@
-//! `etendue compare`: compares measurement and prediction, read from files.
+//! Implements `etendue compare`: compares a measurement and a prediction that are read from
+//! files.
 
 use crate::args::CompareArgs;
 use crate::conclude::{Ending, conclude};
@@ -20,10 +21,10 @@ use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The fewest batches from which errors are computed; scenes have the same limit.
+/// The minimum number of batches from which errors are computed; scenes have the same minimum.
 const LEAST_BATCHES: usize = 32;
 
-/// `etendue compare`: returns the exit code.
+/// Runs `etendue compare`; returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     let stage = progress::stage("reading", args.work.quiet);
@@ -63,8 +64,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     })
 }
 
-/// Reads the measurement and the predictions and checks that they fit together. Returns the scene,
-/// its measurement and its predictions, with the files from which they were read.
+/// Reads the measurement and the predictions, and checks that they belong to the same scene.
+/// Returns the scene, its measurement and its predictions, with the files from which they were
+/// read.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
@@ -97,8 +99,8 @@ fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     Ok((case, inputs))
 }
 
-/// Checks that batches belong to the same experiment: batches of different experiments are not
-/// replicates of each other.
+/// Checks that batches belong to the same experiment, because batches of different experiments
+/// are not replicates of each other.
 fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
     first.check_scene(shard, true)?;
     let words = |stored: &Stored<Held>| {
@@ -132,7 +134,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
     Ok(all)
 }
 
-/// Returns the numbers of the missing batches, as ranges.
+/// Returns the numbers of the missing batches, written as ranges.
 fn missing(measurement: &Measurement, all: u32) -> String {
     let mut ranges: Vec<Range<u32>> = Vec::new();
     for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {

@@ -1,4 +1,5 @@
-//! Ends a command that compares. Writes the result, prints it and determines the exit code.
+//! Concludes commands that compare a measurement with predictions. Writes the result, prints it
+//! and determines the exit code.
 
 use crate::args::Expect;
 use crate::print::{say, say_replaced};
@@ -10,12 +11,12 @@ use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work
 use etendue_report::{OutputOptions, write_result};
 use etendue_store::{Failure, Results};
 
-/// The user's options for the end of a command.
+/// The user's options for the conclusion of a command.
 #[derive(Debug)]
 pub(crate) struct Ending<'a> {
     pub(crate) options: OutputOptions<'a>,
     pub(crate) expect: Option<Expect>,
-    /// The largest noise that the user allowed.
+    /// The maximum noise that the user allows.
     pub(crate) target_error: Option<f64>,
     pub(crate) quiet: bool,
 }
@@ -59,8 +60,8 @@ pub(crate) fn conclude(
     Ok(exit_code(ending.expect, &summary))
 }
 
-/// The exit code under `--expect`: photons must agree with every exact prediction, and must show
-/// that the map of a first-order chain is wrong.
+/// Returns the exit code under `--expect`: photons must agree with every exact prediction, and
+/// must show that the map of a first-order chain is wrong.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let is_wrong = |plane: &PlaneReport| {
         let chain = plane.first_order.as_ref();
@@ -79,7 +80,7 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     code_of(verdict)
 }
 
-/// The exit code for a verdict.
+/// Returns the exit code for a verdict.
 pub(crate) fn code_of(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Pass => 0,

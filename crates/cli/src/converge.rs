@@ -1,4 +1,5 @@
-//! `etendue converge`: how fast the first-order chain converges to the exact prediction.
+//! Implements `etendue converge`: how fast the first-order chain converges to the exact
+//! prediction.
 
 use crate::args::ConvergeArgs;
 use crate::print::{deliver, say};
@@ -10,7 +11,7 @@ use etendue_pipeline::{limits, load};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 
-/// `etendue converge`: returns the exit code.
+/// Runs `etendue converge`; returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
     let theories = Applicability::of_planes(&scene);

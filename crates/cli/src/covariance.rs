@@ -1,4 +1,5 @@
-//! `etendue covariance` shows covariance tracing beside the spectra of a scene.
+//! Implements `etendue covariance`, which shows covariance tracing beside the measured spectra of
+//! a scene.
 
 mod table;
 
@@ -26,10 +27,10 @@ use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 
-/// The files written for a plane: its picture, and the data of this picture.
+/// The files written for each plane: a picture in two formats, and the data of this picture.
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
-/// `etendue covariance`: returns the exit code.
+/// Runs `etendue covariance`; returns the exit code.
 #[expect(clippy::too_many_lines, reason = "the steps of one command, in order")]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
@@ -103,7 +104,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Keeps the planes that the user selected.
+/// Removes the planes that the user has not selected from the scene.
 fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     let known = |name: &String| scene.planes.iter().any(|plane| plane.name == *name);
     if let Some(name) = names.iter().find(|name| !known(name)) {
@@ -149,10 +150,10 @@ fn of_plane(
     .map_err(Failure::cannot_run)
 }
 
-/// Lowest level of a spectrum's colors, in decibels below its peak.
+/// Lowest level of the colors of a spectrum, in decibels below the spectrum's peak.
 const FLOOR: f64 = -50.0;
 
-/// The spectrum at azimuth 0 with the ellipses of its second moments.
+/// Draws the spectrum at azimuth 0 with the ellipses of the spectrum's second moments.
 fn draw(
     results: &mut Results,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! `etendue diff`: compares two results of one scene.
+//! Implements `etendue diff`: compares two results of one scene.
 
 use crate::args::DiffArgs;
 use crate::conclude::code_of;
@@ -6,7 +6,7 @@ use crate::print::deliver;
 use etendue_pipeline::diff::{Diff, text};
 use etendue_store::Failure;
 
-/// `etendue diff`: returns the exit code.
+/// Runs `etendue diff`; returns the exit code.
 pub(crate) fn diff(args: &DiffArgs) -> Result<u8, Failure> {
     let diff = Diff::read([&args.a, &args.b], args.alpha)?;
     deliver(&text(&diff))?;

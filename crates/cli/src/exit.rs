@@ -1,4 +1,4 @@
-//! How a command ends: its message and its exit code.
+//! Determines how a command ends: its message and its exit code.
 
 use crate::print::{MAX_ERROR_LINES, printable, tell};
 use etendue_store::Failure;
@@ -16,8 +16,8 @@ pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     }
 }
 
-/// The exit code for the outcome of a command. Prints a failure unless `quiet` is set, because
-/// another process then prints it.
+/// Returns the exit code for the outcome of a command. Prints the message of a failure unless
+/// `quiet` is set, because another process then prints this message.
 pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
     match outcome {
         Ok(code) => code,

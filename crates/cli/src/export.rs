@@ -1,4 +1,4 @@
-//! `etendue export`: a scene for another program.
+//! Implements `etendue export`: writes a scene for another program.
 
 use crate::args::ExportArgs;
 use crate::print::{say, say_replaced};
@@ -9,10 +9,11 @@ use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, EXPORT, Plan, Results};
 use serde_json::json as tree_of;
 
-/// `etendue export`: returns the exit code.
+/// Runs `etendue export`; returns the exit code.
 pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
-    // Only one other program is supported so far, and clap has checked that it is named.
+    // Only export to one program is supported so far, and clap has checked that the user names
+    // this program.
     let export = etendue_export::mitsuba(&scene).map_err(Failure::bad_input)?;
     let folder = args.out.or_named(format!("{}-mitsuba", scene.name));
     let plan = Plan {

@@ -1,4 +1,5 @@
-//! `etendue figure`: the figures of Durand et al. 2005, and figures of the user's scenes.
+//! Implements `etendue figure`: the figures of Durand et al. 2005, and figures of the user's
+//! scenes.
 
 use crate::args::FigureArgs;
 use crate::conclude::code_of;
@@ -9,7 +10,7 @@ use crate::warnings;
 use etendue_paper::{FigureRequest, Wanted, make_all, subjects};
 use etendue_store::{ArgumentStyle, Failure};
 
-/// `etendue figure`: returns the exit code.
+/// Runs `etendue figure`; returns the exit code.
 pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
     let arguments = ArgumentStyle::Command;
     let wanted = args.names.iter();

@@ -1,9 +1,9 @@
-//! Interruption of a run by signals and lack of memory.
+//! Interrupts a run on signals and on lack of memory.
 //!
 //! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
-//! process with exit code 3; a second one ends the process at once. If an allocation fails, Rust
-//! prints a message and aborts; the exit code is 3 in this case too. Writing a file beyond the
-//! system's size limit is a write error and does not kill the process.
+//! process with exit code 3; a second signal ends the process at once. If an allocation fails,
+//! Rust prints a message and aborts; the exit code is then 3, as after a signal. If a file would
+//! exceed the system's size limit, the result is a write error, and the process is not killed.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
@@ -14,8 +14,8 @@ fn end() {
     use std::sync::mpsc;
     use std::time::Duration;
     unfinished::abandon(|message| {
-        // The thread prevents a standard error that is closed, or that nobody reads, from blocking
-        // the process.
+        // A separate thread prints the message, so that the process does not block if standard
+        // error is closed or full.
         let (told, wait) = mpsc::channel();
         std::thread::spawn(move || {
             let _ = writeln!(std::io::stderr(), "\n{message}");
@@ -27,7 +27,7 @@ fn end() {
     });
 }
 
-/// Installs the signal handlers described above.
+/// Installs the signal handlers that this module describes.
 #[cfg(unix)]
 pub(crate) fn install() -> Result<(), Failure> {
     use etendue_store::machine;
@@ -40,14 +40,14 @@ pub(crate) fn install() -> Result<(), Failure> {
         let code = CANNOT_RUN.into();
         let asked = Arc::new(AtomicBool::new(false));
         let mut signals = vec![SIGINT, SIGTERM];
-        // `nohup` makes the process ignore SIGHUP, and the process keeps ignoring it.
+        // If `nohup` makes the process ignore SIGHUP, the process continues to ignore it.
         if !machine::ignores(SIGHUP) {
             signals.push(SIGHUP);
         }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
-            // In this order, the first signal does not end the process, because it finds the flag
-            // clear and then sets it.
+            // With the handlers in this order, the first signal does not end the process, because
+            // the signal finds the flag clear and then sets it.
             register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
             register(signal, Arc::clone(&asked))?;
         }
@@ -63,7 +63,7 @@ pub(crate) fn install() -> Result<(), Failure> {
 }
 
 /// On systems other than Unix a signal ends the process at once, and the next process removes the
-/// files that it left.
+/// unfinished files.
 #[cfg(not(unix))]
 pub(crate) fn install() -> Result<(), Failure> {
     Ok(())

@@ -1,7 +1,7 @@
 //! The `etendue` command: parses arguments, calls the stages and writes their results.
 //!
-//! `run` measures a scene, predicts it, compares and draws. `measure`, `predict` and `compare` are
-//! its stages, which exchange files. `check` describes a scene.
+//! `run` measures a scene, predicts its spectra, compares and draws. `measure`, `predict` and
+//! `compare` are the stages of `run`, and exchange files. `check` describes a scene.
 
 mod args;
 mod bandwidth;
@@ -44,9 +44,9 @@ pub fn main() -> ExitCode {
     ExitCode::from(command(std::env::args_os()))
 }
 
-/// Runs a command line whose first word is the program; returns the exit code.
+/// Runs a command line whose first word is the name of the program; returns the exit code.
 ///
-/// The command's signal handlers stay installed afterwards.
+/// The signal handlers of the command stay installed after the function returns.
 pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,

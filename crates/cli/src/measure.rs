@@ -1,4 +1,4 @@
-//! `etendue measure`: batches of a scene, for `etendue compare`.
+//! Implements `etendue measure`: measures batches of a scene for `etendue compare`.
 
 use crate::args::MeasureArgs;
 use crate::print::{say, say_replaced};
@@ -14,7 +14,7 @@ use etendue_store::MEASUREMENT;
 use etendue_store::batches::{self, Held};
 use etendue_store::stored::Index;
 
-/// `etendue measure`: returns the exit code.
+/// Runs `etendue measure`; returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);

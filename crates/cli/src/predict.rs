@@ -1,4 +1,4 @@
-//! `etendue predict`: the prediction of a scene, for `etendue compare`.
+//! Implements `etendue predict`: predicts a scene for `etendue compare`.
 
 use crate::args::PredictArgs;
 use crate::print::{say, say_replaced};
@@ -14,12 +14,12 @@ use etendue_store::PREDICTION;
 use etendue_store::predictions;
 use etendue_store::stored::Index;
 
-/// `etendue predict`: returns the exit code.
+/// Runs `etendue predict`; returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     predict_with(args, None)
 }
 
-/// Like [`predict()`], but shares the work with other processes.
+/// Runs [`predict()`], and shares the work with other processes.
 pub(crate) fn predict_with(
     args: &PredictArgs,
     workers: Option<&Leader<'_>>,

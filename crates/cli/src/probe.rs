@@ -1,4 +1,4 @@
-//! `etendue probe`: the light field behind a pixel.
+//! Implements `etendue probe`: measures the light field behind a pixel.
 
 use crate::args::ProbeArgs;
 use crate::conclude::code_of;
@@ -8,7 +8,7 @@ use crate::threads::on_threads;
 use etendue_store::Failure;
 use etendue_view::{map_bandwidths, probe_pixel};
 
-/// `etendue probe`: returns the exit code.
+/// Runs `etendue probe`; returns the exit code.
 pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
     let request = args.request();
     let terminal = Terminal::new(args.work.quiet);

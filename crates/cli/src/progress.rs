@@ -5,7 +5,7 @@ use crate::warnings;
 use etendue_pipeline::{Progress, Reporter, Work};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-/// Prints the messages of a run, and shows its progress.
+/// A reporter that prints the messages of a run, and shows the run's progress.
 #[derive(Debug)]
 pub(crate) struct Terminal {
     quiet: bool,
@@ -13,7 +13,7 @@ pub(crate) struct Terminal {
 }
 
 impl Terminal {
-    /// With `quiet`, only warnings of a run are printed.
+    /// If `quiet` is set, only the warnings of a run are printed.
     pub(crate) fn new(quiet: bool) -> Self {
         let bars = MultiProgress::new();
         Self { quiet, bars }
@@ -46,7 +46,7 @@ impl Reporter for Terminal {
     }
 }
 
-/// A progress bar that disappears when its work ends.
+/// A progress bar that disappears when the work it shows ends.
 struct Bar(ProgressBar);
 
 impl Drop for Bar {
@@ -69,8 +69,8 @@ impl Progress for Bar {
     }
 }
 
-/// Returns a progress bar with the photons done, their rate and the time left. The bar is shown
-/// only on a terminal.
+/// Returns a progress bar with the number of traced photons, their rate and the remaining time.
+/// The bar is shown only on a terminal.
 pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
@@ -88,8 +88,8 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Steps done, the name of the current step, and the time left; shown on a terminal, if there are
-/// several steps.
+/// Returns a progress bar with the number of finished steps, the name of the current step and the
+/// remaining time; it is shown on a terminal if there are several steps.
 pub(crate) fn steps(
     verb: &'static str,
     total: usize,
@@ -110,7 +110,7 @@ pub(crate) fn steps(
     bar
 }
 
-/// A stage whose length is not known beforehand.
+/// Returns the progress display of a stage whose length is not known beforehand.
 pub(crate) fn stage(name: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! `etendue rays` shows what a ray file holds, and converts it to another format.
+//! Implements `etendue rays`, which describes a ray file and converts it to another format.
 
 use crate::args::RaysArgs;
 use crate::print::{deliver, say};
@@ -15,11 +15,12 @@ use std::path::Path;
 
 /// The largest size of a ray file, in bytes.
 const MOST_BYTES: u64 = 1 << 34;
-/// The largest number of characters of a text, and the largest number of texts, that are shown.
+/// The maximum number of characters of a text that are shown, and the maximum number of texts
+/// that are shown.
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;
 
-/// `etendue rays`: returns the exit code.
+/// Runs `etendue rays`; returns the exit code.
 pub(crate) fn rays(args: &RaysArgs) -> Result<u8, Failure> {
     let format = args.out.as_deref().map(format_of).transpose()?;
     let path = &args.file;
@@ -61,10 +62,10 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// Checks that there is enough memory to read a file; the unpacked size of gzip is known only
-/// afterwards.
+/// Checks that there is enough memory to read a file; for a gzip file, the unpacked size is known
+/// only after reading.
 fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
-    // The memory for the file itself and for its description.
+    // The memory in bytes for the content of the file and for its description.
     let needed = (length * (MEMORY + 2) + MEMORY_FREE) as u64;
     let free = machine::available_memory();
     if needed > free {
@@ -78,7 +79,7 @@ fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a file holds, line by line.
+/// Returns a description of the content of a ray file, line by line.
 fn description(file: &RayFile, packed: bool) -> Vec<String> {
     let set = file.rays();
     let mut rows = vec![("format", format_line(file, packed))];

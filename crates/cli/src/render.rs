@@ -1,4 +1,4 @@
-//! `etendue render`: what a camera of a scene sees.
+//! Implements `etendue render`: renders what a camera of a scene sees.
 
 use crate::args::RenderArgs;
 use crate::print::say;
@@ -7,7 +7,7 @@ use crate::threads::on_threads;
 use etendue_store::Failure;
 use etendue_view::{RenderedPicture, render as render_picture};
 
-/// `etendue render`: returns the exit code.
+/// Runs `etendue render`; returns the exit code.
 pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
     let name = args.scene.path.file_stem().unwrap_or_default();
     let folder = args.out.or_named(name);

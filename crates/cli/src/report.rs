@@ -1,4 +1,4 @@
-//! `etendue report`: the pages of several results side by side.
+//! Implements `etendue report`: shows the pages of several results side by side.
 
 use crate::args::ReportArgs;
 use crate::print::say;
@@ -8,7 +8,7 @@ use etendue_store::output::OutputFile;
 use etendue_store::{Failure, SUMMARY};
 use std::path::{Path, PathBuf};
 
-/// `etendue report`: returns the exit code.
+/// Runs `etendue report`; returns the exit code.
 pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
     let pages: Vec<PathBuf> = args
         .folders
@@ -35,7 +35,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// A relative path from one folder to another, with a trailing /.
+/// Returns the relative path from the folder `from` to the folder `folder`, with a trailing /.
 fn address(folder: &Path, from: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let [folder, from] = [folder, from].map(absolute);

@@ -1,4 +1,4 @@
-//! `etendue run`: measure, predict, compare and draw a scene.
+//! Implements `etendue run`: measures, predicts, compares and draws a scene.
 
 use crate::args::RunArgs;
 use crate::conclude::{Ending, code_of, conclude};
@@ -24,12 +24,12 @@ use etendue_store::{ArgumentStyle, Plan, Results, SUMMARY};
 use std::path::Path;
 use std::time::Instant;
 
-/// `etendue run`: returns the exit code.
+/// Runs `etendue run`; returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     run_with(args, None)
 }
 
-/// Like [`run()`], but shares the measurement with other processes.
+/// Runs [`run()`], and shares the measurement with other processes.
 pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
@@ -69,7 +69,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             if let Some(code) = finished(&folder, &scene, args) {
                 return Ok(code);
             }
-            // Several processes share the folder, so no process owns the result until the
+            // Several processes share the folder, so no process claims the result until the
             // measurement is complete.
             results = None;
         }
@@ -97,18 +97,18 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
-/// The folder of a future result, and the processes that share the work.
+/// The folder of a result that is to be written, and the processes that share the work.
 struct ResultPlace<'a> {
     folder: &'a Path,
     plan: Plan,
-    /// Is `None` if several processes measure.
+    /// The claimed result folder; `None` if several processes measure.
     results: Option<Results>,
     /// The leader of the other processes, if several processes share the measurement.
     workers: Option<&'a Leader<'a>>,
 }
 
-/// Returns the exit code of a run that is already finished, and prints its verdict again. Removes
-/// batches that a process has left.
+/// Returns the exit code of a run that is already finished, and prints the verdict of this run
+/// again. Also removes the batches that a process has left in the folder.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
@@ -123,7 +123,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     Some(code_of(verdict))
 }
 
-/// Returns the error for a result that somebody has just removed.
+/// Returns the error for a result folder that was removed in the meantime.
 fn gone(folder: &Path) -> Failure {
     Failure::cannot_run(format!(
         "the result in {} no longer exists",

@@ -1,11 +1,12 @@
-//! `etendue schema`: the schema of scene files, for editors and as a page of the book.
+//! Implements `etendue schema`: prints the schema of scene files, for editors and as a page of
+//! the book.
 
 use crate::args::SchemaArgs;
 use crate::print::deliver;
 use etendue_store::Failure;
 use serde_json::{Map, Value};
 
-/// `etendue schema`: returns the exit code.
+/// Runs `etendue schema`; returns the exit code.
 pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
     let schema = etendue_scene::schema();
     let text = match args.page {
@@ -16,10 +17,10 @@ pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// The text above the tables.
+/// The text above the tables on the page.
 const HEAD: &str = include_str!("schema/head.md");
 
-/// All types with their fields, in the order of their first use.
+/// Returns the page of all types with their fields, in the order of their first use.
 fn page(schema: &Value) -> String {
     let mut types = vec![("Scene", schema)];
     let mut next = 0;
@@ -61,7 +62,7 @@ fn named_below<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
     }
 }
 
-/// The fields of a node: required fields first, then the others by name.
+/// Iterates over the fields of a node: first the required fields, then the other fields by name.
 fn fields(node: &Value) -> impl Iterator<Item = (&str, &Value)> {
     let required = node["required"].as_array().into_iter().flatten();
     let required = required.filter_map(Value::as_str);
@@ -85,7 +86,7 @@ fn description(node: &Value) -> &str {
     node["description"].as_str().unwrap_or_default()
 }
 
-/// The fields of a type, or its variants.
+/// Describes the fields of a type, or its variants.
 fn content(node: &Value) -> String {
     match node["oneOf"].as_array() {
         Some(variants) => variants.iter().map(variant).collect(),
@@ -109,7 +110,7 @@ fn variant(node: &Value) -> String {
     format!("\n* `{name}(…)`: {about}{}\n", holds(inside))
 }
 
-/// Describes what stands in the parentheses of a variant with unnamed fields.
+/// Describes the content of the parentheses of a variant with unnamed fields.
 fn holds(node: &Value) -> String {
     let many = node["prefixItems"].as_array();
     let each = many.map_or(node, |many| &many[0]);
@@ -124,14 +125,14 @@ fn holds(node: &Value) -> String {
     }
 }
 
-/// The named type of a node, or of its list items.
+/// Returns the named type of a node, or of the items if the node is a list.
 fn type_of(node: &Value) -> Option<&str> {
     let mut met = Vec::new();
     named(node, &mut met);
     met.first().copied()
 }
 
-/// A table of fields, one per row.
+/// Returns a table of the fields of a node, one per row.
 fn table(node: &Value) -> String {
     let mut text = String::from("\n| field | meaning | value | default | example |\n");
     text.push_str("|---|---|---|---|---|\n");
@@ -162,7 +163,7 @@ fn table(node: &Value) -> String {
     text
 }
 
-/// A default as it is written in a scene file.
+/// Returns a default value as it is written in a scene file.
 fn default(value: &Value) -> String {
     match value {
         Value::Null => "left out".to_owned(),

@@ -1,4 +1,5 @@
-//! `etendue split`: the commands that measure a scene in parts, on as many machines, and put them together.
+//! Implements `etendue split`: prints commands that measure parts of a scene on several machines,
+//! and a command that combines these parts.
 
 use crate::args::SplitArgs;
 use crate::print::deliver;
@@ -7,7 +8,7 @@ use etendue_report::shell_word;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// `etendue split`: returns the exit code.
+/// Runs `etendue split`; returns the exit code.
 pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
@@ -24,7 +25,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         scene: scene_words(args),
         parts,
         batches,
-        // The beginning of a folder name, to which digits are appended.
+        // The beginning of the folder name of each part, to which digits are appended.
         part: below("parts/"),
         predicted: below("predicted"),
         out: shell_word(&out.to_string_lossy()),
@@ -37,7 +38,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// The scene and the measurement options, as on the command line.
+/// Returns the scene and the measurement options as words of a command line.
 fn scene_words(args: &SplitArgs) -> String {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
     for (path, value) in &args.scene.set {
@@ -95,7 +96,8 @@ impl SplitWork {
         format!("etendue compare --measured {part}* --predicted {predicted} --out {out}")
     }
 
-    /// A command for each part, then the commands that follow when all parts are done.
+    /// Returns the commands for the parts, followed by the commands to run after all parts are
+    /// finished.
     fn commands(&self) -> String {
         let Self { parts, batches, .. } = self;
         let first = |part: u32| u64::from(*batches) * u64::from(part) / u64::from(*parts);
@@ -107,7 +109,7 @@ impl SplitWork {
         each.chain(after).collect::<Vec<_>>().join("\n")
     }
 
-    /// A script that submits the commands to Slurm.
+    /// Returns a script that submits the commands to Slurm.
     fn slurm(&self) -> String {
         let Self {
             name,

@@ -1,4 +1,4 @@
-//! `etendue sweep` runs a scene for several values of its fields.
+//! Implements `etendue sweep`, which runs a scene for several values of its fields.
 
 use crate::args::SweepArgs;
 use crate::print::say;
@@ -10,15 +10,15 @@ use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_sweep::{FinishedSweep, SweepPoints, run};
 
-/// Maximum number of undecided planes whose reasons are printed.
+/// The maximum number of undecided planes whose reasons are printed.
 const MAX_REASONS: usize = 4;
 
-/// `etendue sweep`: returns the exit code.
+/// Runs `etendue sweep`; returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     sweep_with(args, None)
 }
 
-/// Like [`sweep()`], but shares the points with other processes.
+/// Runs [`sweep()`], and shares the points of the sweep with other processes.
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
         let request = args.request();

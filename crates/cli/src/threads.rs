@@ -1,4 +1,4 @@
-//! The threads of a command.
+//! Sets the number of threads of a command.
 
 use crate::args::ThreadArgs;
 use etendue_store::Failure;

@@ -1,9 +1,9 @@
-//! The warnings of a scene, each on a line of its own.
+//! Prints the warnings of a scene, each on its own line.
 
 use crate::print;
 use etendue_scene::Scene;
 
-/// Prints the warnings to standard error, unless the user asked for quiet: standard output is for
+/// Prints the warnings of a scene to standard error unless `quiet` is set; standard output is for
 /// the result.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let warnings = if quiet { Vec::new() } else { scene.warnings() };

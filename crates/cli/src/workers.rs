@@ -1,4 +1,4 @@
-//! Commands whose work several processes share.
+//! Runs commands whose work several processes share.
 
 use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
 use crate::exit::{ended, not_parsed};
@@ -11,8 +11,8 @@ use etendue_store::Failure;
 use etendue_sweep::SweepPoints;
 use std::ffi::OsString;
 
-/// Runs a command line on a group of processes; returns the exit code. `run`, `predict` and `sweep`
-/// share their work.
+/// Runs a command line on a group of processes; returns the exit code. Only the commands `run`,
+/// `predict` and `sweep` share their work.
 pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dyn Workers) -> u8 {
     let leads = workers.number() == 0;
     let command = match Cli::parse_line(line) {
@@ -41,7 +41,8 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         Command::Sweep(args) => sweep::sweep_with(args, Some(&led)),
         _ => Ok(0),
     });
-    // The other processes are idle now, because no work is left or because a step failed.
+    // The other processes are idle at this point, because no work is left or because a step
+    // failed.
     let dismissed = led.dismiss_all();
     ended(outcome.and_then(|code| dismissed.map(|()| code)), false)
 }
@@ -53,7 +54,7 @@ fn is_shared(command: &Command) -> bool {
     }
 }
 
-/// Follows the orders of the leading process until dismissed.
+/// Carries out the orders of the leading process until this process is dismissed.
 fn follow(command: &Command, workers: &dyn Workers) {
     let followed = match command {
         Command::Run(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),
@@ -71,7 +72,7 @@ fn follow(command: &Command, workers: &dyn Workers) {
     }
 }
 
-/// Measures batches and predicts planes of a scene.
+/// Measures batches and predicts planes of a scene, as the leading process requests.
 fn with_job(
     scene: &SceneArgs,
     photons: &PhotonArgs,

@@ -5,7 +5,8 @@
 use crate::common::{SCENE, call, refused, scene};
 use std::fs;
 
-/// The scene of the repository as `glossy.ron`, and one without a glossy surface as `small.ron`.
+/// Returns a folder with a scene of the repository as `glossy.ron`, and a scene without a glossy
+/// surface as `small.ron`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(scene("bandwidth.ron"), folder.path().join("glossy.ron")).unwrap();

@@ -1,4 +1,4 @@
-//! The command as a user meets it: exit codes, messages, files, threads and kills.
+//! Tests the command as users see it: exit codes, messages, files, threads and interruptions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs `etendue run fig9b` into `out`, with more arguments. With so few photons, the noise is 18 %
-/// of a spectrum.
+/// Runs `etendue run fig9b` with results in `out` and with further arguments. With so few
+/// photons, the noise is 18 % of the spectrum.
 fn run(out: &Path, arguments: &[&str]) -> Output {
     etendue()
         .arg("run")
@@ -21,8 +21,8 @@ fn run(out: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Whether a folder is a result: all files that its summary lists are there, with the hashes that
-/// it states.
+/// Checks that a folder is a complete result: all files that its summary lists exist and have the
+/// listed hashes.
 fn is_result(folder: &Path) -> bool {
     let Ok(text) = fs::read(folder.join("summary.json")) else {
         return false;
@@ -35,8 +35,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane that is crossed by photons aimed at another plane does not fail, although these photons
-/// cover only part of it.
+/// A plane does not fail if only photons aimed at another plane cross it, although these photons
+/// cover only part of its window.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -84,7 +84,7 @@ fn a_run_passes_and_leaves_a_result() {
             files.keys()
         );
     }
-    // Only the reproducible files are listed.
+    // The summary lists only reproducible files.
     let listed = String::from_utf8(files["summary.json"].clone()).unwrap();
     assert!(!listed.contains("timing.json"));
 }
@@ -115,8 +115,8 @@ fn threads_do_not_change_a_byte() {
     }
 }
 
-/// `--expect disagreement` succeeds for a wrong map in a first-order chain beside an exact
-/// prediction that holds.
+/// If the map of a first-order chain is wrong and an exact prediction holds, `--expect
+/// disagreement` succeeds.
 #[test]
 fn expecting_disagreement_turns_the_exit_code() {
     let folder = tempfile::tempdir().unwrap();
@@ -159,7 +159,7 @@ fn a_failing_chain_is_told_and_drawn() {
         (told, read("path.svg"), read("report.html"))
     };
     let (told, picture, page) = run("printed", &[]);
-    // The share cos² 37.24° of the radiance remains.
+    // The share of the radiance that remains is cos² 37.24°.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
     assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
@@ -181,8 +181,8 @@ fn noise_leaves_a_run_undecided() {
     );
 }
 
-/// Photons are doubled until noise is low, and the result is that of a run with the final number of
-/// photons.
+/// The number of photons is doubled until the noise is low enough, and the result equals that of
+/// a run with the final number of photons.
 #[test]
 fn a_target_error_is_reached() {
     let folder = tempfile::tempdir().unwrap();
@@ -225,7 +225,7 @@ fn a_target_error_is_reached() {
     assert!(!folder.path().join("refused").exists());
 }
 
-/// A result of one scene is not replaced by that of another with the same name.
+/// A result of one scene is not replaced by a result of another scene with the same name.
 #[test]
 fn another_scene_keeps_out_of_the_folder() {
     let folder = tempfile::tempdir().unwrap();
@@ -241,7 +241,7 @@ fn another_scene_keeps_out_of_the_folder() {
     let (refused, told) = code(&other);
     assert_eq!(refused, Some(3));
     assert!(told.contains("pitch is 0.2 and not 0.19"), "{told}");
-    // Another seed is another measurement of the same scene.
+    // With another seed, the run is another measurement of the same scene.
     assert_eq!(code(&["--seed", "2"]).0, Some(0));
     assert_ne!(code(&[&other[..], &["--force"]].concat()).0, Some(3));
 }
@@ -251,7 +251,7 @@ fn saved_photons_are_the_ones_measured() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--save", "photons"]);
     let told = String::from_utf8(output.stdout).unwrap();
-    // 20,000 photons cross five planes, with 40 bytes for each.
+    // The file has 40 bytes for each crossing of 20,000 photons with five planes.
     assert!(
         told.starts_with("--save photons: at most 4.0 MB on disk, 0.8 MB for each of 5 planes\n")
     );
@@ -263,14 +263,14 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // The ∫ L W of the light is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each direction of
-    // slope contributes 1/2.
+    // The ∫ L W of the light is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each of the two
+    // slopes contributes a factor 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;
         f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
     };
-    // The window excludes photons that were aimed at other planes and leave the light with other
-    // slopes.
+    // The window excludes photons that were aimed at other planes, because they leave the light
+    // with other slopes.
     let hann = |t: f64| {
         if t.abs() < 0.5 {
             (std::f64::consts::PI * t).cos().powi(2)
@@ -295,8 +295,8 @@ fn saved_photons_are_the_ones_measured() {
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 
-/// Bad input leads to one clear message and the right exit code; nothing is written and nothing
-/// panics.
+/// Bad input leads to one clear message and the correct exit code; no file is written and the
+/// program does not panic.
 #[test]
 fn bad_input_is_refused_with_a_message() {
     let folder = tempfile::tempdir().unwrap();
@@ -446,8 +446,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs use one folder. A result must not consist of the summary of an earlier run and
-        // the files of a later run that was killed.
+        // All runs of this test use the same folder. No result may consist of the summary of an
+        // earlier run and the files of a later run that was killed.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -464,9 +464,9 @@ fn a_killed_run_leaves_no_half_result() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // The golden ratio spreads the moments evenly over twice the time of a run. Half of the
-        // moments are within the run, and some are after its end even if the machine has slowed
-        // down.
+        // The golden ratio spreads the moments of the kills evenly over twice the time of a run.
+        // Half of these moments are within the run, and some are after its end even if the
+        // machine has become slower.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

@@ -1,4 +1,4 @@
-//! `etendue covariance`, and `probe --covariance`.
+//! Tests `etendue covariance` and `probe --covariance`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +8,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A lamp that fills the window of its first plane, and is cut by the window of the second.
+/// A lamp that fills the window of its first plane, and that the window of the second plane cuts
+/// off.
 const LAMP: &str = r#"(
     light: Rectangle(center: (0, 0, 0), size: (4, 4)),
     blockers: [Shapes(name: "edge", center: (0, 0, 0.5), shapes: [HalfPlane(axis: X, edge: 0.02, opaque: Above)])],
@@ -45,10 +46,11 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     for (i, h) in [0.1, 0.1, 0.2, 0.2].into_iter().enumerate() {
         let expected = 1.0 / (12.0 * h * h);
         let traced = entry(full, "traced", i, i);
-        // The lamp's variance is 1/(8π² · 4/3), after travel of half a metre.
+        // After travel of half a metre, the variance of the lamp is 1/(8π² · 4/3).
         assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
         let exact = entry(full, "exact", i, i);
-        // The window has three frequencies on its own grid, and all three are within the band.
+        // The spectrum of the window has three frequencies on its own grid, and all three
+        // frequencies are within the band.
         assert!((exact / expected - 1.0).abs() < 2e-3, "{i}: {exact}");
         let off = entry(full, "measured", i, i) - exact;
         assert!(off.abs() < 4.0 * entry(full, "error", i, i), "{i}: {off}");
@@ -117,8 +119,8 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// A diffuse floor is lit evenly. The spectrum of the light that leaves it is that of the window,
-/// and travel to the camera shears it.
+/// The scene is a diffuse floor that is lit evenly. The light that leaves the floor has the
+/// spectrum of the window, and travel to the camera shears this spectrum.
 #[test]
 fn a_probe_propagates_the_covariance_to_the_camera() {
     let folder = tempfile::tempdir().unwrap();
@@ -137,8 +139,8 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
         let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
         let both = error[0].hypot(error[1]);
-        // Travel shears the tails of the window beyond the band; they are a few thousandths of its
-        // moment.
+        // Travel shears the tails of the window's spectrum beyond the band; the tails contain a
+        // few thousandths of the spectrum's second moment.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
         assert!(
             (a - b).abs() < 4.0 * both + 0.01 * scale,

@@ -20,7 +20,7 @@ const LEDGER: &str = "a/ledger.npz";
 const BATCHES: &str = "a/receiver/batches.npz";
 const PREDICTION: &str = "p/receiver/prediction.npz";
 
-/// Replaces the content of a file temporarily.
+/// A file whose content is replaced temporarily.
 struct Swap {
     path: PathBuf,
     whole: Vec<u8>,
@@ -40,14 +40,15 @@ impl Drop for Swap {
     }
 }
 
-/// Returns the index with a change.
+/// Replaces the index by the index with a change.
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);
     Swap::new(index.to_owned(), &sealed(tree))
 }
 
-/// `compare` with other bytes in `file`, whose hash in the index is made to fit.
+/// Checks that `compare` refuses other bytes in `file`, although the hash of `file` in the index
+/// matches these bytes.
 fn refused_with(folder: &Path, file: &str, bytes: &[u8], parts: &[&str]) {
     let (stage, name) = file.split_once('/').unwrap();
     let index = ["measurement.json", "prediction.json"].map(|index| folder.join(stage).join(index));
@@ -58,7 +59,7 @@ fn refused_with(folder: &Path, file: &str, bytes: &[u8], parts: &[&str]) {
     refused(folder, COMPARE, &[&[file], parts].concat());
 }
 
-/// The NPZ file with an array replaced, or left out.
+/// Returns the NPZ file with an array replaced, or without this array.
 fn with_array(npz: &[u8], name: &str, content: Option<&[u8]>) -> Vec<u8> {
     let mut old = ZipArchive::new(Cursor::new(npz)).unwrap();
     let mut new = ZipWriter::new(Cursor::new(Vec::new()));
@@ -76,7 +77,7 @@ fn with_array(npz: &[u8], name: &str, content: Option<&[u8]>) -> Vec<u8> {
     new.finish().unwrap().into_inner()
 }
 
-/// The bytes of an NPY file.
+/// Returns the bytes of an NPY file with an array.
 fn npy<A: WritableElement>(array: &ArrayD<A>) -> Vec<u8> {
     let mut bytes = Vec::new();
     array.write_npy(&mut bytes).unwrap();
@@ -156,8 +157,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // The index had a matching hash in the cases above; without a matching hash, any changed bit
-    // is detected.
+    // In the cases above, the hash in the index matches the changed bytes; if the hash does not
+    // match, any changed bit is detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -173,7 +174,7 @@ fn a_changed_index_is_refused() {
             refused(folder, COMPARE, &[name]);
         }
     }
-    // The unmodified files pass, so the changes were the only reason for the refusals.
+    // The unmodified files pass, so only the changes can cause the refusals.
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
@@ -190,7 +191,7 @@ fn changed_files_are_refused() {
                 let _file = Swap::new(folder.join(file), bytes);
                 refused(folder, COMPARE, &[file, "is damaged"]);
             }
-            // With a matching hash, a changed bit is detected all the same.
+            // Even if the hash in the index matches, a changed bit is detected.
             refused_with(folder, file, bytes, &[]);
         }
         fs::remove_file(folder.join(file)).unwrap();
@@ -200,8 +201,8 @@ fn changed_files_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// In turn, each array of each file is missing, has another type, is too large for memory, or is
-/// not an array.
+/// One after the other, each array of each file is missing, has another type, is too large for
+/// memory, or is not an array.
 #[test]
 fn foreign_arrays_are_refused() {
     let stages = stages();
@@ -314,7 +315,7 @@ fn wrong_numbers_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Headers on which the library would hang or overflow the stack.
+/// Tests headers on which the library would hang or overflow the stack.
 #[test]
 fn nested_headers_are_refused_at_once() {
     let stages = stages();
@@ -338,7 +339,8 @@ fn nested_headers_are_refused_at_once() {
     }
 }
 
-/// Pipes, devices and links out of the folder are refused as parts.
+/// If a part of a measurement is a pipe, a device or a link that leads out of the folder, it is
+/// refused.
 #[cfg(unix)]
 #[test]
 fn parts_are_regular_files_below_their_folder() {
@@ -363,8 +365,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Meshes are part of a scene: parts that were measured with another mesh do not fit, and the
-/// copies of meshes are checked.
+/// Meshes are part of a scene: if parts were measured with another mesh, they are refused, and
+/// the copies of meshes are checked.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -403,6 +405,6 @@ fn meshes_are_part_of_the_scene() {
         &["a/measurement.inputs/tri.obj is damaged"],
     );
     fs::write(&copy, whole).unwrap();
-    // The unmodified copy is accepted again; the verdict does not matter here.
+    // The unmodified copy of the mesh is accepted again; the test ignores the verdict.
     ends("compare --measured b a --predicted p --out out", &[0, 1]);
 }

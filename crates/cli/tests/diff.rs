@@ -1,4 +1,4 @@
-//! `etendue diff`: two results of one scene.
+//! Tests `etendue diff`, which compares two results of one scene.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +8,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// The small scene with enough photons for a verdict, and several runs of it, each in a folder.
+/// Returns a folder with the small scene, with enough photons for a verdict, and several runs of
+/// this scene, each in its own folder.
 fn runs(each: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -25,7 +26,7 @@ fn runs(each: &[&str]) -> TempDir {
     folder
 }
 
-/// Exit code and text of `diff`.
+/// Returns the exit code and the text of `etendue diff`.
 fn diff(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     let output = etendue()
         .current_dir(folder)
@@ -70,7 +71,8 @@ fn two_results_are_told_apart_when_they_differ() {
         &[&seeds[..], &[same, "the same, with other settings"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
-    // Results that share photons have identical bytes, or the comparison is undecided.
+    // If two results share photons, either their bytes are identical or the comparison is
+    // undecided.
     found(
         &folder,
         "a again",
@@ -96,7 +98,7 @@ fn two_results_are_told_apart_when_they_differ() {
         "different: slices at light; slices at receiver",
     ];
     found(&folder, "a bright", 1, &bright);
-    // Results may differ in noise, windows and frequencies.
+    // The two results may differ in noise, windows and frequencies.
     found(&folder, "a few", 4, &["undecided:", "light: noise is"]);
     found(
         &folder,
@@ -205,7 +207,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);
 
-    // The index is rewritten to match the changed files.
+    // The index is rewritten so that its hashes match the changed files.
     let mut tree: serde_json::Value = serde_json::from_slice(&index).unwrap();
     tree["batches"] = 2.into();
     fs::write(&summary, sealed(tree.clone())).unwrap();
@@ -233,7 +235,7 @@ fn arrays_that_do_not_fit_are_refused() {
     ]);
     let path = folder.path();
     let mut tree = json(&path.join("b/summary.json"));
-    // The arrays of another plane's radial spectrum have no slices.
+    // The arrays of another plane's radial spectrum contain no slices.
     let other = fs::read(path.join("b/light/radial.npz")).unwrap();
     fs::write(path.join("b/light/slices.npz"), &other).unwrap();
     tree["files"]["light/slices.npz"] = blake3::hash(&other).to_hex().as_str().into();
@@ -268,7 +270,7 @@ fn the_same_photons_are_compared_number_by_number() {
     ]);
     let parts = ["run.alpha: 0.01 and 0.02", "the same numbers"];
     found(&folder, "a b", 0, &parts);
-    // The first plane is before the blockers, so it does not differ.
+    // The first plane is before the blockers, so its spectrum does not differ.
     let (code, text) = diff(folder.path(), "a pitch");
     assert_eq!(code, Some(1), "{text}");
     let light = text
@@ -279,7 +281,7 @@ fn the_same_photons_are_compared_number_by_number() {
         light.ends_with("same") && light.contains("0.000 %"),
         "{text}"
     );
-    // The difference is far below the noise, but the noise is common to both.
+    // The difference of the results is far below the noise, but both results have the same noise.
     found(
         &folder,
         "a fill",
@@ -323,7 +325,7 @@ fn call_report(folder: &Path) -> std::process::Output {
         .unwrap()
 }
 
-/// The folders of `results/` are complete: each listed file is unchanged, and small.
+/// The folders in `results/` are complete: each listed file is unchanged and small.
 #[test]
 fn committed_results_are_whole() {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results");

@@ -1,4 +1,4 @@
-//! `etendue check --draw`: the content of the drawing of a scene.
+//! Tests the drawing of a scene by `etendue check --draw`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +6,7 @@ use crate::common;
 use crate::common::etendue;
 use std::fs;
 
-/// The drawing of a scene of the repository, as SVG.
+/// Returns the drawing of a scene of the repository, as SVG.
 fn drawing(scene: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut command = etendue();
@@ -21,8 +21,8 @@ fn drawing(scene: &str) -> String {
 
 #[test]
 fn a_cut_through_y_is_drawn_where_it_shows_something_else() {
-    // The first scene has bars along Y; the others have squares that are irregular only through
-    // jitter.
+    // The first scene has bars along Y; the other scenes have squares that are irregular only
+    // because of jitter.
     for (scene, is_other) in [
         ("grating", true),
         ("fig9b", false),
@@ -55,7 +55,8 @@ fn surfaces_are_hatched_evenly_and_glass_is_not() {
     };
     assert_eq!(strokes("table1/lens"), 0);
     assert_eq!(strokes("table1/refraction_in"), 0);
-    // The segments of a sphere are shorter than the distance to the first stroke.
+    // The segments of the drawn sphere are shorter than the distance from a segment's end to the
+    // first stroke of hatching.
     assert!(strokes("table1/environment") > 20);
 }
 
@@ -67,8 +68,8 @@ fn light_from_far_away_is_no_lamp() {
 
 #[test]
 fn planes_stand_where_they_are() {
-    // All seven planes of this scene are at one place, so a single line stands for them, drawn
-    // seven times in each cut.
+    // All seven planes of this scene are at the same position, so they share one line, which is
+    // drawn seven times in each cut.
     let svg = drawing("fig10");
     let lines: Vec<&str> = svg
         .lines()

@@ -1,4 +1,4 @@
-//! The numbers of the explorer equal those of the command.
+//! Tests that the numbers of the explorer equal those of the command.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +10,7 @@ use ndarray_npy::NpzReader;
 use std::fs::{self, File};
 use std::path::Path;
 
-/// Returns the prediction of the command at a plane.
+/// Returns the prediction of `etendue predict` at a plane.
 fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) {
     let path = folder.join(plane.name()).join("prediction.npz");
     let mut file = NpzReader::new(File::open(path).unwrap()).unwrap();
@@ -20,8 +20,8 @@ fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) 
     )
 }
 
-/// Returns the largest difference of the slices at azimuth 0 and of the picture, each relative to
-/// its largest value.
+/// Returns the largest difference between the slices at azimuth 0, and between the pictures, each
+/// relative to the largest value.
 fn apart(
     (slices, field): &(Slices, Projection),
     (command, picture): &(Array3<Complex>, Array2<f64>),
@@ -57,8 +57,9 @@ fn numbers_are_those_of_the_saved_scene() {
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
-            // The explorer and the command compute the same sums. The results differ only by
-            // rounding errors, because the frames of the two differ by rounding errors.
+            // The explorer and the command compute the same sums. The results of the explorer and
+            // the command differ only by rounding errors, because their frames differ by rounding
+            // errors.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();

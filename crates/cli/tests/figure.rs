@@ -28,7 +28,7 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     assert_eq!(start("svg"), b"<svg");
     let index = json(&path.join("f1/7/figure.json"));
     assert_eq!(index["command"], "etendue figure 7 --quality draft");
-    // Both occluders together block all light, as predicted.
+    // Together, the two occluders block all light, as predicted.
     let dark = &index["planes"][5];
     assert_eq!(
         [&dark["scene"], &dark["plane"]],
@@ -43,8 +43,8 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     let (one, other, both) = (slice("fig7_one"), slice("fig7_other"), slice("fig7_two"));
     assert_eq!(one.dim().0, rho.len());
     assert!(both.iter().all(|s| s.norm() == 0.0));
-    // The occluders are mirror images of each other, and so are their slices, S(−ρ, −ν) = S*(ρ, ν),
-    // up to noise.
+    // The two occluders are mirror images of each other, so their slices satisfy S(−ρ, −ν) =
+    // S*(ρ, ν), up to noise.
     let peak = one.iter().map(|s| s.norm()).fold(0.0, f64::max);
     let off = (&one - &other.mapv(|s| s.conj()))
         .iter()
@@ -76,7 +76,8 @@ fn curves_have_a_table() {
     assert!((at_zero("3D").unwrap() - std::f64::consts::PI).abs() < 1e-9);
 }
 
-/// Photons lie on the lines of the corrected Eqs. 20 and 21, and off those of the printed ones.
+/// The bandwidths measured with photons lie on the lines of the corrected Eqs. 20 and 21, and off
+/// the lines of the printed equations.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn photons_tell_the_criteria_from_their_print() {
@@ -118,8 +119,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // The error of the nearest points of the lines is 0.12, and that of the criteria is 1
-            // %. For bandwidths below 2 the window determines the spectrum.
+            // The error of the lines' nearest points is 0.12, and the error of the criteria is 1
+            // %. If the bandwidth is below 2, the window determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");
@@ -140,7 +141,7 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
     );
 }
 
-/// A folder with a scene, the same scene with narrower blockers, and a style.
+/// Returns a folder with a scene, the same scene with narrower blockers, and a style file.
 fn own() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();

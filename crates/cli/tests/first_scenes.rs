@@ -1,4 +1,4 @@
-//! Typical mistakes in first scenes, and the messages for them.
+//! Tests typical mistakes in first scenes, and the messages about these mistakes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -27,7 +27,7 @@ const SCENE: &str = r#"(
 )
 "#;
 
-/// Runs `etendue check` on the scene with the first text replaced by the second.
+/// Runs `etendue check` on the scene in which `from` is replaced by `to`.
 fn check(from: &str, to: &str, arguments: &[&str]) -> Output {
     assert!(SCENE.contains(from), "{from} is not in the scene");
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +46,8 @@ fn refused(output: &Output, message: &str) {
     assert_eq!(output.status.code(), Some(2), "{told}");
 }
 
-/// The text in the scene, the beginner's text, and the whole message after the file name.
+/// For each mistake: the text in the scene, the beginner's text, and the entire message after the
+/// file name.
 const MISTAKES: &[[&str; 3]] = &[
     // A number in place of a vector.
     [
@@ -66,7 +67,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "center: [0, 0, 2]",
         "line 10, column 42: surfaces[0].center is [0, 0, 2]; allowed: a place in the world, in metres, such as (0, 0, 1)",
     ],
-    // A half-width without its profile.
+    // A half-width without the name of its profile.
     [
         "x: Hann(0.5)",
         "x: 0.5",
@@ -168,7 +169,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "fill: 60",
         "line 6, column 31: blockers[0].fill is 60; allowed: above 0, at most 1: a share of the pitch",
     ],
-    // A floor behind the light.
+    // A floor that lies behind the light.
     [
         "(0, 0, 2)",
         "(0, 0, -2)",
@@ -186,13 +187,13 @@ const MISTAKES: &[[&str; 3]] = &[
         "direction: (0, 0, 0)",
         "line 12, column 23: path.direction and path.x_axis are (0, 0, 0) and (1, 0, 0); allowed: two directions that are not parallel, neither of length 0",
     ],
-    // A plane beyond the path.
+    // A plane that lies beyond the end of the path.
     [
         r#"Before("floor")"#,
         "Distance(4.5)",
         "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m, where the last surface is, and from there to 4 m, where an object ends the path",
     ],
-    // Jitter with which squares would overlap.
+    // A jitter that would make squares overlap.
     [
         "fill: 0.6",
         "fill: 0.6, jitter: 0.7",
@@ -210,7 +211,7 @@ const MISTAKES: &[[&str; 3]] = &[
         r#"Before("floor")), (name: "arrival", at: Emission),"#,
         r#"line 14, column 56: planes[1].name is "arrival"; allowed: a name no other plane has"#,
     ],
-    // Blockers at the distance of the floor.
+    // Blockers at the same distance as the floor.
     [
         "(0, 0, 1), count",
         "(0, 0, 2), count",
@@ -253,7 +254,7 @@ fn mistakes_are_told_with_their_place_and_what_is_wanted() {
     }
 }
 
-/// A file that is cut short.
+/// A scene file that ends too early.
 #[test]
 fn a_file_cut_short_is_told_where_it_ends() {
     let [_, end] = SCENE
@@ -279,7 +280,7 @@ fn what_is_set_is_told_by_what_has_set_it() {
     refused(&output.output().unwrap(), message);
 }
 
-/// A likely mistake gives a warning; the scene is still described, and the command succeeds.
+/// A likely mistake causes a warning; the scene is still described, and the command succeeds.
 #[test]
 fn likely_mistakes_are_warned_of() {
     for (from, to, warning) in [
@@ -309,7 +310,7 @@ fn likely_mistakes_are_warned_of() {
     }
 }
 
-/// The scenes of this repository give no warnings, and each reports its cost.
+/// The scenes of this repository cause no warnings, and `check` reports the cost of each scene.
 #[test]
 fn sound_scenes_are_not_warned_of() {
     for name in [

@@ -1,5 +1,5 @@
-//! Signals end a run even if its standard error is closed or full; lack of memory ends it with a
-//! message.
+//! Tests that signals end a run even if its standard error is closed or full, and that lack of
+//! memory ends a run with a message.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// An endless run that has begun to trace.
+/// Starts an endless run, and waits until its folder of unfinished files exists.
 fn begun(out: &Path, stderr: Stdio) -> Child {
     let child = etendue()
         .arg("run")
@@ -50,23 +50,23 @@ fn code(child: &mut Child) -> Option<i32> {
 fn signals_end_a_run_though_nobody_reads_its_errors() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    // `nohup` ignores SIGHUP, and the run keeps ignoring it.
+    // If `nohup` ignores SIGHUP, the run continues to ignore it.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
     let hangup = (ignored.unwrap_or(0) & 1 == 0).then_some("HUP");
     for signal in ["INT", "TERM"].into_iter().chain(hangup) {
-        // The reader closes the pipe before anything is written.
+        // The reader closes the pipe before the run writes to it.
         let mut child = begun(&out, Stdio::piped());
         drop(child.stderr.take());
         send(signal, &child);
         assert_eq!(code(&mut child), Some(3), "{signal}");
-        // The run leaves no unfinished files either.
+        // The interrupted run leaves no unfinished files either.
         assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "{signal}");
     }
 }
 
-/// Standard error is a pipe that is full, and nobody reads it.
+/// Standard error is a full pipe that no process reads.
 #[cfg(target_os = "linux")]
 #[test]
 fn signals_end_a_run_that_cannot_write_its_errors() {
@@ -105,7 +105,7 @@ fn memory_that_cannot_be_had_is_said() {
     }
 }
 
-/// A signal at any moment during start-up leaves no lock.
+/// If a signal arrives at any moment during start-up, no lock remains.
 #[test]
 fn a_signal_leaves_no_lock() {
     let folder = tempfile::tempdir().unwrap();

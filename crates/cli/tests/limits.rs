@@ -1,4 +1,5 @@
-//! Commands refuse, before they begin, work that would take too long or not fit in memory.
+//! Tests that commands refuse, before they begin, work that would take too long or would not fit
+//! in memory.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -16,8 +17,8 @@ fn refused(arguments: &[&str]) -> Output {
     output
 }
 
-/// Settings with which predictions use nets of rays instead of closed forms; these keep the
-/// spectra of all replicates in memory.
+/// Settings with which predictions use nets of rays instead of closed forms; such predictions
+/// keep the spectra of all replicates in memory.
 const FINE: [&str; 6] = [
     "--set",
     "blockers.0.frequency=1e6",

@@ -1,4 +1,5 @@
-//! Results own only the files they wrote: files of others are never replaced or removed.
+//! Tests that results own only the files that they wrote: files of other programs are never
+//! replaced or removed.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -23,7 +24,7 @@ const SCENE: &str = r#"(
     run: (photons: 5000),
 )"#;
 
-/// More photons than any test waits for.
+/// A number of photons for which no test waits.
 const ENDLESS: &str = "--photons 1e12";
 
 fn folder() -> TempDir {
@@ -39,7 +40,8 @@ fn passes(folder: &Path, arguments: &str) {
     assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
 }
 
-/// The command fails with a one-line message that has these parts; all files stay unchanged.
+/// Checks that the command fails with a one-line message that contains `parts`, and that all
+/// files stay unchanged.
 fn stays(folder: &Path, arguments: &str, parts: &[&str]) {
     let before = files(folder);
     let start = Instant::now();
@@ -73,7 +75,7 @@ fn inputs_are_never_among_results() {
     let mesh = SCENE.replace("tri.obj", "out/measurement.inputs/tri.obj");
     fs::write(folder.path().join("t.ron"), mesh).unwrap();
     passes(folder.path(), "measure s.ron --out out");
-    // The second measurement uses the mesh copy of the first.
+    // The second measurement reuses the copy of the mesh that the first measurement wrote.
     let before = files(folder.path());
     for force in ["", " --force"] {
         let arguments = format!("measure t.ron --out out{force} {ENDLESS}");
@@ -106,7 +108,7 @@ fn files_of_somebody_else_stay() {
         );
         fs::remove_dir_all(at("out")).unwrap();
     }
-    // A file of an earlier result is protected too if it was changed since; an unrelated file in
+    // A file of an earlier result is also protected if it was changed since; an unrelated file in
     // the folder does not stop the command.
     passes(folder.path(), "run s.ron --out out");
     fs::write(at("out/light/notes.txt"), "mine").unwrap();
@@ -257,8 +259,8 @@ fn one_writer_at_a_time() {
             "{output}"
         );
     }
-    // A killed run leaves files that the next run removes; the earlier result stays whole until
-    // then.
+    // A killed run leaves unfinished files, which the next run removes; until then the earlier
+    // result stays complete.
     first.kill().unwrap();
     first.wait().unwrap();
     let mut left = files(&at("out"));
@@ -282,7 +284,8 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// If a process dies while its files are moved, the next process completes the move from any step.
+/// If a process dies while it moves its files, the next process completes the moves from any
+/// step.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();
@@ -320,7 +323,7 @@ fn a_move_that_was_cut_short_is_ended() {
     }
 }
 
-/// Arguments quoted for a shell.
+/// Returns the arguments quoted for a shell.
 fn quoted(arguments: &str) -> String {
     let words = arguments.split(' ').map(|word| format!("'{word}'"));
     words.collect::<Vec<_>>().join(" ")
@@ -334,7 +337,7 @@ fn a_failed_move_is_undone() {
     passes(folder.path(), "run s.ron --out out --seed 1");
     let before = files(&at("out"));
     passes(folder.path(), "run s.ron --out new --seed 2");
-    // A dead process had begun to move its files; a file of somebody else blocks the last move.
+    // A dead process had begun to move its files; a file of another program blocks the last move.
     let waiting = at("out/.etendue-unfinished");
     fs::create_dir_all(&waiting).unwrap();
     for (name, bytes) in files(&at("new")) {
@@ -374,7 +377,7 @@ fn a_full_disk_takes_nothing_away() {
     let folder = folder();
     passes(folder.path(), "run s.ron --out out");
     let before = files(folder.path());
-    // Files may grow to 8 blocks, so the arrays do not fit.
+    // The limit on file sizes is 8 blocks, so the arrays do not fit.
     let program = env!("CARGO_BIN_EXE_etendue");
     for command in [
         "run s.ron --seed 2 --quiet --out out",

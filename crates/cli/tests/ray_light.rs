@@ -1,4 +1,5 @@
-//! A ray file as light: photons against the sum over its rays, planted faults, and refusals.
+//! Tests a ray file as a light: photons against the sum over its rays, planted faults, and
+//! refusals.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -44,7 +45,7 @@ fn rays(unit: PowerUnit) -> RaySet {
     }
 }
 
-/// The rays as files of every format.
+/// Returns a folder with the rays as a file of each format.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, format, unit) in [
@@ -60,8 +61,8 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The scene of the repository with some of its text replaced, and enough photons for a noise of a
-/// few per cent.
+/// Returns the scene of the repository with some of its text replaced, and with enough photons
+/// for a noise of a few per cent.
 fn text(edits: &[(&str, &str)]) -> String {
     let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();
     let edits = [
@@ -88,7 +89,8 @@ fn resolved(folder: &Path, edits: &[(&str, &str)]) -> Result<Scene, SceneError> 
     )
 }
 
-/// Verdicts of the photons of one scene against the prediction of another.
+/// Returns the verdicts on the photons of the scene `traced` against the prediction of the scene
+/// `predicted`.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -113,7 +115,7 @@ fn photons_agree_with_the_sum_over_rays() {
     for edits in [
         vec![],
         vec![("run: (", "run: (sampling: Random, ")],
-        // The light is turned and shines through a grating.
+        // The light of this scene is turned and shines through a grating.
         vec![
             (
                 "file: \"led.tm25ray\"",
@@ -134,7 +136,7 @@ fn photons_agree_with_the_sum_over_rays() {
     }
 }
 
-/// Each fault is detected at the planes behind it, and at no other.
+/// Each planted fault is detected at the planes behind it, and at no other plane.
 #[test]
 fn planted_faults_are_seen() {
     let folder = folder();
@@ -173,8 +175,8 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// The power of the rays is used in W even if the file states another unit; rays that go back are
-/// left out.
+/// The power of the rays is converted to W even if the file states another unit; rays that go
+/// back are omitted.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();
@@ -191,7 +193,7 @@ fn power_is_in_watts() {
     let forward: f64 = forward.map(|(_, power)| power).sum();
     let total = set.total_power();
     let near = |[a, b]: [f64; 2], factor: f64| {
-        // f32 rounds each power by 6e-8.
+        // Conversion to f32 rounds each power by a relative error of 6e-8.
         assert!((a / (factor * forward) - 1.0).abs() < 1e-6, "{a} {forward}");
         assert!((b / (factor * (total - forward)) - 1.0).abs() < 1e-6, "{b}");
     };

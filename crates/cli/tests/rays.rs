@@ -1,4 +1,4 @@
-//! `etendue rays`, and `--save mcpl,tm25`.
+//! Tests `etendue rays` and `--save mcpl,tm25`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Two rays as `two.tm25ray`, and half of that file as `half.tm25ray`.
+/// Returns a folder with two rays as `two.tm25ray`, and half of that file as `half.tm25ray`.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let set = RaySet {
@@ -117,8 +117,9 @@ fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
     );
 }
 
-/// A light of radiance 1 emits π times its area. The received flux is the emitted flux times the
-/// form factor, which is computed independently of the flux of the NPY file.
+/// A light of radiance 1 emits a flux of π times its area. The received flux is the emitted flux
+/// times the form factor, and the form factor is computed independently of the flux in the NPY
+/// file.
 #[test]
 fn saved_rays_have_the_flux_of_their_plane() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +137,7 @@ fn saved_rays_have_the_flux_of_their_plane() {
     let mcpl = read(&out.join("light/photons.mcpl"));
     let flux = PI * 0.2 * 0.173_205_080_756_887_73;
     assert_eq!((mcpl.len(), mcpl.unit), (20_000, PowerUnit::Watt));
-    // The rounding errors of a sum of 20,000 numbers.
+    // The tolerance is the rounding error of a sum of 20,000 numbers.
     assert!(
         (mcpl.total_power() / flux - 1.0).abs() < 1e-11,
         "{}",
@@ -173,13 +174,14 @@ fn saved_rays_have_the_flux_of_their_plane() {
     for (p, d) in floor.positions.iter().zip(&floor.directions) {
         let back = (p[2] - 0.3) / d[2];
         let from = [p[0] - back * d[0], p[1] - back * d[1]];
-        // The X axis of the scene is oblique, so the circle around the square light is the bound.
+        // The X axis of the scene is oblique, so positions are bounded by the circle around the
+        // square light.
         assert!(
             (from[0] - 0.1).hypot(from[1] - 0.2) < 0.1323 + 1e-9,
             "{from:?}"
         ); // half its diagonal
     }
-    // A second run on other threads gives the same bytes.
+    // A second run on another number of threads gives the same bytes.
     let first = fs::read(out.join("receiver/photons.mcpl")).unwrap();
     call(
         folder.path(),

@@ -1,4 +1,4 @@
-//! `report.html` and `etendue report`.
+//! Tests the page `report.html` and the command `etendue report`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -7,8 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Two runs: the small scene in `a`; and in `b`, the same with another pitch and a name that would
-/// close the page's data tag.
+/// Returns a folder with two runs: `a` is the small scene, and `b` is the same scene with another
+/// pitch and a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
@@ -28,7 +28,7 @@ fn runs() -> tempfile::TempDir {
     folder
 }
 
-/// The contents of the data tags of a page, each parsed.
+/// Returns the contents of the data tags of a page, parsed as JSON.
 fn data(page: &Path) -> Vec<serde_json::Value> {
     let text = fs::read_to_string(page).unwrap();
     let blocks = text.split("class=\"run-data\">").skip(1);
@@ -56,7 +56,7 @@ fn a_page_holds_what_its_run_found() {
     }
     assert_eq!(run["scene_file"], summary["scene_file"]);
     assert!(run["path"].as_str().unwrap().starts_with("<svg"));
-    // The page refers to nothing external but the SVG namespace.
+    // The page refers to nothing outside itself except the SVG namespace.
     let text = fs::read_to_string(&page)
         .unwrap()
         .replace("http://www.w3.org/2000/svg", "");
@@ -95,7 +95,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
         let code = call(path, &run).status.code();
-        // With so few photons, the expected verdict may be undecided.
+        // With so few photons, the verdict may be undecided instead of the expected verdict.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
         let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));
@@ -139,7 +139,7 @@ fn what_is_no_whole_result_is_refused() {
             .contains("damaged")
     );
     assert!(!path.join("out").exists());
-    // A page of another result is not replaced, and neither is a page that is an input.
+    // If a file is a page of another result or an input, it is not replaced.
     assert_eq!(
         call_report(path, "report a --out small.ron").status.code(),
         Some(3)
@@ -152,7 +152,8 @@ fn what_is_no_whole_result_is_refused() {
     );
 }
 
-/// A changed page with a matching index cannot inject markup into a page of several runs.
+/// If a page was changed and its index matches, it still cannot inject markup into a page of
+/// several runs.
 #[test]
 fn pages_are_made_from_data() {
     let folder = runs();
@@ -182,7 +183,7 @@ fn pages_are_made_from_data() {
     };
     const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
     let data = "class=\"run-data\">";
-    // Markup next to the data makes the data invalid.
+    // If there is markup next to the data, the data are not valid JSON.
     for to in [format!("{data}{MARKUP}"), format!("{data}0{MARKUP}")] {
         let output = forge(data, &to);
         assert_eq!(output.status.code(), Some(2), "{output:?}");

@@ -1,4 +1,5 @@
-//! `etendue run --resume` and `--time`: a run continues from the batches left by an earlier one.
+//! Tests `etendue run --resume` and `--time`: a run continues from the batches that an earlier
+//! run left.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 
 const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 
-/// A folder with the scene, and in `whole` the result of an uninterrupted run.
+/// Returns a folder with the scene and, in `whole`, the result of an uninterrupted run.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -19,7 +20,8 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Checks that the result is that of the uninterrupted run, and that no other files are beside it.
+/// Checks that the result equals that of the uninterrupted run, and that no other files are
+/// beside it.
 fn is_whole(folder: &Path, out: &str) {
     let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
     for files in [&mut found, &mut whole] {
@@ -32,12 +34,12 @@ fn is_whole(folder: &Path, out: &str) {
     assert!(found == whole, "the bytes of {out} are those of one run");
 }
 
-/// The batches that a run has left, or is about to leave.
+/// Returns the paths of the batches that a run has stored, or is about to store.
 fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
     left(folder, out, "batch")
 }
 
-/// The batch files with this ending.
+/// Returns the batch files whose names end in `end`.
 fn left(folder: &Path, out: &str, end: &str) -> Vec<PathBuf> {
     let below = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten();
     let keys = below(folder.join(out).join("batches"));
@@ -83,7 +85,7 @@ fn a_run_goes_on_where_its_time_was_up() {
     }
     assert!(ended > 0, "the time was never up");
     is_whole(path, "parts");
-    // A finished run prints its result again and keeps it.
+    // A finished run prints its result again and does not change it.
     let again = call(path, &format!("{RUN} --out parts --resume"));
     assert_eq!(again.status.code(), Some(0));
     is_whole(path, "parts");
@@ -101,7 +103,7 @@ fn a_run_goes_on_where_it_was_killed_or_damaged() {
     }
     let mut left = batches(path, "parts");
     if left.is_empty() {
-        // On a slow machine these batches are made in sequence.
+        // On a slow machine, the killed runs have finished no batch, so another run makes some.
         call(path, &format!("{RUN} --out parts --resume --time 300ms"));
         left = batches(path, "parts");
     }
@@ -124,7 +126,7 @@ fn processes_share_a_run() {
     let folder = folder();
     let path = folder.path();
     let mut all: Vec<Child> = (0..3).map(|_| started(path, "parts")).collect();
-    // One process dies during the run.
+    // One of the processes dies during the run.
     std::thread::sleep(Duration::from_millis(60));
     all[0].kill().unwrap();
     all[0].wait().unwrap();
@@ -150,7 +152,8 @@ fn batches_of_another_run_are_not_taken() {
     }
 }
 
-/// Another process writes the result and removes the batches while this process works on a batch.
+/// Another process writes the result and removes the stored batches while this process works on a
+/// batch.
 #[test]
 fn what_another_process_ends_is_not_begun_anew() {
     let folder = folder();
@@ -164,16 +167,16 @@ fn what_another_process_ends_is_not_begun_anew() {
         fs::create_dir_all(to.parent().unwrap()).unwrap();
         fs::write(to, bytes).unwrap();
     }
-    // Removal is repeated, because the process may be writing its batch at the same time.
+    // The removal is repeated, because the process may be writing its batch at the same time.
     while fs::remove_dir_all(path.join("parts/batches")).is_err() {}
     assert_eq!(child.wait().unwrap().code(), Some(0));
     is_whole(path, "parts");
 }
 
-/// A run whose batches take minutes each.
+/// A command for a run whose batches take minutes each.
 const LONG: &str = "run small.ron --photons 2^36 --out long";
 
-/// The exit code and errors of a long run that ends by itself.
+/// Returns the exit code and the errors of a long run that ends by itself.
 fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     let mut child = etendue()
         .current_dir(folder)
@@ -183,7 +186,8 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    // A part of a batch takes about a second of one thread; the margin is for a busy machine.
+    // A part of a batch takes about a second of one thread; the limit is higher in case the
+    // machine is busy.
     let mut by_itself = true;
     while by_itself && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(20));
@@ -198,7 +202,7 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     (output.status.code(), message)
 }
 
-/// The number of parts kept of unfinished batches.
+/// Returns the number of stored parts of unfinished batches.
 fn parts(folder: &Path) -> u32 {
     let names = left(folder, "long", "begun").into_iter();
     let parts = names.map(|path| {
@@ -231,11 +235,12 @@ fn time_is_up_within_a_batch() {
         message.contains("is damaged: the batch is measured again"),
         "{message}"
     );
-    // The run may have measured the same parts again.
+    // The run may have measured the parts of the damaged file again.
     assert_ne!(fs::read(&damaged).unwrap_or_default(), b"no batch");
 }
 
-/// Parts that were stored a few seconds before a process died within a batch are used later.
+/// If a process dies within a batch, the parts that it stored a few seconds before are used
+/// later.
 #[test]
 fn a_killed_process_leaves_the_beginning_of_its_batch() {
     let folder = tempfile::tempdir().unwrap();
@@ -257,7 +262,7 @@ fn a_killed_process_leaves_the_beginning_of_its_batch() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    // A newer partial batch replaces an older one.
+    // A newer file of a partial batch replaces an older file.
     assert_eq!(left(path, "long", "begun").len(), 1);
 }
 
@@ -288,7 +293,7 @@ fn batches_of_a_run_that_is_done_are_removed() {
     is_whole(path, "parts");
 }
 
-/// Batches are neither written nor removed through a link.
+/// If the folder of batches is a link, batches are neither written nor removed through it.
 #[cfg(unix)]
 #[test]
 fn batches_go_through_no_link() {

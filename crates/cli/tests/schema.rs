@@ -1,4 +1,4 @@
-//! `etendue schema`: the pages of the book equal its output, and scenes match the schema.
+//! Tests `etendue schema`: the pages of the book equal its output, and scenes match the schema.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -1,4 +1,4 @@
-//! `etendue split`: its commands, run in any order, give the bytes of one run.
+//! Tests `etendue split`: if its commands are run in any order, they give the bytes of one run.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// A folder with the scene, whose name needs quoting, and with the result of one run in `whole`.
+/// Returns a folder with a scene whose name needs quoting and, in `whole`, the result of one run.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("my scene.ron"), SCENE).unwrap();
@@ -42,7 +42,7 @@ fn split(folder: &Path, more: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs a shell line or script, with `etendue` on its path.
+/// Runs a shell line or script, with `etendue` on the search path.
 fn shell(folder: &Path, text: &str) {
     let programs = Path::new(env!("CARGO_BIN_EXE_etendue")).parent().unwrap();
     let path = std::env::var("PATH").unwrap();
@@ -82,7 +82,8 @@ fn parts_in_any_order_are_one_run() {
 fn the_script_for_slurm_is_one_run() {
     let folder = folder();
     let path = folder.path();
-    // A fake `sbatch` that runs its script as often as the array states, and ignores dependencies.
+    // A fake `sbatch` that runs its script once for each element of the array, and ignores
+    // dependencies.
     let sbatch = r#"#!/bin/sh
 set -eu
 last=0

@@ -1,5 +1,5 @@
-//! The stages over files: together they write the same as `run`, and parts that do not fit together
-//! are refused.
+//! Tests the stages of a run, which exchange files: together they write the same files as `run`,
+//! and parts that do not fit together are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -56,7 +56,7 @@ fn part_of_a_measurement_is_reported_as_what_it_is() {
     let held = json(&folder.join("b/measurement.json"));
     assert_eq!(summary["batches"], 44);
     assert_eq!(summary["photons"], held["photons"]);
-    // All photons cross the light's own plane.
+    // All photons cross the plane at the light.
     assert_eq!(summary["planes"][0]["crossed"], held["photons"]);
 }
 
@@ -193,7 +193,8 @@ fn bad_arguments_are_refused() {
     }
 }
 
-/// A part of a measurement has fewer photons than its scene asks for, and the picture says how many.
+/// If a part of a measurement has fewer photons than its scene requests, the picture states the
+/// part's own number of photons.
 #[test]
 fn the_picture_of_a_part_tells_its_own_photons() {
     let folder = stages();

@@ -16,7 +16,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// The rows of a table, by column name.
+/// Returns the rows of a table, each by column name.
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(file).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
@@ -80,7 +80,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     );
     assert_eq!(seeds("--seed 7"), own);
     assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
-    // If the seed is swept, its values are the seeds used.
+    // If the seed is swept, the values of the sweep are the seeds of the points.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
     assert_eq!(call(path, line).status.code(), Some(0));
     let seeds: BTreeSet<String> = rows(&path.join("t/sweep.csv"))
@@ -90,7 +90,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     assert_eq!(seeds, ["3", "4"].map(str::to_owned).into());
 }
 
-/// Points are not written through a planted link.
+/// If the folder of points is a link, points are not written through it.
 #[test]
 fn points_go_through_no_link() {
     for name in ["s/points", "s/points/POINT"] {
@@ -130,7 +130,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     };
     let made = |i: usize| fs::metadata(summary(i)).unwrap().ino();
     let before = [0, 1, 3].map(made);
-    // One summary is lost, and another one was changed by hand.
+    // One summary was removed, and another summary was changed by hand.
     fs::remove_file(summary(2)).unwrap();
     fs::write(summary(3), "{}").unwrap();
     let refused = call(path, PITCH);
@@ -143,7 +143,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     assert_eq!(call(path, PITCH).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2], "not run again");
     assert!(files(&path.join("s")) == whole, "the same bytes");
-    // If values are added, only new points are run.
+    // If values are added to a sweep, only the new points are run.
     let more = PITCH.replace(":4", ":7");
     assert_eq!(call(path, &more).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2]);
@@ -169,7 +169,7 @@ fn a_grid_and_fields_in_step() {
     let (grid, step) = (points("grid/sweep.json"), points("step/sweep.json"));
     assert_eq!(grid.len(), 4);
     assert_eq!(step, [grid[0].clone(), grid[3].clone()]);
-    // The curves of a grid have a panel for each plane and each fill.
+    // The curves of a sweep over two fields have a panel for each plane and each value of `fill`.
     let curves = rows(&path.join("grid/slope.csv"));
     let panels: BTreeSet<&String> = curves.iter().map(|r| &r["panel"]).collect();
     assert_eq!(panels.len(), 4, "{panels:?}");
@@ -228,7 +228,7 @@ fn bad_sweeps_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(field), "{message}");
     }
-    // A sweep of another scene, or of other fields, is not replaced.
+    // A sweep of another scene, or of other fields, does not replace this sweep.
     assert_eq!(call(path, PITCH).status.code(), Some(0));
     let other = format!("{PITCH} --set blockers.0.fill=0.3");
     let output = call(path, &other);

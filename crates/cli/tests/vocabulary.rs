@@ -1,4 +1,5 @@
-//! Other methods, other programs, meshes and the 4D light field, from the command line.
+//! Tests, from the command line, other methods of measurement, export to other programs, meshes
+//! and the 4D light field.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +9,7 @@ use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
 
-/// The small scene in a folder of its own, with some of its text replaced.
+/// Returns a folder with the small scene, in which some text is replaced.
 fn folder(edits: &[(&str, &str)]) -> tempfile::TempDir {
     let mut text = SCENE.to_owned();
     for (from, to) in edits {
@@ -24,8 +25,8 @@ const LIGHT: &str =
     "Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773))";
 const POINT: &str = "Point(center: (0.1, 0.2, 0.30000000000000004))";
 const LAYER: &str = "blockers: [";
-/// Runs a scene with a mesh from a file, and one with a mesh of too many triangles for the exact
-/// prediction, so that the other tracer is the check.
+/// Blockers with a mesh from a file and with a mesh of too many triangles for the exact
+/// prediction, so that the other tracer checks the measurement.
 const MESH: &str = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1),
     Mesh(name: "ball", center: (-0.1, 0.1, 1), mesh: Star(radius: 0.03, relief: 0, lobes: 0, rings: 20)), "#;
 const TETRA: &str =
@@ -45,7 +46,7 @@ fn backward_rays_agree_and_keep_no_ledger() {
     assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
 }
 
-/// Backward rays find a point light where nothing deflects its light, but not behind a mirror that
+/// Backward rays find a point light if nothing deflects its light, but not behind a mirror that
 /// reflects the light first.
 #[test]
 fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
@@ -79,7 +80,7 @@ fn a_mesh_goes_through_all_stages() {
         let output = call(path, arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
     }
-    // The files of the stages are self-contained.
+    // The files of the stages contain all inputs, so the original meshes are not needed.
     fs::remove_dir_all(path.join("meshes")).unwrap();
     let output = call(path, "compare --measured m --predicted p --out compared");
     assert_eq!(output.status.code(), Some(0), "{output:?}");
@@ -122,7 +123,8 @@ fn the_light_field_is_written_on_its_grid() {
     let cells: Vec<usize> = serde_json::from_value(index["cells"].clone()).unwrap();
     assert_eq!(field.shape(), cells.as_slice());
     let width: Vec<f64> = serde_json::from_value(index["width"].clone()).unwrap();
-    // The sum of the light field is ∫ L W, which is the value of the slices at zero.
+    // The sum over the light field is ∫ L W, which equals the value of the slices at zero
+    // frequency.
     let sum: f64 = field.sum() * width.iter().product::<f64>();
     let slices: ndarray::Array3<etendue_field::Complex> =
         array(&plane.join("slices.npz"), "measured");
@@ -132,7 +134,7 @@ fn the_light_field_is_written_on_its_grid() {
         ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
     let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");
     let zero = [0, 0];
-    // The tolerance is five jackknife errors, which are the noise of 20,000 photons.
+    // The tolerance is five jackknife errors, which contain the noise of 20,000 photons.
     assert!(
         (power[zero] - predicted[zero]).abs() < 5.0 * sigma[zero],
         "{} {}",

@@ -1,4 +1,5 @@
-//! Several processes share one job; here they are threads that exchange bytes, as MPI ranks do.
+//! Tests several processes that share one job; in these tests, they are threads that exchange
+//! bytes, as MPI ranks do.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -20,7 +21,7 @@ struct Member {
     number: usize,
     to: Vec<Sender<Message>>,
     inbox: Mutex<Receiver<Message>>,
-    /// The number of messages this process has sent.
+    /// The number of messages that this process has sent.
     sent: AtomicUsize,
 }
 
@@ -44,8 +45,8 @@ impl Workers for Member {
     }
 }
 
-/// Runs `lines`, one for each process. Returns the exit code of the first process, and the number
-/// of messages that each other process has sent.
+/// Runs the command lines `lines`, each in its own process. Returns the exit code of the first
+/// process, and for each other process the number of messages that it has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();
@@ -64,8 +65,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The leader begins after the others have reported; otherwise it would finish the small
-        // amount of work alone.
+        // The leader begins after the other processes have reported; otherwise it would finish
+        // the small amount of work alone.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();
@@ -81,8 +82,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     )
 }
 
-/// Checks that `lines`, run on several processes, leave the same files as `line` run alone, except
-/// for times.
+/// Checks that `lines`, run on several processes, write the same files as `line` run alone,
+/// except for times.
 fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
     let scene = path.join("small.ron").display().to_string();
     let with = |out: &str| {
@@ -121,11 +122,12 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // The first process that is ready takes the next piece. On a busy machine the other
-        // processes may therefore get no work; the run is then repeated.
+        // The first process that is ready takes the next piece of work. On a busy machine the
+        // other processes may get no work; the test then repeats the run.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
-            // A process reports its presence with one message, and answers each order with one.
+            // A process reports its presence with one message, and answers each order with one
+            // message.
             sent.iter().sum::<usize>() > 2
         });
         assert!(helped, "{line}: nobody helped");
@@ -137,7 +139,8 @@ fn processes_with_other_scenes_are_refused() {
     let folder = folder();
     let path = folder.path().join("small.ron").display().to_string();
     let out = folder.path().join("out").display().to_string();
-    // Enough photons for the second process to report before the first has finished alone.
+    // With this number of photons, the second process reports before the first process has
+    // finished alone.
     let line = |seed| {
         format!("etendue run {path} --quiet --threads 1 --photons 2^21 --seed {seed} --out {out}")
     };

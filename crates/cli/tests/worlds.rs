@@ -1,4 +1,4 @@
-//! `etendue import`, `render` and `probe`.
+//! Tests `etendue import`, `render` and `probe`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -22,7 +22,7 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// A folder with the room scene, in which one text is replaced.
+/// Returns a folder with the room scene, in which `from` is replaced by `to`.
 fn folder(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert!(ROOM.contains(from));
@@ -43,14 +43,14 @@ fn call(path: &Path, line: &str) -> Output {
         .unwrap()
 }
 
-/// The output of a command that succeeds.
+/// Returns the output of a command, and checks that the command succeeds.
 fn done(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Returns the message of a command that refuses its input.
+/// Returns the error message of a command, and checks that the command refuses its input.
 fn refused(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");
@@ -161,7 +161,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     let surface = &found["surfaces"][0];
     assert_eq!(surface["shape"], "ball");
     let curvature = surface["curvature"][0].as_f64().unwrap();
-    // The curvature is estimated by finite differences over a few pixels.
+    // The command estimates the curvature by finite differences over a few pixels.
     assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
     let names = found["planes"].as_array().unwrap().iter();
     let names: Vec<&str> = names

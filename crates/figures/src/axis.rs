@@ -1,4 +1,4 @@
-//! Axes, quantities and ticks.
+//! Defines axes, the quantities along them, and their ticks.
 
 use crate::sizes::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
@@ -13,7 +13,7 @@ pub struct AxisQuantity {
 }
 
 impl AxisQuantity {
-    /// The quantity `name`, in `unit`.
+    /// Returns the quantity called `name` with the unit `unit`.
     #[must_use]
     pub fn new(name: &str, unit: &str) -> Self {
         Self {
@@ -22,7 +22,7 @@ impl AxisQuantity {
         }
     }
 
-    /// The label "name (unit)" as markup, where the unit includes 10 to the `exponent`.
+    /// Returns the label "name (unit)" as markup; the unit includes 10 to the power `exponent`.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
             0 => String::new(),
@@ -40,7 +40,7 @@ impl AxisQuantity {
         }
     }
 
-    /// The table heading "name [unit]", without markup.
+    /// Returns the table heading "name [unit]" without markup.
     pub(crate) fn heading(&self) -> String {
         let name = crate::text::plain(&self.name);
         match crate::text::plain(&self.unit).as_str() {
@@ -57,16 +57,17 @@ pub struct Axis {
     pub quantity: AxisQuantity,
     /// Outer edge of the cell with the lowest values, in the quantity's unit.
     pub min: f64,
-    /// Outer edge of the cell with the highest values.
+    /// Outer edge of the cell with the highest values, in the quantity's unit.
     pub max: f64,
     /// Whether the axis is logarithmic; if it is, both edges are above 0.
     pub is_log: bool,
-    /// Whether the numbers descend to the right, or upwards, as for rows of a photograph, which
-    /// count from the top. If the numbers descend, the first cell of an array is at the high edge.
+    /// Whether the numbers decrease to the right or upwards, as for the rows of a photograph,
+    /// which count from the top. If the numbers decrease, the first cell of an array is at the
+    /// edge with the highest values.
     pub is_reversed: bool,
 }
 
-/// A tick: its position in the axis' unit, and its text.
+/// A tick: its position in the unit of the axis, and its text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) value: f64,
@@ -74,7 +75,7 @@ pub(crate) struct Tick {
 }
 
 impl Axis {
-    /// An axis whose cells fill [`min`, `max`].
+    /// Returns an axis whose cells fill the range from `min` to `max`.
     #[must_use]
     pub fn edges(name: &str, unit: &str, [min, max]: [f64; 2]) -> Self {
         Self {
@@ -86,7 +87,7 @@ impl Axis {
         }
     }
 
-    /// The same axis with its numbers descending.
+    /// Returns this axis with its numbers decreasing.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -95,14 +96,15 @@ impl Axis {
         }
     }
 
-    /// An axis of `count` samples from `first` to `last`: each fills a cell centred on it.
+    /// Returns an axis of `count` samples from `first` to `last`; each sample fills a cell
+    /// centred on it.
     #[must_use]
     pub fn centers(name: &str, unit: &str, [first, last]: [f64; 2], count: usize) -> Self {
         let half = 0.5 * (last - first) / (count.max(2) - 1) as f64;
         Self::edges(name, unit, [first - half, last + half])
     }
 
-    /// The centre of cell `index` of `count`.
+    /// Returns the centre of the cell `index` of `count` cells.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
         // The formula is symmetric in the two edges, so the middle of a symmetric axis is exactly
         // 0.
@@ -115,7 +117,7 @@ impl Axis {
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
-    /// The edges, moved apart if they coincide or are reversed.
+    /// Returns the edges of the axis, moved apart if they coincide or are reversed.
     pub(crate) fn range(&self) -> [f64; 2] {
         if self.max > self.min && (self.max - self.min).is_finite() {
             [self.min, self.max]
@@ -126,7 +128,8 @@ impl Axis {
         }
     }
 
-    /// The position of `value`: 0 at the edge of the first cell and 1 at that of the last.
+    /// Returns the position of `value` along the axis: 0 at the outer edge of the first cell, and
+    /// 1 at the outer edge of the last cell.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
         let above = if self.is_log {
@@ -137,7 +140,7 @@ impl Axis {
         if self.is_reversed { 1.0 - above } else { above }
     }
 
-    /// The power of ten factored out of the tick texts.
+    /// Returns the power of ten that is factored out of the tick texts.
     pub(crate) fn exponent(&self) -> i32 {
         let [min, max] = self.range();
         if self.is_log {
@@ -152,7 +155,7 @@ impl Axis {
         }
     }
 
-    /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
+    /// Returns ticks at multiples of 1, 2 or 5 × 10ⁿ, with at most `most` steps along the axis.
     pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
         if self.is_log {
             let close = [1.0, 2.0, 3.0, 4.0, 5.0, 7.0];
@@ -165,7 +168,7 @@ impl Axis {
         self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
     }
 
-    /// Ticks of a logarithmic axis, at `digits` × 10ⁿ.
+    /// Returns the ticks of a logarithmic axis, at `digits` × 10ⁿ.
     fn powers(&self, digits: &[f64]) -> Vec<Tick> {
         let [min, max] = self.range();
         let tick = |n: i32, digit: f64| {
@@ -185,7 +188,7 @@ impl Axis {
         ticks.filter(inside).collect()
     }
 
-    /// Ticks at multiples of `step`, which has two significant digits at most.
+    /// Returns ticks at multiples of `step`, which has at most two significant digits.
     fn ticks_every(&self, step: f64) -> Vec<Tick> {
         let [min, max] = self.range();
         let exponent = self.exponent();
@@ -194,12 +197,12 @@ impl Axis {
         let is_whole = (digits - digits.round()).abs() < 1e-6;
         let last = order(step) - i32::from(!is_whole);
         let places = usize::try_from(exponent - last).unwrap_or(0);
-        // A tick on the edge belongs to the axis despite rounding.
+        // In spite of rounding errors, a tick on the edge belongs to the axis.
         let slack = 1e-9 * (max - min);
         let mut multiple = ((min - slack) / step).ceil();
         let mut ticks = Vec::new();
         while multiple * step <= max + slack {
-            // Adding zero turns −0 into 0.
+            // Adding zero changes −0 to 0.
             let value = multiple * step + 0.0;
             ticks.push(Tick {
                 value,
@@ -211,18 +214,19 @@ impl Axis {
     }
 }
 
-/// Minimum length of an axis whose tick texts may be close to those of the next panel.
+/// Minimum length of an axis whose tick texts may be close to the tick texts of the next panel.
 pub(crate) const COMFORTABLE: f64 = 64.0;
-/// The length by which tick texts may exceed a shorter axis.
+/// The length by which tick texts may extend beyond an axis that is shorter than [`COMFORTABLE`].
 const OVERHANG: f64 = 7.0;
 
-/// The usual first digits of the steps between ticks.
+/// The usual first digits of the distance between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// First digits that are used if the usual digits leave fewer than three ticks.
+/// The first digits that are used if the usual first digits give fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// The most ticks whose texts do not overlap along `length`, and their font size. If fewer than
-/// three ticks fit, smaller texts or less usual steps are tried.
+/// Returns the maximum number of ticks whose texts do not overlap along `length`, and the font
+/// size of these texts. If fewer than three ticks fit, smaller texts or less usual steps are
+/// tried.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];
     let [min, max] = axis.range();
@@ -249,8 +253,8 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether tick texts at a font `size` do not overlap. Along a short axis, they must also keep
-/// clear of the tick texts of the next panel.
+/// Checks that tick texts at the font size `size` do not overlap. Along a short axis, tick texts
+/// must also be clear of the tick texts of the next panel.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     let beyond = |tick: &Tick| {
         let at = axis.fraction(tick.value) * length;
@@ -266,8 +270,8 @@ fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     })
 }
 
-/// Ticks along a vertical axis: one per 36 units of its height, or more densely if fewer than three
-/// would fit.
+/// Returns the ticks of a vertical axis: one per 36 units of its height, or more if fewer than
+/// three ticks would fit.
 pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     let most = (height / 36.0).max(2.0);
     let closer = (0..7).map(|more| axis.ticks(most + f64::from(more)));
@@ -275,7 +279,8 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     enough.next().unwrap_or_else(|| axis.ticks(most))
 }
 
-/// The smallest of `digits` × 10ⁿ that is not below `least` > 0.
+/// Returns the smallest number of the form `digits` × 10ⁿ that is at least `least`, which is
+/// above 0.
 fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
     // The tolerance prevents 0.2, computed as 0.20000000000000004, from becoming 0.5.
@@ -285,7 +290,8 @@ fn step(least: f64, digits: &[f64]) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// The exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors; 0 for zero.
+/// Returns the exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors, or 0 if the value is
+/// zero.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the logarithm of a finite f64 is within ±324"
@@ -298,7 +304,7 @@ fn order(value: f64) -> i32 {
     }
 }
 
-/// The text with a true minus sign.
+/// Returns the text with the minus sign − in place of hyphens.
 pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }

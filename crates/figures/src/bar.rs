@@ -7,13 +7,13 @@ use crate::sizes::{LABEL_TEXT, LEAST_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{plain, width};
 
-/// Width of the bar itself.
+/// Width of the color bar without its texts.
 pub(crate) const WIDTH: f64 = 12.0;
-/// Height of the pointed end that marks values beyond the colors.
+/// Height of the pointed end that marks values beyond the range of the colors.
 const POINT: f64 = 9.0;
 
 /// Draws the bar of `shading` to the right of a panel, with its left edge at `x` and as high as
-/// `panel`. The label of the bar may be longer than the bar by `overhang`.
+/// `panel`. The label of the color bar may be longer than the bar by `overhang`.
 pub(crate) fn draw(
     svg: &mut Svg,
     shading: &Shading,
@@ -38,7 +38,8 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// The frame, with a pointed end where values exceed the range.
+/// Draws the frame of a color bar, with a pointed end where values exceed the range of the
+/// colors.
 fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
     let [middle, _] = area.middle();
     let [low, high] = shading.beyond;
@@ -60,7 +61,7 @@ fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
     svg.polyline(&frame, Stroke::FRAME);
 }
 
-/// Ticks and the label, to the right of the bar.
+/// Draws the ticks and the label to the right of a color bar.
 fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
     let axis = &shading.axis;
     let mut widest: f64 = 0.0;
@@ -82,7 +83,7 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
     svg.fitted(style, &label, room);
 }
 
-/// A key for cells without a value, ending at `right` on the baseline `y`.
+/// Draws the key for cells without a value; the key ends at `right` on the baseline `y`.
 pub(crate) fn gap_key(svg: &mut Svg, right: f64, y: f64) {
     let text = "no value";
     let style = TextStyle::new([right, y], TICK_TEXT, Anchor::End).fill(SOFT);

@@ -1,4 +1,4 @@
-//! Mapping of values to colors.
+//! Maps values to colors.
 
 use crate::axis::Axis;
 use crate::grey::level;
@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 pub enum Scale {
     /// A linear scale from 0 to the largest value shown; negative values are drawn as 0.
     Linear,
-    /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤
+    /// 10 log₁₀ of a power divided by the largest reference value, from `floor` to 0 dB; powers ≤
     /// 0 are below the floor.
     Decibel {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
     },
-    /// A linear scale from −`most` to `most`, blue to red.
+    /// A linear scale from −`most` to `most`, with colors from blue to red.
     Signed {
-        /// Upper end of the colors, above 0.
+        /// Upper end of the colors; above 0.
         most: f64,
     },
     /// A scale of angles in degrees, once around the circle.
@@ -29,11 +29,11 @@ pub enum Scale {
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Grey for cells without a value (NaN). No color map contains this grey.
+/// The grey that marks cells without a value (NaN). No color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale. The lightness of the colors increases evenly, so they
-/// remain distinct when printed in grey.
+/// The colors of magnitudes, from dark to pale. The lightness of the colors increases evenly, so
+/// the colors remain distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -44,22 +44,22 @@ pub enum Palette {
     Viridis,
     /// Blue, grey, yellow: nearly the same for all types of colour vision.
     Cividis,
-    /// Black to white, by the transfer curve of sRGB, for photographs.
+    /// Black to white by the transfer curve of sRGB, as for photographs.
     Grey,
 }
 
 /// A color map over 0 ≤ t ≤ 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Colors {
-    /// From dark to pale.
+    /// Colors from dark to pale.
     Sequential(Palette),
     /// Blue, white, red.
     Diverging,
-    /// Cyclic: pale, blue, dark, red, pale.
+    /// Cyclic colors: pale, blue, dark, red, pale.
     Cyclic,
 }
 
-/// Eight colors of the color circle, between which all others are interpolated.
+/// Eight colors of the color circle, between which all other colors are interpolated.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],
@@ -90,8 +90,8 @@ impl Colors {
     }
 }
 
-/// The 256 colors of magnitudes, dark to pale, and the 256 colors of differences, blue to red. Each
-/// is given as red, green and blue.
+/// Returns the 256 colors of magnitudes, from dark to pale, and the 256 colors of differences,
+/// from blue to red. Each color is given as red, green and blue.
 #[must_use]
 pub fn palettes() -> [Vec<u8>; 2] {
     [Colors::MAGNITUDES, Colors::Diverging].map(|colors| {
@@ -122,12 +122,12 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether some values are below the range of the colors, and whether some are above.
+    /// Whether any values are below the range of the colors, and whether any are above it.
     pub(crate) beyond: [bool; 2],
 }
 
 impl Shading {
-    /// Linear colors on an axis.
+    /// Returns a shading with linear colors on an axis.
     pub(crate) fn linear(colors: Colors, axis: Axis) -> Self {
         Self {
             colors,
@@ -137,12 +137,12 @@ impl Shading {
         }
     }
 
-    /// Returns colors for values of both signs, up to `most` in modulus.
+    /// Returns a shading for values of both signs, up to `most` in modulus.
     pub(crate) fn signed(name: &str, unit: &str, most: f64) -> Self {
         Self::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
     }
 
-    /// Returns colors for angles in degrees, once around the circle.
+    /// Returns a shading for angles in degrees, once around the circle.
     pub(crate) fn phase(name: &str) -> Self {
         Self::linear(
             Colors::Cyclic,
@@ -150,7 +150,7 @@ impl Shading {
         )
     }
 
-    /// Decibels below `peak` on an axis from `floor` to 0.
+    /// Returns a shading in decibels below `peak`, on an axis from `floor` to 0.
     pub(crate) fn decibel(colors: Colors, name: &str, floor: f64, peak: f64) -> Self {
         let floor = if floor < 0.0 { floor } else { -60.0 };
         Self {
@@ -161,7 +161,7 @@ impl Shading {
         }
     }
 
-    /// The same shading, with marks if any of `values` saturate.
+    /// Returns the same shading, with marks at its ends if any of `values` are beyond its range.
     pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
         let [low, high] = self.axis.range();
         for value in values {
@@ -179,11 +179,11 @@ impl Shading {
         self.colors.at(self.axis.fraction(self.level(value)))
     }
 
-    /// Converts a value to the axis of the color bar.
+    /// Converts a value to a position on the axis of the color bar.
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,
-            // A power that is negative after noise removal is below any floor.
+            // If a power is negative after noise removal, it is below any floor.
             Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }
@@ -195,7 +195,7 @@ pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
     finite.fold(0.0, f64::max)
 }
 
-/// Whether some cell has no value.
+/// Checks whether any cell has no value.
 pub(crate) fn has_gaps(values: ArrayView2<'_, f64>) -> bool {
     values.iter().any(|v| v.is_nan())
 }

@@ -1,4 +1,4 @@
-//! One quantity from two sources, such as measured | predicted | difference in σ.
+//! Draws one quantity from two sources, such as measured | predicted | difference in σ.
 
 use crate::axis::{Axis, AxisQuantity};
 use crate::bar;
@@ -9,38 +9,38 @@ use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::svg::{Anchor, Area, Svg, TextStyle};
 use ndarray::ArrayView2;
 
-/// One quantity, measured and expected on the same cells, as arrays [x, y] with both axes
+/// One quantity, measured and expected in the same cells, as arrays [x, y] with both axes
 /// ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// The quantity and the plane that are shown, as markup.
+    /// The quantity and the plane that the pictures show, as markup.
     pub title: &'a str,
-    /// A line below the title, such as the verdict, markup; may be empty.
+    /// A line below the title, such as the verdict, as markup; may be empty.
     pub note: &'a str,
-    /// The first axis of the arrays.
+    /// The axis of the arrays' first index.
     pub x: Axis,
-    /// The second axis of the arrays.
+    /// The axis of the arrays' second index.
     pub y: Axis,
-    /// The quantity in the cells.
+    /// The quantity whose values the cells show.
     pub quantity: AxisQuantity,
-    /// The color scale of measured and predicted.
+    /// The color scale of the measured and the predicted values.
     pub scale: Scale,
-    /// The names of the two sides, such as "measured" and "predicted".
+    /// The names of the two sources, such as "measured" and "predicted".
     pub sides: [&'a str; 2],
-    /// Measured values; may be negative after subtraction of the shot noise.
+    /// Measured values, which may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
-    /// Predicted values, or other values with which the measurement is compared.
+    /// Predicted values, or other values with which the measured values are compared.
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Measured and predicted values on finer cells over the same axes. These finer values are
-    /// drawn in the picture; the table keeps the original values.
+    /// Measured and predicted values on finer cells over the same axes. The picture shows these
+    /// finer values, and the table has the original values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 
-/// Differences beyond this many σ saturate.
+/// The number of σ beyond which the colors of differences saturate.
 const Z_LIMIT: f64 = 4.0;
-/// Side of a panel.
+/// Side length of a panel.
 const PANEL: f64 = 240.0;
 /// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
@@ -49,7 +49,8 @@ const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0
 const OVERHANG: f64 = 12.0;
 const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
 
-/// Draws a comparison: measured and predicted on one color scale, the difference on ±4 σ.
+/// Draws a comparison: measured and predicted values on one color scale, and their difference on
+/// ±4 σ.
 ///
 /// In decibels, the reference is the largest predicted value. The CSV has a row for each cell.
 ///
@@ -110,12 +111,13 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
 }
 
 impl<'a> Comparison<'a> {
-    /// The values of both sides that are drawn.
+    /// Returns the values of both sources that are drawn.
     fn drawn(&self) -> [ArrayView2<'a, f64>; 2] {
         self.finer.unwrap_or([self.measured, self.predicted])
     }
 
-    /// The difference of the two sides divided by its standard deviation.
+    /// Returns the name of the difference between the two sources, divided by its standard
+    /// deviation.
     fn difference(&self, sigma: &str) -> String {
         let [one, other] = self.sides;
         format!("({one} − {other}) / {sigma}")
@@ -131,7 +133,7 @@ fn area(index: usize, top: f64) -> Area {
     }
 }
 
-/// The colors shared by measured and predicted.
+/// Returns the colors that the measured and the predicted values share.
 fn value_shading(comparison: &Comparison<'_>) -> Shading {
     let [measured, predicted] = comparison.drawn();
     let shading = match comparison.scale {
@@ -160,7 +162,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
     shading.showing(measured).showing(predicted)
 }
 
-/// The table: a row for each cell, with x varying slowest.
+/// Returns the table of a comparison, with a row for each cell and with x varying slowest.
 fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
     let Comparison { x, y, quantity, .. } = comparison;
     let of = |side: usize| format!("{} {}", comparison.sides[side], quantity.heading());

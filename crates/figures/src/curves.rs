@@ -17,24 +17,24 @@ pub enum CurveKind {
     Theory,
     /// A dashed line.
     Rival,
-    /// Points with error bars.
+    /// Measured points with error bars.
     Measured,
 }
 
-/// A curve, or points.
+/// A curve, or a set of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The kind, which determines the style.
+    /// The kind of the curve, which determines its style.
     pub kind: CurveKind,
-    /// The name in the key; curves of one name share an entry.
+    /// The name in the key; curves with the same name share an entry.
     pub name: String,
-    /// (x, y, standard error of y), in the order in which they are joined; the error of a line is
-    /// 0.
+    /// The points (x, y, standard error of y), in the order in which they are joined; the
+    /// standard error is 0 on a line.
     pub points: Vec<[f64; 3]>,
 }
 
 impl Curve {
-    /// Creates a curve of this kind and name through points.
+    /// Creates a curve of the given kind and name through points.
     #[must_use]
     pub fn new(kind: CurveKind, name: &str, points: Vec<[f64; 3]>) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Curve {
     }
 }
 
-/// Curves in one frame.
+/// A panel of curves in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePanel {
     /// Title above the frame, markup.
@@ -54,22 +54,22 @@ pub struct CurvePanel {
     pub x: AxisQuantity,
     /// The curves in the frame.
     pub curves: Vec<Curve>,
-    /// Whether x and y are logarithmic. On a logarithmic axis, points that are not above 0 are left
-    /// out.
+    /// Whether x and y are logarithmic. On a logarithmic axis, points with values of 0 or less
+    /// are left out.
     pub is_log: [bool; 2],
 }
 
-/// Panels of curves that show one quantity. Each panel has its own scales; these include y = 0
+/// Panels of curves that show one quantity. Each panel has its own scales, which include y = 0
 /// unless y is logarithmic or all values are far from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Title, markup.
     pub title: String,
-    /// A line below the title, markup.
+    /// A line below the title, as markup.
     pub note: String,
     /// The quantity along y.
     pub y: AxisQuantity,
-    /// The panels, from left to right and then downwards.
+    /// The panels, from left to right in rows from top to bottom.
     pub panels: Vec<CurvePanel>,
 }
 
@@ -77,16 +77,16 @@ const ACROSS: usize = 3;
 const RIGHT: f64 = 20.0;
 /// Minimum width of the text above the panels.
 const TITLE: f64 = 440.0;
-/// Height of a panel, and its maximum width.
+/// Height of a panel; the constant below is the maximum width of a panel.
 const HEIGHT: f64 = 136.0;
 const WIDEST: f64 = 262.0;
 /// Minimum width of a panel that has other panels beside it.
 const NARROWEST: f64 = 100.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
-/// Width reserved for numbers beside an axis.
+/// Width that is reserved for tick texts beside an axis.
 const USUAL: f64 = 28.0;
 const RADIUS: f64 = 3.0;
-/// Half of the stroke at the end of an error bar.
+/// Half of the length of the stroke at the end of an error bar.
 const CAP: f64 = 3.0;
 const THEORY: Stroke = Stroke::solid(THEORY_COLOR, 1.8);
 const RIVAL: Stroke = Stroke {
@@ -95,7 +95,7 @@ const RIVAL: Stroke = Stroke {
     dash: "6 4",
 };
 const POINT: &str = INK;
-/// Length of a line in the key.
+/// Length of the sample of a line in the key.
 const SAMPLE: f64 = 30.0;
 
 /// Draws the panels. The CSV has a row for each point.
@@ -141,7 +141,8 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-/// Draws each name once with its style, on as many lines as needed; returns the last baseline.
+/// Draws the key: each name once with its style, on as many lines as needed; returns the last
+/// baseline.
 fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f64 {
     let mut x = left;
     let mut known: Vec<&str> = Vec::new();
@@ -174,12 +175,12 @@ fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f6
     y
 }
 
-/// Whether a point can be drawn.
+/// Checks whether a point can be drawn.
 fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
     [0, 1].iter().all(|i| !panel.is_log[*i] || point[*i] > 0.0)
 }
 
-/// The axes that cover all points of a panel, and y = 0.
+/// Returns the axes that cover all points of a panel, and y = 0.
 fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
     let points = || {
         let all = panel.curves.iter().flat_map(|c| &c.points);
@@ -209,7 +210,8 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // Values far from zero would look like a flat line on an axis that includes zero.
+        // If all values are far from zero, they would look like a flat line on an axis that
+        // includes zero.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]
@@ -217,7 +219,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
             [least.min(0.0), most.max(0.0)]
         };
         let margin = 0.06 * (most - least);
-        // If no values are negative, the axis begins at zero.
+        // If no value is negative, the axis begins at zero.
         [
             if least == 0.0 { 0.0 } else { least - margin },
             most + margin,
@@ -249,8 +251,8 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // An error bar extends below the frame if the error is as large as the
-                        // value.
+                        // If the standard error is as large as the value, the error bar extends
+                        // below the frame.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

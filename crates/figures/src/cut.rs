@@ -13,9 +13,9 @@ use place::{SegmentName, names, number_places};
 
 const BODY: &str = "#b9b9b9";
 
-/// Space left and right of the ends of the central ray.
+/// Width of the space to the left and to the right of the ends of the central ray.
 const MARGIN: f64 = 36.0;
-/// Height of the lines from planes to their numbers.
+/// Height of the lines from planes to the planes' numbers.
 const FEET: f64 = 10.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
@@ -25,7 +25,8 @@ const HEADING_LINE: f64 = 16.0;
 
 /// Returns the name of a plane in one line, or in two lines if it is too long.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
-    // Bold letters are wider than the estimate, so less room is assumed.
+    // Bold letters are wider than the estimate for regular letters, so less width is assumed to
+    // be available.
     let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
     let first = words.next().unwrap_or_default();
     if first.chars().count() <= NUMBER {
@@ -36,9 +37,9 @@ fn name_lines(name: &str, room: f64) -> Vec<String> {
     std::iter::once(first).chain(rest).collect()
 }
 
-/// Characters that a number takes before the name of its plane, in the same line.
+/// Number of characters that a plane's number takes before the plane's name on the same line.
 const NUMBER: usize = 2;
-/// Smallest size of a plane's name in one line.
+/// Minimum font size of a plane's name on one line.
 const SMALL_NAME: f64 = 10.0;
 
 /// A section laid out in an area of the drawing.
@@ -46,19 +47,20 @@ const SMALL_NAME: f64 = 10.0;
 pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
-    /// The area for the x range, which is below the names and above the plane numbers.
+    /// The area for the range of x, between the names above and the plane numbers below.
     plot: Area,
     z: Axis,
     x: Axis,
     names: Vec<SegmentName>,
-    /// Horizontal position of the number of each plane.
+    /// Horizontal position of each plane's number.
     planes: Vec<f64>,
 }
 
 impl<'a> SectionLayout<'a> {
-    /// Height of ticks and label of the z axis, above the area.
+    /// Height of the ticks and the label of the z axis, above the plot.
     pub(crate) const AXIS: f64 = 46.0;
-    /// Height of a plane's heading, which consists of number, name in one line, and distance.
+    /// Height of a plane's heading, which consists of the number, the name on one line, and the
+    /// distance.
     const HEADING: f64 = 56.0;
 
     pub(crate) fn new(section: &'a Section, area: Area) -> Self {
@@ -93,7 +95,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Draws the whole cut, with axes and plane numbers.
+    /// Draws the complete cut, with axes and plane numbers.
     pub(crate) fn draw(&self, svg: &mut Svg) {
         svg.clipped(self.plot, |svg| {
             for body in &self.section.bodies {
@@ -123,7 +125,7 @@ impl<'a> SectionLayout<'a> {
         self.x_axis(svg);
     }
 
-    /// A thin line from a plane's number to the top of its heading.
+    /// Draws a thin line from a plane's number to the top of the plane's heading.
     pub(crate) fn leader(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2]) {
         let Some(place) = self.planes.get(plane) else {
             return;
@@ -134,7 +136,8 @@ impl<'a> SectionLayout<'a> {
         svg.polyline(&points, stroke);
     }
 
-    /// Height of the headings of some planes, given the width of the room for each.
+    /// Returns the height of the headings of some planes, given the width that is available for
+    /// each heading.
     pub(crate) fn heading_height(&self, rooms: impl Iterator<Item = (usize, f64)>) -> f64 {
         let more = rooms.filter_map(|(plane, room)| {
             let mark = self.section.planes.get(plane)?;
@@ -144,10 +147,10 @@ impl<'a> SectionLayout<'a> {
         Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
     }
 
-    /// Returns the distance of a plane, in one line or two. If an element is at the same place,
-    /// the text also says on which side of it the plane is.
+    /// Returns the distance of a plane as text on one or two lines. If an element is at the same
+    /// distance as the plane, the text also states the side on which the plane is.
     fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
-        // Four significant digits, in the shortest form.
+        // The distance is written with four significant digits, in the shortest form.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
         let distance = rounded.unwrap_or(mark.distance);
         let distance = format!("*z* = {} m", crate::axis::minus(&distance.to_string()));
@@ -164,7 +167,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// A plane's number, name and distance, centred below a point.
+    /// Draws a plane's number, name and distance, centred below a point.
     pub(crate) fn heading(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2], room: f64) {
         let Some(mark) = self.section.planes.get(plane) else {
             return;
@@ -183,7 +186,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Whether a plane is before or after an element at the same place.
+    /// Returns whether a plane is before or after an element at the same distance.
     fn beside(&self, mark: &PlaneMark) -> &'static str {
         let near = 1e-9 * self.section.length;
         let stands = |s: &Segment| {
@@ -205,7 +208,8 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// The position of a point (z, x); infinite elements end at the border.
+    /// Returns the position in the drawing of a point (z, x); infinite elements end at the
+    /// border.
     fn point(&self, [z, x]: [f64; 2]) -> [f64; 2] {
         let [low, high] = self.x.range();
         let x = if x.is_infinite() {
@@ -242,7 +246,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// An arrow at the border, for an element that extends to infinity.
+    /// Draws an arrow at the border, for an element that extends to infinity.
     fn goes_on(&self, svg: &mut Svg, at: f64, up: f64, color: &str) {
         let border = if up > 0.0 {
             self.plot.y
@@ -253,8 +257,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// The part of a line between a height just above the plot and one just below it. A horizontal
-    /// line is kept whole.
+    /// Returns the part of a line between a height just above the plot and a height just below
+    /// the plot. If the line is horizontal, it is returned unchanged.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];
@@ -266,8 +270,8 @@ impl<'a> SectionLayout<'a> {
         part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
     }
 
-    /// Draws the line of a plane at the position of the plane, and the number of the plane where
-    /// there is room.
+    /// Draws the line of a plane at the plane's position, and the plane's number where there is
+    /// space.
     fn plane(&self, svg: &mut Svg, plane: usize) {
         let [at, _] = self.point([self.section.planes[plane].distance, 0.0]);
         let stroke = Stroke {
@@ -332,7 +336,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// The z axis, at the top because the planes use the lower side.
+    /// Draws the z axis at the top, because the planes' numbers and names are below the plot.
     fn z_axis(&self, svg: &mut Svg) {
         let (left, right) = (
             self.point([0.0, 0.0])[0],

@@ -1,4 +1,4 @@
-//! A spectrum, over which ellipses of covariances are drawn.
+//! Draws a spectrum with ellipses of covariances over it.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -10,42 +10,43 @@ use crate::sizes::{INK, LABEL_BASELINE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use std::f64::consts::TAU;
 
-/// A covariance over the axes of a picture.
+/// A covariance over the two axes of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipse {
-    /// The name in the key.
+    /// The name of the ellipse in the key.
     pub name: String,
     /// The entries xx, xy and yy of the covariance.
     pub covariance: [f64; 3],
 }
 
-/// A spectrum with covariances, at most three.
+/// A spectrum with at most three covariances.
 #[derive(Clone, Debug)]
 pub struct Ellipses<'a> {
     /// The title; markup.
     pub title: &'a str,
-    /// A line below the title, markup; may be empty.
+    /// A line below the title, as markup; may be empty.
     pub note: &'a str,
-    /// The power, shown in decibels below its largest value.
+    /// The power of the spectrum, shown in decibels below its largest value.
     pub picture: Picture<'a>,
     /// The quantity of the picture.
     pub quantity: AxisQuantity,
-    /// Lower end of the decibels, below 0.
+    /// Lower end of the colors in decibels; below 0.
     pub floor: f64,
-    /// Ellipses at two standard deviations, in the order of the key. Each position has its own
-    /// color and dashes, which are not used if its ellipse is missing.
+    /// The ellipses at two standard deviations, in the order of the key. Each of the three
+    /// positions has its own color and dashes, which are not used if the ellipse at this position
+    /// is missing.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
 impl Ellipses<'_> {
-    /// The ellipses present, with color and dashes.
+    /// Returns the ellipses that are not missing, each with its color and dashes.
     fn drawn(&self) -> impl Iterator<Item = (&Ellipse, &'static str, &'static str)> {
         let all = self.ellipses.iter().zip(STROKES);
         all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
     }
 
-    /// The strokes over the picture, in order: all halos, then solid lines, then dashes, so that
-    /// coinciding ellipses are all visible.
+    /// Returns the strokes over the picture in their order: all halos, then solid lines, then
+    /// dashes, so that ellipses that coincide are all visible.
     fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
         let halo = Stroke::solid(HALO, 3.4);
         let halos = self.drawn().map(move |(ellipse, ..)| (ellipse, halo));
@@ -68,7 +69,7 @@ const LEFT: f64 = 66.0;
 const LINE: f64 = 17.0;
 /// Number of standard deviations at which an ellipse is drawn.
 const DEVIATIONS: f64 = 2.0;
-/// The halo below each ellipse, for pale backgrounds.
+/// Color of the halo below each ellipse, which makes the ellipse visible on pale backgrounds.
 const HALO: &str = "#10304a";
 /// Colors and dashes of the ellipses; no two ellipses share a color or dashes.
 const STROKES: [(&str, &str); 3] = [("#7fe0ff", "7 4"), ("#ffffff", ""), ("#8dff9c", "2 3")];
@@ -141,8 +142,8 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Points around the ellipse. The points are a matrix root of the covariance times points of a
-/// circle.
+/// Returns points around the ellipse of a covariance. The points are a matrix square root of the
+/// covariance times points of a circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();
@@ -154,7 +155,7 @@ fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Two tables: the covariances, and the cells with x varying slowest.
+/// Returns two tables: the covariances, and the cells with x varying slowest.
 fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
     let Picture { x, y, values } = &of.picture;
     let [a, b] = [x, y].map(|axis| axis.quantity.heading());
@@ -196,9 +197,9 @@ mod tests {
             assert!((square - 4.0).abs() < 1e-12); // rounding
             highest = highest.max(y);
         }
-        // The ellipse extends to two standard deviations of y, up to the error of the polygon.
+        // The ellipse extends to two standard deviations of y, up to the error of its polygon.
         assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
-        // A spectrum without width gives a line.
+        // If a spectrum has no width, its ellipse is a line.
         assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding
     }
 }

@@ -1,4 +1,4 @@
-//! A figure as SVG, PNG, PDF and CSV.
+//! Writes a figure as SVG, PNG, PDF and CSV.
 
 use crate::raster::encoded;
 use crate::sizes::INCH;
@@ -13,39 +13,41 @@ use std::sync::Arc;
 /// Pixels of the PNG per unit of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
-/// A drawing with its numbers.
+/// A drawing with the numbers that it shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// The drawing. Texts are kept as text; heat maps are embedded PNGs with one pixel per cell.
+    /// The drawing. The drawing as SVG; texts are stored as text, and heat maps are embedded PNGs
+    /// with one pixel per cell.
     pub svg: String,
-    /// The numbers drawn: a header with names and units, then a row for each cell or line.
+    /// The numbers that the drawing shows, as CSV: a header with names and units, then a row for
+    /// each cell or line.
     pub csv: String,
 }
 
-/// The reason why a figure could not be made. The fault is in the drawing, not in the values.
+/// The reason why a figure could not be made. The reason lies in the drawing, not in the values.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The drawing could not be read back.
+    /// The SVG of the drawing could not be read back.
     #[error("the figure's SVG cannot be rasterized: {0}")]
     Svg(#[from] usvg::Error),
     /// A heat map or the raster could not be written.
     #[error("an image cannot be written as PNG: {0}")]
     Image(#[from] png::EncodingError),
-    /// The raster would have no pixels or too many.
+    /// The PNG would have no pixels or too many pixels.
     #[error("a figure of {0} × {1} pixels cannot be drawn")]
     Size(u32, u32),
-    /// The page could not be written.
+    /// The PDF page could not be written.
     #[error("the figure cannot be written as PDF: {0}")]
     Page(String),
-    /// The numbers could not be written.
+    /// The CSV of the numbers could not be written.
     #[error("the figure's numbers cannot be written as CSV: {0}")]
     Csv(String),
 }
 
 impl Figure {
-    /// The drawing as a PNG, two pixels to an SVG unit, text in DejaVu Sans. The PNG states its
-    /// resolution, 192 pixels per inch.
+    /// Returns the drawing as a PNG, with two pixels to an SVG unit and with text in DejaVu Sans.
+    /// The PNG states its resolution, 192 pixels per inch.
     ///
     /// # Errors
     /// If the SVG cannot be read back or the raster cannot be written.
@@ -73,8 +75,8 @@ const PAGE: f32 = 504.0;
 const POINT: f32 = 0.75;
 
 impl Figure {
-    /// The drawing as a PDF page at natural size, at most as wide as two columns of a journal. Text
-    /// is kept as text.
+    /// Returns the drawing as a PDF page at natural size, at most as wide as two columns of a
+    /// journal. Texts are stored as text.
     ///
     /// # Errors
     /// If the SVG cannot be read back or the page cannot be written.
@@ -121,7 +123,7 @@ pub fn stacked(figures: &[Figure]) -> Figure {
     }
 }
 
-/// SVG reading options that use only the built-in fonts.
+/// Returns SVG reading options that use only the built-in fonts.
 pub(crate) fn options() -> usvg::Options<'static> {
     let mut fonts = usvg::fontdb::Database::new();
     for face in [
@@ -139,7 +141,7 @@ pub(crate) fn options() -> usvg::Options<'static> {
     }
 }
 
-/// The CSV text of a header and rows of equal length.
+/// Returns the CSV text of a header and of rows of the same length.
 pub(crate) fn csv_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
@@ -156,7 +158,7 @@ pub(crate) fn csv_text(
     String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
 }
 
-/// A number with as many digits as are needed to read it back exactly.
+/// Returns a number with as many digits as are needed to read it back exactly.
 pub(crate) fn decimal(value: &f64) -> String {
     format!("{value:?}")
 }

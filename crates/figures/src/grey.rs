@@ -1,6 +1,6 @@
-//! Conversion of linear intensity to grey.
+//! Converts linear intensity to grey.
 
-/// The grey level, 0 to 255, for a fraction of white.
+/// Returns the grey level, 0 to 255, for an intensity given as a fraction of white.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

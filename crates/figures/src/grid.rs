@@ -1,4 +1,4 @@
-//! A grid of pictures, with its columns split into blocks that fit the page width.
+//! Lays out a grid of pictures, with its columns split into blocks that fit the page width.
 
 use crate::axis::{Axis, COMFORTABLE};
 use crate::bar;
@@ -10,20 +10,20 @@ use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use ndarray::ArrayView2;
 
-/// Values on a grid, [x, y], both axes ascending. NaN: no value.
+/// Values on a grid [x, y], with both axes ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Picture<'a> {
-    /// The first axis of the array.
+    /// The axis of the array's first index.
     pub x: Axis,
-    /// The second axis of the array.
+    /// The axis of the array's second index.
     pub y: Axis,
     /// The values.
     pub values: ArrayView2<'a, f64>,
 }
 
 impl Picture<'_> {
-    /// The ratio of height to width. This ratio is 1, unless both axes count pixels, which are
-    /// drawn square.
+    /// Returns the ratio of the picture's height to its width. This ratio is 1, unless both axes
+    /// count pixels, because pixels are drawn square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -34,35 +34,35 @@ impl Picture<'_> {
     }
 }
 
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts content. Only the
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts power. Only the
 /// two ends of the line are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
-    /// The point (ρ₀, ν₀), which is the origin or the centre of a replica.
+    /// The point (ρ₀, ν₀) of the line, which is the origin or the centre of a replica.
     pub through: [f64; 2],
-    /// dν/dρ, in metres; −d for light that has travelled d.
+    /// The slope dν/dρ in metres, which is −d for light that has travelled the distance d.
     pub slope: f64,
-    /// Whether the line belongs to directions across the plane of incidence.
+    /// Whether the line belongs to directions perpendicular to the plane of incidence.
     pub is_across: bool,
 }
 
-/// A row of pictures that share colors.
+/// A row of pictures with one color scale.
 #[derive(Debug)]
 pub(crate) struct PictureRow<'b, 'a> {
     /// Name of the row.
     pub(crate) name: &'b str,
-    /// Name and unit for the color bar, markup.
+    /// Name and unit for the color bar, as markup.
     pub(crate) bar: [String; 2],
     pub(crate) scale: Scale,
-    /// Whether all pictures of the row share a color range. If not, each picture is relative to
-    /// its own largest value.
+    /// Whether all pictures of the row have the same range of colors. If the range is not shared,
+    /// each picture is relative to its own largest value.
     pub(crate) shared: bool,
-    /// A picture for each column, with the lines over it.
+    /// A picture for each column, with the lines over the picture.
     pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
 }
 
 impl PictureRow<'_, '_> {
-    /// Whether the row shares the color bar of another row.
+    /// Checks whether this row and another row share a color bar.
     fn has_bar_of(&self, other: &Self) -> bool {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
     }
@@ -84,42 +84,43 @@ impl PictureRow<'_, '_> {
     }
 }
 
-/// Left edge of the first picture: row name, axis label, tick texts.
+/// Left edge of the first picture; the row name, the axis label and the tick texts are to the
+/// left of it.
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Gaps between adjacent pictures. The first is used if the right picture has no numbers beside
-/// its axis, and the second if it has numbers.
+/// Gaps between pictures that are side by side. The first gap is used if the right picture has no
+/// numbers beside its axis, and the second gap if it has numbers.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
-/// The gap that replaces the first of [`GAPS`] if there are many pictures side by side.
+/// The gap that replaces the first of [`GAPS`] if many pictures are side by side.
 const CLOSE: f64 = 16.0;
-/// Gaps between a picture and the picture below. The first is used if they share the x axis, and
-/// the second if they do not.
+/// Gaps between a picture and the picture below. The first gap is used if the two pictures share
+/// the x axis, and the second gap if they do not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
 
-/// Strokes of the lines over spectra. The upper stroke is visible on dark colors, and the lower
-/// stroke makes the line visible on pale colors.
+/// Returns the two strokes of a line over spectra. The upper stroke is visible on dark colors,
+/// and the lower stroke on pale colors.
 pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
     [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
 }
 
-/// The length of the strokes at both ends of a line, as a fraction of the picture's side. Between
-/// the two strokes the predicted ridge stays visible.
+/// The length of the strokes at the two ends of a line over a spectrum, as a fraction of the
+/// picture's side. The predicted ridge stays visible between the two strokes.
 const GUIDE_END: f64 = 0.1;
-/// Least distance of the texts below two adjacent pictures.
+/// Minimum distance between the texts below two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
 
-/// A column with its position.
+/// A column of pictures with its position.
 #[derive(Clone, Copy, Debug)]
 struct PlacedColumn {
     column: usize,
     left: f64,
 }
 
-/// Width between the left edge and the color bars.
+/// Returns the width between the left edge of the first picture and the color bars.
 pub(crate) fn inner(style: &Style) -> f64 {
     style.page() - LEFT - RIGHT
 }
@@ -139,8 +140,8 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures. The pictures are from `least` to `largest` wide, if
-    /// such a width fits. All pictures have the shape of the first.
+    /// Lays out rows of `columns` pictures. If a width between `least` and `largest` fits, the
+    /// pictures have this width. All pictures have the shape of the first picture.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.
@@ -150,8 +151,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
-        // Maximum picture widths. The first is for one block, and the second for several blocks,
-        // which would make a long page.
+        // Maximum picture widths. The first maximum is for one block, and the second for several
+        // blocks, which would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -205,28 +206,29 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         columns.map(place).collect()
     }
 
-    /// Height of a picture.
+    /// Returns the height of a picture.
     fn height(&self) -> f64 {
         self.shape * self.side
     }
 
-    /// Whether the y axis of a picture differs from that of its left neighbour.
+    /// Checks whether the y axis of a picture differs from that of its left neighbour.
     fn differs(row: &PictureRow<'_, '_>, column: usize) -> bool {
         row.cells[column].0.y != row.cells[column - 1].0.y
     }
 
-    /// The gap before a column.
+    /// Returns the gap before a column.
     fn gap(&self, column: usize) -> f64 {
         let differs = self.rows.iter().any(|row| Self::differs(row, column));
         if differs { GAPS[1] } else { self.near }
     }
 
-    /// The number of stacked blocks.
+    /// Returns the number of blocks, which are stacked on the page.
     pub(crate) fn blocks(&self) -> usize {
         self.blocks.len()
     }
 
-    /// The columns of a block, each with its centre and the width for a text below it.
+    /// Returns the columns of a block, each with its centre and the width available for a text
+    /// below it.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let places = &self.blocks[block];
         let room = move |i: usize| {
@@ -238,7 +240,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         middles.map(move |(i, place)| (place.column, place.left + 0.5 * self.side, room(i)))
     }
 
-    /// Width of the widest block.
+    /// Returns the width of the widest block.
     pub(crate) fn width(&self) -> f64 {
         let ends = self.blocks.iter().filter_map(|block| block.last());
         let right = ends
@@ -247,7 +249,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         right - LEFT
     }
 
-    /// Whether the pictures of a row share their x axes with the row below.
+    /// Checks whether the pictures of a row share their x axes with the pictures of the row
+    /// below.
     fn shares_x(&self, row: usize) -> bool {
         self.rows.get(row + 1).is_some_and(|below| {
             let mut both = self.rows[row].cells.iter().zip(&below.cells);
@@ -255,9 +258,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// The width below which the x label of a picture is centred. If the pictures are narrow and
-    /// have the same axis, this is the width of the whole block. Returns `None` if a label further
-    /// to the left applies.
+    /// Returns the width below which the x label of a picture is centred. If the pictures of a
+    /// block are narrow and have the same axis, this width is the width of the entire block.
+    /// Returns `None` if the label of a picture further to the left covers this picture.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -268,8 +271,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// The height beside which the y label of a picture is centred. This height includes the
-    /// pictures below that have the same axes. Returns `None` if a label further up applies.
+    /// Returns the height beside which the y label of a picture is centred. This height includes
+    /// the pictures below that have the same axes as this picture. Returns `None` if the label of
+    /// a picture further up covers this picture.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
@@ -283,7 +287,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// Draws a block with its pictures starting at `top`; returns the lowest baseline.
     pub(crate) fn draw(&self, svg: &mut Svg, block: usize, top: f64) -> Result<f64, Error> {
         let mut y = top;
-        // Rows that share a color bar, and the extent of the bar.
+        // The rows that share a color bar, and the extent of this bar.
         let mut bars: Vec<(Shading, Area)> = Vec::new();
         let mut closest = ROW_GAPS[1];
         let places = &self.blocks[block];
@@ -318,7 +322,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
-    /// The largest value of the rows that share a color bar with this row.
+    /// Returns the largest value of the rows that share a color bar with the row `index`.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
         let cells = rows.flat_map(|row| &row.cells);
@@ -327,7 +331,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             .fold(0.0, f64::max)
     }
 
-    /// Draws the pictures of a row and its name; returns the colors of its bar.
+    /// Draws the pictures of a row and the row's name; returns the colors of the row's color bar.
     fn row(
         &self,
         svg: &mut Svg,
@@ -379,7 +383,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(bar)
     }
 
-    /// Whether some cell of some picture has no value.
+    /// Checks whether any cell of any picture has no value.
     pub(crate) fn has_gaps(&self) -> bool {
         let mut cells = self.rows.iter().flat_map(|row| &row.cells);
         cells.any(|(picture, _)| has_gaps(picture.values))
@@ -403,8 +407,8 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
     }
 }
 
-/// The ends of the part of a line that is inside a picture; `None` if the line does not cross the
-/// picture.
+/// Returns the ends of the part of a line that is inside a picture; `None` if the line does not
+/// cross the picture.
 fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     let [left, right] = panel.x.range();
     let [low, high] = panel.y.range();
@@ -421,7 +425,7 @@ fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     is_seen.then(|| rhos.map(|rho| panel.point(rho, at(rho))))
 }
 
-/// Draws short strokes at both ends of a line.
+/// Returns short strokes at the two ends of a line.
 pub(crate) fn ends(start: [f64; 2], end: [f64; 2], length: f64) -> [[[f64; 2]; 2]; 2] {
     let along = [0, 1].map(|i| end[i] - start[i]);
     let share = length / libm::hypot(along[0], along[1]).max(2.0 * length);

@@ -1,4 +1,4 @@
-//! Heat maps as embedded PNGs, one pixel per cell.
+//! Encodes heat maps as embedded PNGs with one pixel per cell.
 
 use crate::color::{Rgb, Shading};
 use crate::figure::Error;
@@ -7,8 +7,8 @@ use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
-/// The data URI of a picture of `values`, [x, y], with x to the right and y upwards. `None` without
-/// cells.
+/// Returns the data URI of a picture of `values` [x, y], with x to the right and y upwards.
+/// `None` without cells.
 pub(crate) fn heat_map(
     values: ArrayView2<'_, f64>,
     shading: &Shading,
@@ -19,7 +19,7 @@ pub(crate) fn heat_map(
     })
 }
 
-/// The data URI of a vertical strip of all colors, low at the bottom.
+/// Returns the data URI of a vertical strip of all colors, with the lowest values at the bottom.
 pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
     const LEVELS: usize = 256;
     picture(1, LEVELS, |_, j| {
@@ -28,7 +28,8 @@ pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
     })
 }
 
-/// A picture of `columns` × `rows` pixels, colored by (column, row), row 0 on top.
+/// Returns the data URI of a picture of `columns` × `rows` pixels, whose colors are a function of
+/// (column, row); row 0 is at the top.
 fn picture(
     columns: usize,
     rows: usize,
@@ -51,8 +52,9 @@ fn picture(
     Ok(Some(format!("data:image/png;base64,{text}")))
 }
 
-/// A photograph as a grey PNG: radiance in rows from the top, with the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels
-/// is white.
+/// Returns a photograph as a grey PNG: `radiance` is given in rows from the top, and is converted
+/// by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels is drawn
+/// white.
 ///
 /// # Errors
 /// If there are no pixels, more pixels than a PNG can hold, or fewer or more values than pixels.

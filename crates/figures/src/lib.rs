@@ -1,8 +1,8 @@
-//! Pictures of light fields, spectra and the path between them.
+//! Draws light fields, spectra, and the path of the light between planes.
 //!
-//! Input: plain values (arrays, axes, positions in metres). Output: a [`Figure`], which is an SVG,
-//! a PNG of the same drawing and a CSV of its numbers. The crate computes no physics and uses
-//! neither disk nor system fonts: the same values give the same bytes.
+//! Input: plain values (arrays, axes, positions in metres). Output: a [`Figure`], which is an SVG
+//! with a CSV of its numbers, and which can also be written as a PNG. The crate computes no
+//! physics and uses neither disk nor system fonts: the same values give the same bytes.
 //!
 //! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in
 //!   σ.
@@ -12,10 +12,10 @@
 //! * [`section()`]: the cut of `strip()` alone.
 //! * [`ellipses()`]: a spectrum with covariances over it.
 //! * [`curves()`]: curves and measured points, panel beside panel.
-//! * [`stacked()`]: several of these on one page.
-//! * [`photograph()`]: what a camera sees.
+//! * [`stacked()`]: several figures on one page.
+//! * [`photograph()`]: the picture that a camera takes.
 //!
-//! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.
+//! Arrays are [x, y] with both axes ascending; pictures show x to the right and y upwards.
 //!
 //! # Markup
 //!

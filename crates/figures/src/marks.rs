@@ -1,4 +1,5 @@
-//! Marks shared by the cut and the drawing to scale: plane numbers, segment lines, hatching.
+//! Draws marks that the cut and the drawing to scale share: plane numbers, segment lines,
+//! hatching.
 
 use crate::section::SegmentKind;
 use crate::sizes::{FAINT, INK};
@@ -7,12 +8,12 @@ use crate::svg::{Anchor, Stroke, Svg, TextStyle};
 pub(crate) const LIGHT: &str = "#f0a000";
 const GLASS: &str = "#3a9bb0";
 pub(crate) const PLANE: &str = "#1f5fa8";
-/// Radius of a plane's number.
+/// Radius of the disk with a plane's number.
 pub(crate) const BADGE: f64 = 8.0;
 /// Depth of the hatching behind surfaces.
 pub(crate) const HATCH: f64 = 9.0;
 
-/// A plane's number, from 1, on a disk.
+/// Draws a plane's number, counted from 1, on a disk.
 pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.circle([x, y], BADGE, PLANE);
     let style = TextStyle::new([x, y + 3.8], 10.5, Anchor::Middle)
@@ -21,7 +22,7 @@ pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.text(style, &(plane + 1).to_string());
 }
 
-/// Color and width of a segment.
+/// Returns the color and the line width of a segment.
 pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
     match kind {
         SegmentKind::Light => (LIGHT, 6.0),
@@ -32,15 +33,15 @@ pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
     }
 }
 
-/// Short slanted strokes behind a surface, evenly along all its pieces.
+/// Short slanted strokes behind a surface, at equal distances along all segments of the surface.
 #[derive(Debug, Default)]
 pub(crate) struct Hatching {
-    /// End of the last hatched piece, and the distance of this end from the last stroke.
+    /// End of the last hatched segment, and the distance between this end and the last stroke.
     last: Option<([f64; 2], f64)>,
 }
 
 impl Hatching {
-    /// Hatches a piece on the side towards which light goes.
+    /// Hatches a segment on the side towards which light travels.
     pub(crate) fn draw(&mut self, svg: &mut Svg, [start, end]: [[f64; 2]; 2], light: [f64; 2]) {
         const STEP: f64 = 6.0;
         let along = [end[0] - start[0], end[1] - start[1]];
@@ -56,7 +57,7 @@ impl Hatching {
         let near = |a: [f64; 2]| libm::hypot(a[0] - start[0], a[1] - start[1]) < 0.1;
         let behind = self.last.filter(|(point, _)| near(*point));
         let mut at = behind.map_or(HATCH, |(_, behind)| STEP - behind);
-        // The limit bounds the work for extreme lengths.
+        // The limit bounds the number of strokes for extreme lengths.
         while at < length.min(20_000.0) {
             let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
             let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);

@@ -1,4 +1,4 @@
-//! A heat map in its frame, with ticks and axis labels.
+//! Draws a heat map in its frame, with ticks and axis labels.
 
 use crate::axis::{Axis, COMFORTABLE, spaced_ticks, upright_ticks};
 use crate::color::Shading;
@@ -11,10 +11,11 @@ use ndarray::ArrayView2;
 
 /// The length by which an axis label may exceed its panel, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 13.0];
-/// The length by which an axis label may exceed its panel along x if the next panel is close.
+/// The length by which an axis label may exceed its panel along x if the next panel is at a small
+/// distance.
 const CLOSE_OVERHANG: f64 = 10.0;
 
-/// The position of a heat map and the texts around it.
+/// The position of a heat map, and the texts around it.
 #[derive(Debug)]
 pub(crate) struct Panel<'a> {
     pub(crate) area: Area,
@@ -23,14 +24,14 @@ pub(crate) struct Panel<'a> {
     /// Whether tick texts and labels are written; ticks are always drawn.
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
-    /// The lengths along which the x and y labels are centred, from the left and from the top of
-    /// the panel. These lengths may include panels to the right and below. Is `None` for a label
-    /// that is not written.
+    /// The lengths along which the x label and the y label are centred, measured from the left
+    /// and from the top of the panel. These lengths may include the panels to the right and
+    /// below. The length is `None` for a label that is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 
 impl Panel<'_> {
-    /// The picture of `values`, [x, y].
+    /// Draws the heat map of `values` [x, y].
     pub(crate) fn heat_map(
         &self,
         svg: &mut Svg,
@@ -43,14 +44,14 @@ impl Panel<'_> {
         Ok(())
     }
 
-    /// Frame, ticks and labels, over the picture.
+    /// Draws the frame, the ticks and the labels over the heat map.
     pub(crate) fn axes(&self, svg: &mut Svg) {
         svg.frame(self.area);
         self.x_axis(svg);
         self.y_axis(svg);
     }
 
-    /// The position of the point (x, y) of the axes.
+    /// Returns the position in the drawing of the point (x, y) of the axes.
     pub(crate) fn point(&self, x: f64, y: f64) -> [f64; 2] {
         [
             self.area.x + self.x.fraction(x) * self.area.width,

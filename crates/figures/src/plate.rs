@@ -1,4 +1,4 @@
-//! A plate of pictures in rows and columns, such as several scenes side by side.
+//! Draws a plate of pictures in rows and columns, such as several scenes side by side.
 
 use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
@@ -21,8 +21,8 @@ pub struct PlateRow<'a> {
     pub quantity: AxisQuantity,
     /// The mapping of values to colors.
     pub scale: Scale,
-    /// Whether all pictures of the row share a color range. If not, each picture is relative to
-    /// its own largest value.
+    /// Whether all pictures of the row have the same range of colors. If the range is not shared,
+    /// each picture is relative to its own largest value.
     pub shared: bool,
     /// A picture for each column.
     pub pictures: Vec<Picture<'a>>,
@@ -33,18 +33,18 @@ pub struct PlateRow<'a> {
 pub struct Plate<'a> {
     /// Title; markup.
     pub title: &'a str,
-    /// A line below the title, markup; may be empty.
+    /// A line below the title, as markup; may be empty.
     pub note: &'a str,
-    /// Headings of the columns. Text after a line break becomes a second line, which may contain
-    /// markup.
+    /// Headings of the columns. Text after a line break becomes a second line of the heading,
+    /// which may contain markup.
     pub heads: Vec<String>,
     /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,
-    /// Lines below each column, markup.
+    /// Lines below each column, as markup.
     pub feet: Vec<Vec<String>>,
     /// Bars with a number for each column, at the bottom.
     pub bars: Option<Bars>,
-    /// Largest width of a picture; with `None`, pictures are as wide as the page allows.
+    /// Maximum width of a picture; if it is `None`, pictures are as wide as the page allows.
     pub side: Option<f64>,
 }
 
@@ -53,7 +53,7 @@ pub struct Plate<'a> {
 pub struct Bars {
     /// The quantity of the bars.
     pub quantity: AxisQuantity,
-    /// A description of the quantity, markup.
+    /// A description of the quantity, as markup.
     pub about: String,
     /// Heights of the bars.
     pub measured: Vec<Option<f64>>,
@@ -69,8 +69,8 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture. Columns that do not fit at this width are placed below the other
-/// columns.
+/// Minimum width of a picture in a plate. Columns that do not fit at this width are placed below
+/// the first columns.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;
@@ -144,7 +144,7 @@ fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
     }
 }
 
-/// Draws the headings of a block above `top`, or lower where they have two lines; returns the top of
+/// Draws the headings of a block above `top`, or lower if they have two lines; returns the top of
 /// the pictures.
 fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize, top: f64) -> f64 {
     let has_formula = |(column, ..): (usize, f64, f64)| heads[column].contains('\n');
@@ -161,10 +161,10 @@ fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize,
     top + if formulas { FORMULA } else { 0.0 }
 }
 
-/// Line spacing of a heading and its second line.
+/// Distance between a heading and its second line.
 const FORMULA: f64 = 17.0;
 
-/// Draws the lines below each column of a block; returns the lower edge of the last.
+/// Draws the lines below each column of a block; returns the lower edge of the last line.
 pub(crate) fn feet(
     svg: &mut Svg,
     feet: &[Vec<String>],
@@ -188,7 +188,7 @@ pub(crate) fn feet(
     baseline + 6.0 + 16.0 * most as f64
 }
 
-/// A line, broken at spaces if it is wider than `room` even in small letters.
+/// Breaks a line at spaces if it is wider than `room` even in small letters.
 fn broken(text: &str, room: f64) -> Vec<String> {
     if width(&plain(text), LEAST_TEXT) > room {
         lines(text, SMALL_TEXT, room)
@@ -261,7 +261,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     y + 5.0
 }
 
-/// The table of the numbers in the bars.
+/// Returns the table of the numbers that the bars show.
 fn numbers(plate: &Plate<'_>) -> Result<String, Error> {
     let Some(bars) = &plate.bars else {
         return Ok(String::new());

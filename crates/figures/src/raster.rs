@@ -1,9 +1,9 @@
-//! Pixels as a PNG file.
+//! Encodes pixels as a PNG file.
 
 use etendue_field::whole;
 
-/// Encodes rows of pixels, from the top, one byte per channel, as a PNG. The PNG states the
-/// resolution in pixels per inch if it is given.
+/// Encodes rows of pixels, from the top, one byte per channel, as a PNG. If a resolution in
+/// pixels per inch is given, the PNG states it.
 pub(crate) fn encoded(
     [width, height]: [u32; 2],
     color: png::ColorType,

@@ -1,4 +1,4 @@
-//! Drawing of the scene cut along the central ray, with the names of its planes.
+//! Draws the scene cut along the central ray, with the names of its planes.
 
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -7,7 +7,7 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
-    /// Draws the scene to scale and the other cut; returns the position for the cut itself.
+    /// Draws the scene to scale and the other cut; returns the area for this cut.
     pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
         let [width, height] = size;
         let mut top = y;
@@ -37,14 +37,14 @@ impl Section {
 /// Height of the cut through y.
 const OTHER: f64 = 150.0;
 
-/// Draws the cut alone, with the names of its planes.
+/// Draws the cut without pictures below it, with the names of the planes.
 ///
 /// The CSV has a row for each segment, plane and corner of a body.
 ///
 /// # Errors
 /// If the numbers cannot be written.
 pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Error> {
-    // The width is sufficient for the names of the planes side by side.
+    // At this width, the names of the planes fit side by side.
     let inner = (120.0 * section.planes.len() as f64).max(640.0);
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);

@@ -1,5 +1,5 @@
-//! The strip: the cut along the central ray and, under each virtual plane, its light field and
-//! spectrum.
+//! Draws the strip: the cut along the central ray and, below each virtual plane, the plane's
+//! light field and spectrum.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -14,42 +14,45 @@ use crate::style::Style;
 use crate::svg::{Anchor, Area, Svg, TextStyle};
 use crate::text::width;
 
-/// The content below a virtual plane.
+/// The pictures below a virtual plane.
 #[derive(Clone, Debug)]
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// The light field in (y, v). This row is drawn if all columns have such a picture.
+    /// The light field in (y, v). The row of these pictures is drawn if all columns have such a
+    /// picture.
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
-    /// The spectrum on finer cells over the same axes, drawn in its place; the table keeps
-    /// `spectrum`.
+    /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`; the
+    /// table has `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// The predicted spectrum. This row is drawn if all columns have such a picture.
+    /// The predicted spectrum. The row of predicted spectra is drawn if all columns have such a
+    /// picture.
     pub predicted: Option<Picture<'a>>,
-    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The rows of full
+    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The two rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
-    /// The difference between the measured spectrum and a first-order chain, in percent of its
-    /// largest modulus. This row is drawn if all columns have such a picture.
+    /// The difference between the measured spectrum and a first-order chain, in percent of the
+    /// largest modulus of the measured spectrum. The row of these differences is drawn if all
+    /// columns have such a picture.
     pub off_chain: Option<Picture<'a>>,
-    /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
+    /// Lines below the pictures, such as "*p* = 0.43, pass", as markup; may be empty.
     pub verdict: Vec<String>,
-    /// Lines at the edges of the spectrum.
+    /// Predicted lines, drawn at the edges of the spectrum.
     pub guides: Vec<Guide>,
 }
 
-/// The light field in (y, v) and the spectrum that it has at azimuth 90°.
+/// The light field in (y, v), and its spectrum at azimuth 90°.
 #[derive(Clone, Debug)]
 pub struct AcrossPictures<'a> {
     /// The light field in (y, v).
     pub light_field: Picture<'a>,
     /// The power spectrum at azimuth 90°.
     pub spectrum: Picture<'a>,
-    /// The same spectrum on finer cells, which is drawn in its place.
+    /// The power spectrum at azimuth 90° in finer cells, which is drawn instead of `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// Lines at the edges of that spectrum.
+    /// Predicted lines, drawn at the edges of the spectrum at azimuth 90°.
     pub guides: Vec<Guide>,
 }
 
@@ -58,23 +61,25 @@ pub struct AcrossPictures<'a> {
 pub struct Strip<'a> {
     /// Title; markup.
     pub title: &'a str,
-    /// A line below the title, markup; may be empty.
+    /// A line below the title, as markup; may be empty.
     pub note: &'a str,
-    /// The scene; `columns[i]` belongs to its plane i.
+    /// The scene; `columns[i]` belongs to the scene's plane i.
     pub section: &'a Section,
     /// A column for each plane.
     pub columns: Vec<StripColumn<'a>>,
-    /// The quantity of the light fields, shown linearly and relative to the largest value of each.
+    /// The quantity of the light fields, shown linearly and relative to the largest value of each
+    /// light field.
     pub light_field: AxisQuantity,
-    /// The quantity of the spectra, shown in decibels below the largest value of each.
+    /// The quantity of the spectra, shown in decibels below the largest value of each spectrum.
     pub spectrum: AxisQuantity,
-    /// The quantity of the full radial spectra, shown in the same way.
+    /// The quantity of the full radial spectra, shown in decibels below the largest value of each
+    /// spectrum.
     pub full_radial: AxisQuantity,
-    /// Lower end of the decibels, below 0.
+    /// Lower end of the colors in decibels; below 0.
     pub floor: f64,
 }
 
-/// A kind of picture row.
+/// A kind of row of pictures in a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StripRow {
     LightField,
@@ -88,7 +93,7 @@ enum StripRow {
 }
 
 impl StripRow {
-    /// The rows of a strip.
+    /// Returns the rows of a strip.
     fn of(strip: &Strip<'_>) -> Vec<Self> {
         let predicted = strip
             .columns
@@ -129,7 +134,7 @@ impl StripRow {
         }
     }
 
-    /// The picture of this row in a column.
+    /// Returns the picture of this row in a column.
     fn picture<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let (full_radial, across) = (column.full_radial.as_ref(), column.across.as_ref());
         let other = match self {
@@ -147,8 +152,8 @@ impl StripRow {
         })
     }
 
-    /// Returns the picture to draw: the finer picture if there is one, otherwise the picture
-    /// itself.
+    /// Returns the picture of this row to draw: the finer picture if there is one, otherwise the
+    /// picture of the table.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),
@@ -158,7 +163,7 @@ impl StripRow {
         finer.unwrap_or_else(|| self.picture(column))
     }
 
-    /// The quantity of this row's pictures.
+    /// Returns the quantity of this row's pictures.
     fn quantity(self, strip: &Strip<'_>) -> AxisQuantity {
         match self {
             Self::LightField | Self::Across => strip.light_field.clone(),
@@ -173,8 +178,8 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture. Columns that do not fit at this width are placed below the other
-/// columns.
+/// Minimum width of a picture in a strip. Columns that do not fit at this width are placed below
+/// the first columns.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.
@@ -200,8 +205,8 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
-        // Lines from the cut to lower columns would cross the columns above, so lower columns have
-        // only numbers.
+        // Lines from the cut to a lower block of columns would cross the columns above it, so
+        // lower columns have only numbers.
         let heads = bottom
             + if grid.blocks() == 1 && style.scene {
                 LEADERS
@@ -225,7 +230,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-/// The layout of the pictures under the cut.
+/// Lays out the pictures below the cut.
 fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
     let row = |row: StripRow| {
         let cell = |column: &'b StripColumn<'a>| {
@@ -285,8 +290,8 @@ fn keys(
     y
 }
 
-/// Draws the key of dashed lines. If the lines in and across the plane of incidence differ, the key
-/// distinguishes them.
+/// Draws the key of the dashed lines over spectra. If the lines in the plane of incidence and
+/// perpendicular to it differ, the key distinguishes the two.
 fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style) {
     let mut guides = strip.columns.iter().flat_map(|column| &column.guides);
     let names: &[&str] = if guides.any(|guide| guide.is_across) {
@@ -316,8 +321,8 @@ fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style)
     }
 }
 
-/// The table, with a row for each cell of each picture. The pictures are in order, and x varies
-/// slowest.
+/// Returns the table of a strip, with a row for each cell of each picture. In the table, pictures
+/// are in the order of the strip, and x varies slowest.
 fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
     let header = [
         "plane",

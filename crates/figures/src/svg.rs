@@ -1,10 +1,10 @@
-//! A small SVG writer, for the few elements that figures consist of.
+//! Writes SVG, with the few kinds of elements that figures consist of.
 
 use crate::sizes::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
 use crate::text::{escape, fit, lines, plain, spans};
 use std::fmt::Write;
 
-/// An axis-aligned rectangle, in SVG units, y downwards.
+/// An axis-aligned rectangle in SVG units, with y increasing downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     pub(crate) x: f64,
@@ -85,7 +85,7 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    /// The line of frames and axes.
+    /// The line style of frames and axes.
     pub(crate) const FRAME: Self = Self::solid(INK, STROKE);
 
     /// A solid line.
@@ -113,7 +113,7 @@ pub(crate) struct Svg {
 }
 
 impl Svg {
-    /// Adds an element verbatim.
+    /// Adds an SVG element verbatim.
     pub(crate) fn raw(&mut self, element: &str) {
         self.body.push_str(element);
         self.body.push('\n');
@@ -136,7 +136,7 @@ impl Svg {
         ));
     }
 
-    /// A filled polygon; `fill` is a color or a paint server.
+    /// Draws a filled polygon; `fill` is a color or a paint server.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], fill: &str) {
         let near = points
             .iter()
@@ -167,7 +167,7 @@ impl Svg {
         ));
     }
 
-    /// An image stretched over `area`, without smoothing of pixels.
+    /// Draws an image stretched over `area`, without smoothing between pixels.
     pub(crate) fn image(&mut self, area: Area, href: &str) {
         self.raw(&format!(
             "<image{} preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{href}\"/>",
@@ -185,8 +185,9 @@ impl Svg {
         self.write(style, &spans(markup, style.size));
     }
 
-    /// Writes text with markup within a width of `room`. The text is shrunk if necessary. If the
-    /// smallest size is still too wide, the text is shortened and loses its styles.
+    /// Writes text with markup so that its width is at most `room`. If necessary, the font size
+    /// of the text is reduced. If the text is still too wide at the smallest font size, it is
+    /// shortened and written without italics and scripts.
     pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
         // Bold letters are about 12 % wider than the estimate for regular letters.
@@ -224,7 +225,7 @@ impl Svg {
         self.raw(&format!("<text{attributes}>{content}</text>"));
     }
 
-    /// Draws with `draw`, clipped to `area`.
+    /// Draws by calling `draw`, and clips the result to `area`.
     ///
     /// An inner `<svg>` clips without an id, so several figures can share a page.
     pub(crate) fn clipped(&mut self, area: Area, draw: impl FnOnce(&mut Self)) {
@@ -234,8 +235,8 @@ impl Svg {
         self.raw("</svg>");
     }
 
-    /// Draws a title and softer lines below it, both markup, from the left edge `x`; returns the y
-    /// below them.
+    /// Draws a title and paler lines below it, both as markup, from the left edge `x`; returns
+    /// the y coordinate below these lines.
     pub(crate) fn title(&mut self, x: f64, room: f64, title: &str, note: &str) -> f64 {
         let mut y = 8.0;
         if !title.is_empty() {
@@ -252,7 +253,7 @@ impl Svg {
         y + 6.0
     }
 
-    /// The finished document, on white.
+    /// Returns the finished SVG document, on a white background.
     pub(crate) fn finish(self, width: f64, height: f64) -> String {
         let (w, h) = (width.ceil(), height.ceil());
         let mut out = String::with_capacity(self.body.len() + 512);
@@ -268,7 +269,7 @@ impl Svg {
     }
 }
 
-/// Maximum coordinate in a drawing: SVG renderers may fail on larger numbers.
+/// Maximum coordinate in a drawing, because SVG renderers may fail on larger coordinates.
 const MAX_COORDINATE: f64 = 1e4;
 
 fn is_near(point: [f64; 2]) -> bool {
@@ -280,8 +281,8 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
         let along = to[axis] - from[axis];
-        // The parameters at which the line crosses both borders. These parameters are NaN for a
-        // line along a border.
+        // The line parameters at which the line crosses the two borders of the range. If the line
+        // runs along a border, these parameters are NaN.
         let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));
@@ -296,7 +297,7 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     (first < last).then_some(ends)
 }
 
-/// Path data through the points.
+/// Returns SVG path data through the given points.
 fn path(points: &[[f64; 2]]) -> String {
     let mut data = String::new();
     for (i, [x, y]) in points.iter().enumerate() {
@@ -311,7 +312,7 @@ fn place(area: Area) -> String {
     format!(" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"")
 }
 
-/// A coordinate, to a hundredth of a unit.
+/// Returns a coordinate rounded to a hundredth of a unit.
 fn number(value: f64) -> String {
     let rounded = (value * 100.0).round() / 100.0 + 0.0;
     if rounded.is_finite() {

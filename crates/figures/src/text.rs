@@ -19,7 +19,7 @@ enum TextLevel {
 }
 
 impl TextLevel {
-    /// Offset below the baseline, relative to the text size.
+    /// Returns the offset below the baseline, relative to the text size.
     fn depth(self) -> f64 {
         match self {
             Self::Below => 0.2,
@@ -29,10 +29,10 @@ impl TextLevel {
     }
 }
 
-/// Size of sub- and superscripts, relative to the text.
+/// Font size of subscripts and superscripts, relative to the font size of the text.
 const SCRIPT_SIZE: f64 = 0.72;
 
-/// SVG content of markup at a font `size`, in SVG units.
+/// Returns the SVG content for markup at the font size `size`, in SVG units.
 ///
 /// Subscripts and superscripts are shifted by `dy`, because some browsers do not support
 /// `baseline-shift`.
@@ -63,19 +63,20 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
     content
 }
 
-/// The plain text of markup.
+/// Returns the text of markup without its marks.
 pub(crate) fn plain(markup: &str) -> String {
     runs(markup).into_iter().map(|run| run.text).collect()
 }
 
-/// Width of `text` at a font `size`, in SVG units; an estimate for layout, good to about 15 %.
+/// Estimates the width of `text` at the font size `size`, in SVG units; the estimate is good to
+/// about 15 %, which suffices for layout.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     let ems: f64 = text.chars().map(advance).sum();
     ems * size
 }
 
-/// `text`, possibly shortened, and a font size at which its width is at most `room`. The size is
-/// reduced first; then the text is shortened.
+/// Returns `text`, possibly shortened, and a font size at which its width is at most `room`. The
+/// size is reduced first; then the text is shortened.
 pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     let smallest = size.min(LEAST_TEXT);
     let fitting = (size * room / width(text, size).max(1e-9)).clamp(smallest, size);
@@ -107,13 +108,13 @@ pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// Whether markup ends inside italics or a script.
+/// Checks whether markup ends inside italics, a subscript or a superscript.
 fn is_open(markup: &str) -> bool {
     let count = |c| markup.matches(c).count();
     count('*') % 2 == 1 || count('{') != count('}')
 }
 
-/// Replaces the characters that are special to XML and those that XML forbids.
+/// Replaces the characters that are special in XML, and the characters that XML forbids.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -129,7 +130,7 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
-/// Mean advance widths of DejaVu Sans, in em, by kind of letter.
+/// Returns the mean advance width of a letter of DejaVu Sans, in em, by the kind of the letter.
 fn advance(c: char) -> f64 {
     match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | ' ' | '|' | 'I' | '(' | ')' => 0.33,
@@ -141,7 +142,7 @@ fn advance(c: char) -> f64 {
     }
 }
 
-/// Markup cut into runs; unpaired marks are plain text.
+/// Returns the runs of markup; unpaired marks are plain text.
 fn runs(markup: &str) -> Vec<TextRun> {
     let mut runs = Vec::new();
     let mut rest = markup;
@@ -164,7 +165,8 @@ fn push(runs: &mut Vec<TextRun>, text: &str) {
     }
 }
 
-/// The first complete mark: the text before it, its run, and the text after it.
+/// Returns the first complete mark: the text before the mark, the marked run, and the text after
+/// the mark.
 fn next_mark(text: &str) -> Option<(&str, TextRun, &str)> {
     let kinds = [
         ("*", "*", true, TextLevel::Line),
@@ -221,7 +223,7 @@ mod tests {
         assert_eq!(fit("name", 12.0, 0.0).0, "…");
     }
 
-    /// The estimated width of typical texts is compared with their width in the font.
+    /// Compares the estimated width of typical texts with their width in the font DejaVu Sans.
     #[test]
     fn estimated_widths_are_near_the_true_ones() {
         for text in [

@@ -1,4 +1,4 @@
-//! The scene to scale, seen along Y of its light, with the bends of the central ray and the
+//! Draws the scene to scale, seen along Y at the light, with the bends of the central ray and the
 //! positions of objects.
 
 use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
@@ -7,14 +7,14 @@ use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use etendue_field::tidy;
 
-/// Height of the drawing, and of the text above it.
+/// Height of the drawing to scale, and of the text above it.
 const DRAWING: f64 = 170.0;
 const HEAD: f64 = 30.0;
 
-/// Least distance of a plane's number from objects.
+/// Minimum distance between a plane's number and any object.
 const CLEAR: f64 = 2.0;
-/// Maximum distance of a plane's number from one end of the plane, and from the other end if there
-/// is no room at the first.
+/// Maximum distance of a plane's number from one end of the plane; if there is no space near this
+/// end, the number is placed near the other end.
 const NEAR: u32 = 60;
 const FARTHEST: u32 = 200;
 
@@ -22,7 +22,7 @@ impl DrawnWorld {
     /// Total height.
     pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
 
-    /// Draws the scene at the given upper left corner.
+    /// Draws the scene to scale at the given upper left corner.
     pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], width: f64) {
         let area = Area {
             x,
@@ -52,8 +52,8 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Units per metre, and the centre of the drawing, such that path, planes and lights are
-    /// visible.
+    /// Returns the number of units per metre, and the centre of the drawing, such that the path,
+    /// the planes and the lights are visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
             .objects
@@ -75,7 +75,7 @@ impl DrawnWorld {
                 along.fold(f64::NEG_INFINITY, f64::max),
             ]
         });
-        // Margin for plane numbers.
+        // The margin leaves space for plane numbers.
         let room = [area.width - 60.0, area.height - 5.0 * BADGE];
         let scales = [0, 1].map(|i| room[i] / (ends[i][1] - ends[i][0]).max(1e-9));
         (
@@ -84,8 +84,8 @@ impl DrawnWorld {
         )
     }
 
-    /// A position for the number of a plane. The number is beyond one end of the plane, and clear
-    /// of objects and other numbers.
+    /// Returns a position for the number of a plane. The number is beyond one end of the plane,
+    /// and clear of objects and other numbers.
     fn free(
         &self,
         [from, to]: [[f64; 2]; 2],
@@ -129,7 +129,7 @@ impl DrawnWorld {
     }
 }
 
-/// The distance of a point from a line.
+/// Returns the distance of a point from a line.
 fn distance([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let along = [to[0] - from[0], to[1] - from[1]];
     let off = [x - from[0], y - from[1]];
@@ -138,7 +138,7 @@ fn distance([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     libm::hypot(off[0] - part * along[0], off[1] - part * along[1])
 }
 
-/// The arrowhead of the central ray.
+/// Draws the arrowhead of the central ray.
 fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = libm::hypot(along[0], along[1]).max(1e-9);
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use crate::section::Segment;
 
-    /// A blocker stands where the number of the plane would be.
+    /// A blocker stands at the usual position of the plane's number.
     #[test]
     fn the_number_of_a_plane_covers_no_blocker() {
         let blocker = DrawnObject {
@@ -191,7 +191,7 @@ mod tests {
         };
         let number = world.free([[0.0, 0.0], [0.0, 10.0]], &[], &|point| point);
         assert!(distance(number, [[0.0, 14.0], [0.0, 22.0]]) >= BADGE + CLEAR);
-        // Far beyond the plane there is room.
+        // There is space only far beyond the end of the plane.
         assert!(number[1] > 22.0, "{number:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Texts in figures do not overlap and are not cut off.
+//! Tests that texts in figures do not overlap and are not cut off.
 
 #![expect(clippy::unwrap_used, reason = "a fault here fails the test")]
 
@@ -10,8 +10,8 @@ use etendue_figures::{
 };
 use resvg::usvg;
 
-/// Figures of every kind: few and many planes, short and long names, ordinary and tiny numbers, and
-/// gaps.
+/// Returns figures of every kind: few and many planes, short and long names, ordinary and tiny
+/// numbers, and missing values.
 fn gallery() -> Vec<Figure> {
     let values = corner();
     let mut tiny = 3e-7 * &values;
@@ -47,7 +47,7 @@ fn gallery() -> Vec<Figure> {
     figures
 }
 
-/// Panels of a curve and of points, one with tiny numbers.
+/// Returns panels with a curve and points, one panel with tiny numbers.
 fn lines(count: usize) -> Curves {
     let curve = |kind, name: &str, scale: f64| Curve {
         kind,
@@ -75,7 +75,7 @@ fn lines(count: usize) -> Curves {
     }
 }
 
-/// The texts of a figure with the boxes of their lines, and the size of the canvas.
+/// Returns the texts of a figure with the boxes of their lines, and the size of the canvas.
 fn written(figure: &Figure) -> (Vec<(String, usvg::Rect)>, usvg::Size) {
     let tree = usvg::Tree::from_str(&with_font(&figure.svg), &options()).unwrap();
     (texts(tree.root()), tree.size())
@@ -108,8 +108,8 @@ fn no_texts_overlap() {
     }
 }
 
-/// A page is at most 7 inches of 96 units wide. All texts, including sub- and superscripts, have at
-/// least 6 points.
+/// A page is at most 7 inches wide, and an inch has 96 units. All texts, including sub- and
+/// superscripts, have at least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {
@@ -146,7 +146,7 @@ fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }
 
-/// All texts of a tree with their ink boxes.
+/// Returns all texts of an SVG tree with the boxes of their ink.
 fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let mut found = Vec::new();
     for node in group.children() {
@@ -180,7 +180,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
         .take(4)
         .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
         .collect();
-    // The radius of a disk is 8.
+    // Plane numbers are drawn on disks of radius 8.
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 

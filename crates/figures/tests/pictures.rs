@@ -1,4 +1,4 @@
-//! The content of finished figures: positions, colors, and the numbers beside them.
+//! Tests the content of finished figures: positions, colors, and the numbers beside pictures.
 
 use crate::common::{DECIBEL, Pixels, compare, corner, images, path, scene};
 use etendue_figures::{Scale, Section, section};
@@ -17,7 +17,7 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// In the raster too, one color fills the cell's part of the panel, without smoothing.
+/// In the PNG, too, one color fills the cell's part of the panel, without smoothing.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();
@@ -31,10 +31,10 @@ fn the_raster_shows_cells_as_sharp_rectangles() {
     let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| 2 * number(name));
     let bright = raster.at(x + w - w / 10, y + h / 6);
     assert!(bright[0] > 240 && bright[1] > 240, "{bright:?}");
-    // Three pixels inside the edges of the cell, beyond the frame, the color is still that of the
-    // cell.
+    // At a distance of three pixels inside the cell's edges, beyond the frame, the color is still
+    // that of the cell.
     assert_eq!(raster.at(x + w - w / 5 + 3, y + h / 3 - 3), bright);
-    // Three pixels outside, the color is that of 0.
+    // At a distance of three pixels outside the cell, the color is that of the value 0.
     let dark = raster.at(x + 10, y + h - 10);
     assert!(dark.iter().all(|c| *c < 10), "{dark:?}");
     assert_eq!(raster.at(x + w - w / 5 - 3, y + h / 3 - 3), dark);
@@ -107,12 +107,13 @@ fn the_png_states_its_resolution() {
         .unwrap();
     let chunk = png.windows(4).position(|bytes| bytes == b"pHYs").unwrap() + 4;
     let per_metre = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
-    // 192 pixels per inch of 0.0254 metres.
+    // The expected resolution is 192 pixels per inch, and an inch has 0.0254 metres.
     assert_eq!([per_metre(chunk), per_metre(chunk + 4)], [7559, 7559]);
     assert_eq!(png[chunk + 8], 1, "the unit is the metre");
 }
 
-/// Only the title is in this corner, so ink there shows that the built-in fonts work.
+/// Only the title is in this corner of the figure, so ink in this corner shows that the built-in
+/// fonts work.
 #[test]
 fn text_is_drawn() {
     let values = corner();
@@ -154,7 +155,7 @@ fn tables_have_a_header_with_units_and_a_row_for_each_cell() {
         cut.csv
             .starts_with("kind,name,z0 [m],x0 [m],z1 [m],x1 [m]\n")
     );
-    // The ray, four segments, two planes, four corners.
+    // The rows of the CSV are the central ray, four segments, two planes and four corners.
     assert_eq!(cut.csv.lines().count(), 1 + 1 + 4 + 2 + 4);
 }
 

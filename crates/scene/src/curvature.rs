@@ -4,15 +4,15 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// The radius within which vertices are used, in units of the longest edge of the triangle that was
-/// hit.
+/// The radius around a hit within which vertices are used, in units of the longest edge of the
+/// triangle that was hit.
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
-    /// Returns the least-squares paraboloid through the vertices around a hit. The axes of its
-    /// frame are the principal directions at the hit, its curvatures are the principal curvatures,
-    /// and its normal is on the side from which the light comes. Returns `None` if there are too
-    /// few vertices.
+    /// Returns the least-squares paraboloid through the vertices around a hit. The axes of the
+    /// paraboloid's frame are the principal directions at the hit, its curvatures are the
+    /// principal curvatures, and its normal is on the side from which the light comes. Returns
+    /// `None` if there are too few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -23,8 +23,8 @@ impl MeshObject {
             .filter(|p| p.distance(hit.point) < EDGES * edge);
         let near: Vec<DVec3> = near.copied().collect();
         let mut frame = Frame::new(hit.point, hit.normal, hit.normal.any_orthonormal_vector())?;
-        // The plane of the interpolated normal is slightly tilted against the tangent plane, so the
-        // fit is repeated in the tangent plane.
+        // The plane perpendicular to the interpolated normal is slightly tilted against the
+        // tangent plane, so the fit is repeated in the tangent plane.
         for _ in 0..2 {
             let [_, s, t, ..] = quadric(&frame, &near, edge)?;
             frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
@@ -54,7 +54,7 @@ impl MeshObject {
         nearest.is_some_and(|i| self.normal(i, hit.point).dot(hit.normal) < 0.0)
     }
 
-    /// Returns the triangle whose middle is nearest to a hit.
+    /// Returns the triangle whose centroid is nearest to a hit.
     fn nearest(&self, hit: &Hit) -> Option<usize> {
         let distance = |i: &usize| {
             let middle: DVec3 = self.triangles[*i].iter().sum::<DVec3>() / 3.0;

@@ -1,4 +1,5 @@
-//! Warns of likely mistakes in a valid scene: of units, of grids, and arrays that are too small.
+//! Warns of likely mistakes in a valid scene: wrong units, coarse frequency grids, and arrays of
+//! blockers that are too small.
 
 use crate::scene::{BlockerLayer, Scene};
 use etendue_field::{Light, Mask, VirtualPlane, Window, brief};
@@ -6,11 +7,13 @@ use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// The length, in metres, above which a length is suspicious if other lengths are about a metre.
+/// The length, in metres, above which a length is suspicious if the other lengths of the scene
+/// are about a metre.
 const MANY_METRES: f64 = 100.0;
-/// The length, in metres, below which a length counts as about a metre.
+/// The length, in metres, below which a length counts as about one metre.
 const NEAR: f64 = 10.0;
-/// Larger slopes, beyond 79° from the central ray, are rarely intended.
+/// The slope above which a slope is suspicious, because slopes beyond 79° from the central ray
+/// are rarely intended.
 const STEEP: f64 = 5.0;
 
 /// Returns a description of each likely mistake.
@@ -25,14 +28,14 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     long(scene).into_iter().chain(steep).chain(told).collect()
 }
 
-/// Warns of lengths that seem to be in millimetres.
+/// Warns of lengths that seem to be written in millimetres.
 fn long(scene: &Scene) -> Option<String> {
     let file = serde_json::to_value(&scene.file).ok()?;
     let mut lengths = Vec::new();
     collect(&file, "", false, &mut lengths);
     let origin = scene.path.frame.origin.to_array();
     for (path, length) in &mut lengths {
-        // The positions that are compared are relative to the light.
+        // Positions are compared relative to the light.
         let of_world = path
             .strip_suffix(']')
             .filter(|path| !path.contains(".shapes["));
@@ -59,7 +62,7 @@ fn long(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Warns of slopes that seem to be angles in degrees.
+/// Warns of slopes that seem to be angles written in degrees.
 fn steep(window: &WindowFile) -> Option<String> {
     let axes = [("u", Some(&window.u)), ("v", window.v.as_ref())];
     let (name, slope) = axes
@@ -104,7 +107,8 @@ fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String,
     }
 }
 
-/// Warns of frequencies that end before the first step that the window resolves.
+/// Warns if the largest frequency of a plane is below the first frequency step that the window
+/// resolves.
 fn coarse(
     i: usize,
     file: &PlaneFile,
@@ -134,7 +138,7 @@ fn coarse(
     told.collect()
 }
 
-/// Warns of arrays that let light pass beyond their edges to a plane.
+/// Warns of arrays of blockers if light passes beside the array to a plane.
 fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
     let told = arrays.filter_map(|layer| {
@@ -158,8 +162,8 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// Returns the extent of an array from the central ray, along X and along Y: to half a pitch beyond
-/// the centres of its last squares.
+/// Returns the distances from the central ray to the edges of an array, along X and along Y; an
+/// edge lies half a pitch beyond the centres of the outermost squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
@@ -174,12 +178,13 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// Returns the largest distance from the central ray of the light seen by a plane, at a given
-/// distance along the first leg.
+/// Returns the largest distance from the central ray, at a given distance along the first leg, of
+/// the light that a plane sees.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
-    // The point where the light that the plane sees leaves the first leg, or the plane itself.
+    // The point at which the light that the plane sees leaves the first leg, or the plane itself
+    // if the plane is on the first leg.
     let end = match plane.leg {
         0 => plane.distance,
         1 if scene.path.legs[1].frame.d.z < -0.999 => scene.path.first_hit(),
@@ -196,7 +201,8 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // An environment gives an infinite bound, so the minimum is the bound by the plane.
+            // For an environment, the bound by the light is infinite, so the minimum is the bound
+            // by the plane.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

@@ -10,33 +10,33 @@ use std::path::Path;
 /// Weights of red, green and blue in luminance (Rec. ITU-R BT.709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// The largest number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
+/// The maximum number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MAX_NUMBERS: usize = 1 << 27;
 
-/// The largest number of values per byte of a file, because DEFLATE expands one byte to at most
-/// 1032 bytes (RFC 1951; zlib's technical notes). These 1032 bytes hold 1032 values of a PNG file,
-/// or half as many values of an OpenEXR file. So a false size in a header cannot make the program
-/// allocate more memory than the file can fill.
+/// The maximum number of values per byte of a file, because DEFLATE expands one byte to at most
+/// 1032 bytes (RFC 1951; zlib's technical notes). These 1032 bytes hold 1032 values of a PNG
+/// file, or 516 values of an OpenEXR file. With this maximum, a false size in a header cannot
+/// make the program allocate more memory than the file can fill.
 const MOST_PER_BYTE: usize = 1032;
 
-/// A picture: grey, or red, green and blue.
+/// A picture whose pixels are grey, or red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels {
     /// Number of pixels in a row.
     pub width: usize,
     /// Number of rows.
     pub height: usize,
-    /// Values of the pixels, one or three for each.
+    /// Values of the pixels; each pixel has one or three values.
     pub values: Vec<f64>,
     /// Values per pixel, 1 or 3.
     pub count: usize,
-    /// Whether the values are the levels of a file, from 0 to 1, to which a transfer curve was
-    /// applied; otherwise they are proportional to light.
+    /// Whether the values are levels from 0 to 1 to which the file's transfer curve was applied;
+    /// otherwise the values are proportional to light.
     pub are_levels: bool,
 }
 
 impl Channels {
-    /// Returns the picture as one number for each pixel.
+    /// Returns the picture as one number for each pixel, computed by `number`.
     ///
     /// # Errors
     /// When the picture has no pixels.
@@ -61,9 +61,9 @@ impl Channels {
 
 /// Reads the bytes of a picture. The extension of `file`, in any case, determines the format.
 ///
-/// OpenEXR: the luminance of the first layer with channels R, G and B, or its channel Y; the whole
-/// data window. PNG: grey or colour of 8 or 16 bits, with its levels scaled to 1 and no transfer
-/// curve undone; alpha is ignored.
+/// From OpenEXR, it reads the luminance of the first layer with channels R, G and B, or the
+/// layer's channel Y, over the entire data window. From PNG, it reads grey or colour of 8 or 16
+/// bits, with levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
 pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
@@ -76,11 +76,10 @@ pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Ra
 /// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in any case, determines
 /// the format.
 ///
-/// OpenEXR: the first layer with channels R, G and B, or Y; the whole data window. PNG: grey or
-/// colour of 8 or 16 bits. Alpha is ignored.
+/// From OpenEXR, it reads the first layer with channels R, G and B, or Y, over the entire data
+/// window. From PNG, it reads grey or colour of 8 or 16 bits. Alpha is ignored.
 ///
-/// # Errors
-/// When the file is damaged, or larger than allowed.
+/// # Errors When the file is damaged, or when it is larger than allowed.
 pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
     match extension(file).as_str() {
         "png" => png(bytes),
@@ -94,7 +93,8 @@ fn extension(file: &Path) -> String {
     extension.to_ascii_lowercase()
 }
 
-/// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
+/// Refuses a picture that has too many values, or more values than its file of `length` bytes can
+/// hold.
 fn limited(numbers: Option<usize>, length: usize) -> Result<(), Fault> {
     let most = MAX_NUMBERS.min(length.saturating_mul(MOST_PER_BYTE));
     match numbers {
@@ -162,8 +162,8 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
     ))
 }
 
-/// Returns the number of values per pixel of a layer, and the values; `None` if the channels are
-/// missing.
+/// Returns the number of values per pixel of a layer, and these values; `None` if the channels
+/// are missing.
 fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();
@@ -189,7 +189,7 @@ fn png(bytes: &[u8]) -> Result<Channels, Fault> {
         fault("the file", format!("damaged ({error})"), "a PNG picture")
     };
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
-    // Palettes and levels of less than 8 bits become bytes.
+    // Palettes and levels of less than 8 bits are expanded to bytes.
     decoder.set_transformations(png::Transformations::EXPAND);
     let info = decoder.read_header_info().map_err(unsound)?;
     let [width, height] =

@@ -1,5 +1,5 @@
-//! Reads files as bytes. Only regular files of a bounded length are read; files that a scene names
-//! must also be below the folder of the scene.
+//! Reads files as bytes, within limits on their kind, length and folder. Only regular files of a
+//! bounded length are read; a file that a scene names must also be below the scene's folder.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -11,26 +11,25 @@ pub enum ReadError {
     /// The system cannot read the file.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// The path names a folder, a pipe or a device; a pipe or a device might never end.
+    /// The path names a folder, a pipe or a device; reading a pipe or a device might never end.
     #[error("not a regular file")]
     NotRegular,
-    /// The path, with links followed, leads out of the folder.
+    /// The path, with links followed, leads out of the scene's folder.
     #[error("outside of the required folder, after links are followed")]
     Outside,
     /// The file is longer than allowed.
     #[error("{length} bytes long; allowed: at most {most}")]
     TooLong {
-        /// Length of the file, bytes.
+        /// Length of the file, in bytes.
         length: u64,
-        /// The largest allowed length, bytes.
+        /// The maximum allowed length, in bytes.
         most: u64,
     },
 }
 
-/// Returns the bytes of a regular file, at most `most` of them.
+/// Returns the bytes of a regular file that has at most `most` bytes.
 ///
-/// # Errors
-/// [`ReadError`]; the file may be in any folder.
+/// # Errors [`ReadError`], but never because of the file's folder.
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     // The kind of file is checked before opening, because opening a pipe would wait for the other
     // end.
@@ -43,7 +42,7 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
         return Err(ReadError::TooLong { length, most });
     }
     let mut bytes = Vec::new();
-    // A file that grows while it is read is cut one byte beyond the limit.
+    // If a file grows while it is read, the reader stops one byte beyond the limit.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     match bytes.len() as u64 {
         length if length > most => Err(ReadError::TooLong { length, most }),
@@ -60,7 +59,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     if !leads_down(name) {
         return Err(ReadError::Outside);
     }
-    // A path without a folder is relative to the current folder.
+    // If the path of the scene has no folder, `folder` is empty and means the current folder.
     let folder = match folder.as_os_str() {
         empty if empty.is_empty() => Path::new(".").canonicalize()?,
         _ => folder.canonicalize()?,
@@ -72,7 +71,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Checks whether a path, as written, is relative and has no part `..`.
+/// Checks whether a path, as written, is relative and has no component `..`.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

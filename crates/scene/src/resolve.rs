@@ -33,12 +33,11 @@ use obstacles::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene. Paths of meshes and pictures are relative to
-/// `folder`; `memory` is the memory of this machine, in bytes.
+/// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative
+/// to `folder`; `memory` is the memory of this machine, in bytes.
 ///
-/// # Errors
-/// [`SceneError::Values`] with every fault found; when the scene exceeds the counts of
-/// [`crate::limits`], with these faults alone.
+/// # Errors [`SceneError::Values`] with every fault found; if the scene exceeds the counts of
+/// [`crate::limits`], only these faults are reported.
 pub fn resolve(
     name: &str,
     file: SceneFile,
@@ -58,15 +57,16 @@ pub fn resolve(
     }
 }
 
-/// The lowest allowed level of a test: ten times the smallest possible p-value.
+/// The lowest allowed significance level of a test: ten times the smallest possible p-value.
 const LEAST_LEVEL: f64 = 5e-4;
-/// Relative distance below which two planes across the path count as the same.
+/// The relative difference between the distances of two planes across the path below which the
+/// planes count as the same.
 const SAME_PLANE: f64 = 1e-9;
 
 struct Resolver<'a> {
     faults: &'a mut Faults,
     folder: &'a Path,
-    /// The BLAKE3 hashes of the files read, by the names they have in the scene.
+    /// The BLAKE3 hashes of the files that were read, by the names of these files in the scene.
     inputs: BTreeMap<String, String>,
 }
 
@@ -83,8 +83,8 @@ impl Resolver<'_> {
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
-        // If the frame is unknown or not finite, the checks continue in a frame that leaves all
-        // values unchanged.
+        // If the frame is unknown or not finite, the checks continue with the identity frame,
+        // which leaves all values unchanged.
         let checked = frame.filter(|frame| frame.origin.is_finite());
         let checked = checked.unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
@@ -164,8 +164,8 @@ impl Resolver<'_> {
         frame
     }
 
-    /// Refuses two flat objects in one plane, because rounding would decide which one light meets
-    /// first.
+    /// Refuses two flat objects in one plane, because rounding would decide which of them light
+    /// meets first.
     fn distinct(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
         let mut flat: Vec<&PathStop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
         flat.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
@@ -184,7 +184,7 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        // One photon per batch suffices to estimate noise, but no batch may be empty.
+        // Each batch needs at least one photon, and one photon suffices to estimate noise.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");
@@ -207,12 +207,12 @@ impl Resolver<'_> {
 /// An object before or after which planes can be placed.
 struct PathStop<'a> {
     name: &'a str,
-    /// The nearest and the farthest distance of the object along the first leg; they are equal for
-    /// a flat object.
+    /// The smallest and the largest distance of the object along the first leg; the two are equal
+    /// for a flat object.
     extent: [f64; 2],
-    /// Whether light leaves the object.
+    /// Whether light can leave the object.
     surface: bool,
-    /// The leg that ends on the object, if the path visits it.
+    /// The index of the leg that ends on the object, if the path visits the object.
     ends: Option<usize>,
 }
 
@@ -258,7 +258,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     stops
 }
 
-/// Returns the smallest and the largest z coordinate of points.
+/// Returns the smallest and the largest z coordinate of the given points.
 fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);

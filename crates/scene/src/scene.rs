@@ -6,41 +6,42 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A checked experiment. Distances are along the central ray from the light, and blockers lie
-/// across the first leg of this ray. All coordinates are those of the frame at the light.
+/// A checked experiment. Distances are measured from the light along the central ray, and
+/// blockers lie across the first leg of this ray. All coordinates of a scene are given in the
+/// frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name of the scene: the name of its file, without the extension.
     pub name: String,
-    /// The file that the scene was resolved from, defaults and overrides included.
+    /// The file from which the scene was resolved, including defaults and overrides.
     pub file: SceneFile,
     /// The central ray.
     pub path: CentralRay,
     /// The light, at distance zero.
     pub light: Light,
-    /// The blockers, by distance.
+    /// The layers of blockers, in the order of their distances.
     pub blockers: Vec<BlockerLayer>,
-    /// The rectangular surfaces, in the order of the file.
+    /// The rectangular surfaces, in the order of the scene file.
     pub surfaces: Vec<Surface>,
-    /// The smooth surfaces, in the order of the file.
+    /// The smooth surfaces, in the order of the scene file.
     pub patches: Vec<PatchObject>,
-    /// The meshes: blockers, then surfaces, in the order of the file.
+    /// The meshes: blockers, then surfaces, each in the order of the scene file.
     pub meshes: Vec<MeshObject>,
-    /// The virtual planes, in the order of the file.
+    /// The virtual planes, in the order of the scene file.
     pub planes: Vec<VirtualPlane>,
-    /// BLAKE3 hash of each mesh and picture, by its name in the file.
+    /// BLAKE3 hash of each mesh and picture, by the file's name in the scene.
     pub inputs: BTreeMap<String, String>,
     /// The settings of the measurement.
     pub run: Run,
 }
 
-/// The central ray, from which positions and slopes are measured: straight legs from surface to
-/// surface.
+/// The central ray, which consists of straight legs from surface to surface; positions and slopes
+/// of light are measured from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
     /// Frame at the light, in the world of the scene file.
     pub frame: Frame,
-    /// The legs, in the order of light, one more than the surfaces visited.
+    /// The legs, in the order of light; their number is the number of visited surfaces plus one.
     pub legs: Vec<Leg>,
 }
 
@@ -51,7 +52,8 @@ pub struct Leg {
     pub frame: Frame,
     /// Distance along the path at which the leg begins.
     pub start: f64,
-    /// Distance to the surface that ends the leg; for the last leg, to the first obstacle.
+    /// Distance from the leg's beginning to the surface that ends the leg; for the last leg, to
+    /// the first obstacle.
     pub length: f64,
     /// The hit at which the leg leaves a surface; `None` for the first leg.
     pub leaves: Option<Hit>,
@@ -64,8 +66,8 @@ pub struct Hit {
     pub object: Object,
     /// The point of the hit, in the frame at the light.
     pub point: DVec3,
-    /// The surface's unit normal at the point, on the side from which the light comes, in the frame
-    /// at the light.
+    /// The unit normal of the surface at the point of the hit, on the side from which the light
+    /// comes, in the frame at the light.
     pub normal: DVec3,
 }
 
@@ -81,9 +83,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the
-    /// longitude θ₀ of the direction from which the light comes. T lies in the plane of incidence,
-    /// and X is rotated to −T at normal incidence (docs/conventions.md).
+    /// Returns the frame (T, B, N) at the hit for light that arrives in the frame `arriving`, and
+    /// the longitude θ₀ of the direction from which the light comes. T lies in the plane of
+    /// incidence; at normal incidence, X is rotated to −T (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -105,7 +107,7 @@ impl Hit {
 }
 
 impl CentralRay {
-    /// Returns the distance at which the central ray meets its first surface.
+    /// Returns the distance at which the central ray meets the first surface of its path.
     #[must_use]
     pub fn first_hit(&self) -> f64 {
         self.legs[0].length
@@ -124,13 +126,13 @@ impl CentralRay {
         hits.any(|hit| hit.object == object)
     }
 
-    /// Returns the distance of a plane along its leg.
+    /// Returns the distance of a plane from the beginning of its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {
         plane.distance - self.legs[plane.leg].start
     }
 
-    /// Returns the frame at a distance along the path, on a leg, in the frame at the light.
+    /// Returns the frame of a leg at a distance along the path, in the frame at the light.
     #[must_use]
     pub fn frame_at(&self, distance: f64, leg: usize) -> Frame {
         let Leg { frame, start, .. } = &self.legs[leg];
@@ -143,9 +145,10 @@ impl CentralRay {
 pub struct BlockerLayer {
     /// Name.
     pub name: String,
-    /// Distance of the layer's plane.
+    /// Distance of the layer's plane from the light.
     pub distance: f64,
-    /// Distance between repetitions, if any. Repetitions replicate spectra at multiples of 1/pitch.
+    /// Distance between repetitions of the mask; `None` if the mask is not repeated. Repetitions
+    /// replicate spectra at multiples of 1/pitch.
     pub pitch: Option<f64>,
     /// The mask that multiplies radiance.
     pub mask: Mask,
@@ -156,11 +159,11 @@ pub struct BlockerLayer {
 pub struct MeshObject {
     /// Name.
     pub name: String,
-    /// The mesh's own origin, in the frame at the light.
+    /// The origin of the mesh's own coordinates, in the frame at the light.
     pub center: DVec3,
-    /// Corners of the triangles, in the frame at the light.
+    /// The triangles of the mesh, with corners in the frame at the light.
     pub triangles: Triangles,
-    /// The nearest and the farthest distance of the corners.
+    /// The smallest and the largest distance of the triangles' corners along the first leg.
     pub extent: [f64; 2],
     /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
@@ -172,9 +175,10 @@ pub struct MeshObject {
 /// A mesh as a smooth surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmoothMesh {
-    /// The interaction with light.
+    /// The interaction of the mesh with light.
     pub event: Specular,
-    /// Unit normals at the corners of the triangles, outward as they are wound, in the frame at the light.
+    /// Unit normals at the corners of the triangles, in the frame at the light; outward is the
+    /// side given by the triangles' winding.
     pub normals: Arc<[[DVec3; 3]]>,
 }
 
@@ -191,24 +195,24 @@ impl MeshObject {
 pub struct PatchObject {
     /// Name.
     pub name: String,
-    /// The shape, in the frame at the light.
+    /// The shape of the surface, in the frame at the light.
     pub patch: Patch,
-    /// The interaction with light.
+    /// The interaction of the surface with light.
     pub event: Event,
 }
 
 /// The interaction of a smooth surface with light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// Sends each ray in one direction.
+    /// Specular interaction, which sends each ray in one direction.
     Specular(Specular),
-    /// Reflects by a sum of BRDFs on the side that the surface faces; the other side is black.
+    /// Reflection by a sum of BRDFs on the side that the surface faces; the other side is black.
     Reflects(Reflectance),
 }
 
 impl Event {
-    /// Checks whether light leaves the surface in or near the mirror direction, unlike light from
-    /// a Lambertian surface. For a sum of BRDFs, the first BRDF determines the result.
+    /// Checks whether the surface sends light in or near the mirror direction, unlike a
+    /// Lambertian surface. For a sum of BRDFs, the first BRDF determines the result.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -223,18 +227,18 @@ impl Event {
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// Frame of the rectangle, in the frame at the light, with O at the centre and X and Y along
+    /// Frame of the rectangle, in the frame at the light; O is the centre, and X and Y run along
     /// the edges. D is the normal on the side at which light arrives.
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],
-    /// The ratio of reflected to incident flux.
+    /// The ratio of reflected to incident flux of the surface.
     pub albedo: f64,
 }
 
 impl Surface {
-    /// Returns the distance and the rectangle, if the surface lies across the first leg with its
-    /// edges along X and Y.
+    /// Returns the distance of the surface and its rectangle, if the surface lies across the
+    /// first leg with its edges along X and Y.
     #[must_use]
     #[expect(
         clippy::float_cmp,
@@ -261,7 +265,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// Returns the same scene with only some of its planes, given by index.
+    /// Returns this scene with only the planes whose indices are given.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         Self {
@@ -270,8 +274,9 @@ impl Scene {
         }
     }
 
-    /// Returns the BLAKE3 hash of everything that defines the scene. Its input is the scene file as
-    /// JSON, with defaults and overrides, followed by the name and hash of each mesh and picture.
+    /// Returns the BLAKE3 hash of everything that defines the scene. The hash covers the scene
+    /// file as JSON, with defaults and overrides, followed by the name and hash of each mesh and
+    /// picture.
     #[must_use]
     pub fn hash(&self) -> String {
         scene_hash(&self.file, &self.inputs)
@@ -297,11 +302,11 @@ pub struct Run {
     pub seed: u64,
     /// Independent batches.
     pub batches: u32,
-    /// The probability that the verdict rejects a correct scene, over all planes together.
+    /// The probability that the verdict rejects a correct scene, for all planes together.
     pub alpha: f64,
-    /// Noise, as a share of the spectrum, above which a plane does not pass.
+    /// The largest noise, as a share of the spectrum, with which a plane can pass.
     pub resolution: f64,
-    /// How photons leave the light.
+    /// The distribution with which photons leave the light.
     pub emission: Emission,
     /// The random numbers or nets from which photons are drawn.
     pub sampling: Sampling,

@@ -7,8 +7,8 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Triangles, in the frame at the light, and the one hierarchy over them that all rays traverse.
-/// Clones share both.
+/// The triangles of a mesh, in the frame at the light, with one hierarchy over them that all rays
+/// traverse. Clones share both.
 #[derive(Clone)]
 pub struct Triangles(Arc<SharedTriangles>);
 
@@ -19,8 +19,8 @@ struct SharedTriangles {
 }
 
 impl Triangles {
-    /// Builds the hierarchy over triangles with these corners. `origins` is the largest coordinate
-    /// of any ray's start.
+    /// Builds the hierarchy over triangles with the corners `corners`. `origins` is the largest
+    /// coordinate of the starting point of any ray.
     #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
@@ -31,7 +31,7 @@ impl Triangles {
         }))
     }
 
-    /// Returns the lowest and the highest corner of the bounding box.
+    /// Returns the lowest and the highest corner of the triangles' bounding box.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         self.0.bounds

@@ -6,32 +6,35 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The smallest difference between the spectra of photons and of backward rays, as a share, for
-/// which a mesh causes a warning.
+/// The smallest relative difference between the spectra of photons and of backward rays for which
+/// a mesh causes a warning.
 const LEVEL: f64 = 0.01;
-/// The largest number of triangles examined; in finer meshes only every second, every third, …
+/// The maximum number of triangles examined; in finer meshes only every second, every third, …
 /// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
-/// The number of pieces of a window across which triangles are subdivided.
+/// The number of pieces across a window into which triangles are subdivided.
 const PIECES: f64 = 8.0;
-/// The number of azimuths at which waves are tested, and of waves at each azimuth. Their
-/// frequencies are multiples of the spacing of a plane's frequencies, up to the largest.
+/// The number of azimuths at which waves are tested, and the number of waves at each azimuth. The
+/// frequencies of these waves are multiples of the spacing of a plane's frequencies, up to the
+/// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// The slopes at which each point is evaluated, over the half-width of the window.
+/// The slopes at which the factor is evaluated for each point, in units of the half-width of the
+/// window.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Returns warnings in words: one for each likely mistake, and one for each smooth mesh on the
-    /// path that is too coarse.
+    /// Returns the warnings for the scene: one for each likely mistake, and one for each smooth
+    /// mesh on the path that is too coarse.
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
-    /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t
-    /// / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not
-    /// conserve étendue. The effect on a plane is the ratio of two spectra at the measured
-    /// frequencies along x and y, both taken where the mesh is hit. The first is the spectrum of
-    /// the window times the factor minus 1; the second is the spectrum of the window alone. Facets
-    /// finer than the waves of these frequencies average out.
+    /// to the normal t of the triangle. If photons come along d and leave along e, their radiance
+    /// is (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated
+    /// normals do not conserve étendue. The effect of a mesh on a plane is the ratio of two
+    /// spectra at the measured frequencies along x and y, both computed where the light hits the
+    /// mesh. The first spectrum is that of the window times the factor minus 1; the second
+    /// spectrum is that of the window alone. If facets are finer than the waves of these
+    /// frequencies, their effects average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -58,7 +61,8 @@ impl Scene {
         warnings
     }
 
-    /// Returns a warning about the rays of a ray file that are omitted.
+    /// Returns a warning about the rays of a ray file that are omitted because they do not go
+    /// forward.
     fn rays_behind(&self) -> Option<String> {
         let Light::Rays { rays } = &self.light else {
             return None;
@@ -73,9 +77,10 @@ impl Scene {
         })
     }
 
-    /// Returns the possible difference between photons and backward rays at a plane, as a share of
-    /// the spectrum. The cause is a smooth mesh before the plane that is too coarse (see
-    /// [`warnings`](Self::warnings)). Returns `None` if there is no such mesh.
+    /// Returns the possible difference between the spectra of photons and of backward rays at a
+    /// plane, as a share of the spectrum. The cause of such a difference is a smooth mesh before
+    /// the plane that is too coarse (see [`warnings`](Self::warnings)). Returns `None` if no
+    /// smooth mesh is before the plane.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
         let legs = 1..=plane.leg;
@@ -83,7 +88,8 @@ impl Scene {
         all.max_by(f64::total_cmp)
     }
 
-    /// Returns the smooth mesh at the beginning of a leg, and the difference it causes at a plane.
+    /// Returns the smooth mesh at the beginning of a leg, and the difference that this mesh
+    /// causes at a plane.
     fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
         let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
         let Object::Mesh(mesh) = legs[1].leaves?.object else {
@@ -95,11 +101,11 @@ impl Scene {
     }
 }
 
-/// The part of a smooth mesh that a window sees, with later surfaces treated as flat.
+/// The part of a smooth mesh that a window sees, if later surfaces are treated as flat.
 struct WindowView<'a> {
     mesh: &'a MeshObject,
     smooth: &'a SmoothMesh,
-    /// The frame at the hit, with D along the light that leaves the mesh.
+    /// The frame at the hit; its D points along the light that leaves the mesh.
     frame: Frame,
     /// The number 1 if light arrives along the normals of the mesh, and −1 if it arrives against
     /// them.
@@ -107,19 +113,19 @@ struct WindowView<'a> {
     plane: &'a VirtualPlane,
     /// The distance from the hit to the plane.
     along: f64,
-    /// Half the size of the visible part, along X and Y.
+    /// Half the size of the visible part of the mesh, along X and Y.
     half: [f64; 2],
 }
 
-/// Sums over points, or their spectra: those of the window, and those of the difference between
-/// photons and backward rays in the window.
+/// Sums over points of a mesh, or the spectra of these sums: one of the window, and one of the
+/// difference between photons and backward rays in the window.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
     difference: f64,
     whole: f64,
 }
 
-/// A wave with frequency Ω, and the spectra at that frequency.
+/// A plane wave with frequency Ω, and the two spectra at that frequency.
 struct Wave {
     frequency: [f64; 2],
     /// The number of waves represented: 2 if the complex conjugate is a different wave, otherwise
@@ -139,7 +145,7 @@ impl Wave {
     }
 }
 
-/// Returns the plane waves at the spatial frequencies of a virtual plane.
+/// Returns the plane waves whose frequencies are the spatial frequencies of a virtual plane.
 fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);
@@ -180,8 +186,8 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Returns the square root of the energy of the difference divided by the energy of the
-    /// window.
+    /// Returns the square root of the ratio of two energies: that of the difference and that of
+    /// the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);
@@ -206,7 +212,8 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Adds a piece of a triangle, divided into four until the pieces are small in the window.
+    /// Adds a piece of a triangle; the piece is repeatedly divided into four until it is small in
+    /// the window.
     fn add(
         &self,
         whole: &[DVec3; 3],
@@ -232,7 +239,7 @@ impl<'a> WindowView<'a> {
         let flat = (q - p).cross(r - p).normalize();
         let area = (b - a).cross(c - a).z.abs();
         let mut sums = WindowSums::default();
-        // The sum over three points of a triangle integrates squares exactly.
+        // The sum over three points of a triangle integrates quadratic functions exactly.
         for corner in piece {
             let point = (a + b + c + 3.0 * *corner) / 6.0;
             let normal = interpolated_normal(whole, normals, point);
@@ -246,7 +253,7 @@ impl<'a> WindowView<'a> {
         waves.iter_mut().for_each(|wave| wave.add(middle, &sums));
     }
 
-    /// Adds a ray that leaves a point.
+    /// Adds a ray that leaves a point of the mesh.
     fn point(
         &self,
         point: DVec3,

@@ -6,7 +6,7 @@ use etendue_scene::SceneFile;
 use std::fs;
 use std::path::Path;
 
-/// A small scene, field by field.
+/// A small valid scene, given field by field.
 const FIELDS: [(&str, &str); 5] = [
     ("light", "light: Point(center: (0, 0, 0))"),
     (
@@ -18,7 +18,7 @@ const FIELDS: [(&str, &str); 5] = [
     ("frequencies", "frequencies: (rho: (max: 8), nu: (max: 8))"),
 ];
 
-/// Returns the fields in a page's fragments of scenes; each begins a line.
+/// Returns the fragments of scene files on a page of the book; each fragment begins a line.
 fn fragments(page: &str) -> Vec<String> {
     let blocks = page.split("```ron fragment\n").skip(1);
     let mut fields: Vec<String> = Vec::new();

@@ -13,7 +13,7 @@ fn parse(name: &str, text: &str) -> Result<DetailedMesh, String> {
 #[test]
 fn corners_of_an_obj_file_are_split_where_they_differ() {
     let mesh = parse("a.OBJ", OBJ).unwrap();
-    // Vertex 2 has two normals; corner 3/3/1 occurs twice.
+    // Vertex 2 of this file has two normals, and the corner 3/3/1 occurs twice.
     assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 2]]);
     assert_eq!(mesh.vertices[1], mesh.vertices[3]);
     let normals = mesh.normals.unwrap();
@@ -22,7 +22,7 @@ fn corners_of_an_obj_file_are_split_where_they_differ() {
     let uvs = mesh.uvs.unwrap();
     assert_eq!(uvs[1], DVec2::new(1.0, 0.5));
     assert_eq!(uvs[2], DVec2::new(0.25, 0.0));
-    // The last corner but one has no texture coordinates.
+    // The second-last corner has no texture coordinates.
     assert_eq!(uvs[4], DVec2::ZERO);
     let plain = Mesh::parse("a.obj".as_ref(), OBJ.as_bytes()).unwrap();
     assert_eq!(plain.vertices().len(), 4);

@@ -1,4 +1,4 @@
-//! Tests scene files in JSON, as stored in results and as checked by editors with the schema.
+//! Tests scene files in JSON: as stored in results, and as editors check them with the schema.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -1,4 +1,5 @@
-//! Tests the limits on the size of a scene file, on its names, and on what messages show of it.
+//! Tests the limits on the size and the names of a scene file, and on the parts of it that
+//! messages show.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -35,7 +36,7 @@ fn resolved(text: &str) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, ".".as_ref(), u64::MAX)
 }
 
-/// Returns the error of the scene in which `from` is replaced by `to`.
+/// Returns the error that results if `from` is replaced by `to` in the scene.
 fn error(from: &str, to: &str) -> SceneError {
     assert!(text().contains(from), "{from} is not in the scene");
     resolved(&text().replacen(from, to, 1)).unwrap_err()
@@ -48,13 +49,13 @@ fn faults(from: &str, to: &str) -> Vec<Fault> {
     }
 }
 
-/// Returns a layer of the shapes that `shape` writes for 0 to `count`.
+/// Returns a layer of `count` shapes, each written by `shape` from its number.
 fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     let shapes: String = (0..count).map(|i| shape(i) + ",").collect();
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
 }
 
-/// Checks that work takes far less time than a comparison of every pair would.
+/// Checks that `work` takes far less time than a comparison of every pair would take.
 fn quickly<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let done = work();
@@ -86,7 +87,8 @@ fn the_last_pair_that_overlaps_is_found() {
             i => format!("Disc(center: ({}, {}), radius: 0.5)", i % 122, i / 122),
         })
     };
-    // The first disc fits in the gap between four discs; the second is slightly larger.
+    // The disc of the first radius fits in the gap between four discs; the disc of the second
+    // radius does not.
     for (radius, told) in [(0.207, None), (0.208, Some("shapes[17] and shapes[14999]"))] {
         let shapes = apart(&format!("Disc(center: (17.5, 0.5), radius: {radius})"));
         let text = text().replacen(BLOCKERS, &shapes, 1);
@@ -98,7 +100,7 @@ fn the_last_pair_that_overlaps_is_found() {
     }
 }
 
-/// Returns the fault of a layer of two squares and some half-planes, if any.
+/// Returns the fault of a layer of two squares and the given half-planes, if there is a fault.
 fn overlap_of(half_planes: &str) -> Option<String> {
     let squares =
         "Rectangle(center: (0, 0), size: (1, 1)), Rectangle(center: (2, 0), size: (1, 1)),";
@@ -271,7 +273,7 @@ fn the_scene_itself_has_a_name_that_can_be_a_folder() {
     }
 }
 
-/// Checks whether a message is short and safe for a terminal.
+/// Checks whether a message is short and has no characters that control a terminal.
 fn is_plain(message: &str) -> bool {
     let printable = |c: char| !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{fffe}');
     message.chars().count() < 3_000 && message.lines().all(|line| line.chars().all(printable))
@@ -332,7 +334,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // The brackets of this text are closed one by one, or all at the end.
+        // The brackets of this text are closed one by one, or all together at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {
@@ -369,7 +371,7 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The phase of this grating is not written; the next edit sets it.
+        // The scene file does not state the phase of this grating; the next edit sets the phase.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

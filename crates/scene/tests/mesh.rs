@@ -21,8 +21,8 @@ fn volume(mesh: &Mesh) -> f64 {
         .sum()
 }
 
-/// Checks whether every edge is traversed once in each direction, so that two triangles share it
-/// and agree on the outside.
+/// Checks whether triangles pass every edge exactly once in each direction, so that two triangles
+/// share each edge and agree on the outside.
 fn closed(mesh: &Mesh) -> bool {
     let mut edges: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     for [a, b, c] in mesh.triangles() {
@@ -34,8 +34,8 @@ fn closed(mesh: &Mesh) -> bool {
     edges.values().all(|walks| *walks == [1, 1])
 }
 
-/// Returns the Euler characteristic of a closed mesh, vertices less edges plus faces: 2 for a
-/// sphere's topology.
+/// Returns the Euler characteristic of a closed mesh, which is vertices − edges + faces: 2 for
+/// the topology of a sphere.
 fn euler(mesh: &Mesh) -> usize {
     mesh.vertices().len() + mesh.triangles().len() - mesh.triangles().len() * 3 / 2
 }
@@ -143,8 +143,8 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points agree with tobj's. Three things that tobj reads
-/// differently are left out: the `l` line, which tobj takes for a triangle, the colour, which tobj
+/// The triangles of an OBJ file as points agree with tobj's. The test omits three statements that
+/// tobj reads differently: the `l` line, which tobj takes for a triangle, the colour, which tobj
 /// requires on all vertices or none, and the continued line, which tobj refuses.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
@@ -280,7 +280,7 @@ fn faults_of_ply_files_are_told() {
     }
 }
 
-/// Binary files that are cut anywhere, or have impossible values, are refused.
+/// If a binary file is cut at any byte, or has impossible values, it is refused.
 #[test]
 fn faults_of_binary_ply_files_are_told() {
     let sound = Mesh::star(1.0, 0.0, 0, 2).unwrap().ply(); // 6 vertices, 8 triangles
@@ -318,8 +318,8 @@ fn faults_of_binary_ply_files_are_told() {
     }
 }
 
-/// A header with the line ends of another system precedes binary data, which begin directly after
-/// the last line end.
+/// If the header has the line ends of another system, the binary data begin directly after the
+/// header's last line end.
 #[test]
 fn binary_ply_behind_all_line_ends() {
     let mesh = Mesh::star(1.0, 0.0, 0, 2).unwrap();
@@ -336,8 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// A list with a stated length of four thousand million is read up to the end of the file, and no
-/// memory is allocated in advance.
+/// If a list states a length of four thousand million, it is read up to the end of the file, and
+/// no memory is allocated in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -407,8 +407,8 @@ fn no_bytes_make_a_reader_panic() {
             }
         }
     }
-    // Both outcomes must occur often; otherwise the files were changed too much or too little for
-    // the test.
+    // Fuzzed files must often be valid and often be faulty; otherwise they were changed too much
+    // or too little for the test.
     let often = |counts: [u32; 4]| counts.iter().all(|n| *n > 100);
     assert!(
         often(sound) && often(refused),
@@ -453,9 +453,9 @@ fn a_star_is_closed_outward_and_of_its_volume() {
     assert!(Mesh::star(1.0, 0.3, 5, 113).unwrap().triangles().len() >= 50_000);
 }
 
-/// The volume converges to that of the smooth surface as rings⁻²: the error is fourfold at half the
-/// rings, and extrapolation gives the closed form. (∫ over the sphere of (1 + ε sinˡθ cos lφ)³ / 3;
-/// odd powers of the cosine vanish.)
+/// The volume of the mesh converges to that of the smooth surface as rings⁻²: with half the rings
+/// the error is four times as large, and extrapolation gives the closed form. (∫ over the sphere
+/// of (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {
@@ -500,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// Checks what holds for every mesh, however it is made.
+/// Checks the properties of every mesh, however the mesh is made.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

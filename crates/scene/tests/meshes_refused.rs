@@ -1,5 +1,5 @@
-//! Tests meshes that a scene cannot use: which vertex or triangle is reported, and what is dropped
-//! or causes a warning instead.
+//! Tests meshes that a scene cannot use: which vertex or triangle is reported, and which
+//! triangles are dropped or cause a warning instead.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -11,7 +11,7 @@ use std::path::Path;
 const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0.1\n";
 const ROOF: &str = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 
-/// Returns a scene with a mesh below a light, and further text.
+/// Returns a scene file with a mesh below a light; `rest` is appended to the file.
 fn text(mesh: &str, rest: &str) -> String {
     format!(
         r#"(
@@ -30,7 +30,7 @@ fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
 }
 
-/// Returns the result for a file with this content.
+/// Returns the scene, or the error, for a mesh file with the given content.
 fn file(name: &str, content: &str, rest: &str) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), content).unwrap();
@@ -112,7 +112,8 @@ fn vertices_beyond_all_coordinates_are_named() {
     );
 }
 
-/// Long thin triangles of real files are dropped; a mesh that consists only of them is refused.
+/// The long thin triangles of real files are dropped; a mesh that consists only of such triangles
+/// is refused.
 #[test]
 fn triangles_too_thin_are_dropped_or_named() {
     let sliver = format!("{SQUARE}v 0 -1.00000000000001 0\n{ROOF}f 1 6 2\n");
@@ -132,10 +133,12 @@ fn triangles_too_thin_are_dropped_or_named() {
     );
 }
 
-/// Another part of a mesh may stand in front of the part that is hit, and face the other way.
+/// Another part of the mesh may stand in front of the part that is hit, and may face the other
+/// way.
 #[test]
 fn the_side_of_a_hit_is_that_of_its_own_triangle() {
-    // A roof that faces down and, beside the path, a plate above the hit that faces up.
+    // The mesh is a roof that faces down and, beside the path, a plate above the hit that faces
+    // up.
     let roof = "v -1 -1 -0.5\nv 1 -1 -0.5\nv 1 1 -0.5\nv -1 1 -0.5\nv 0 0 -0.4\n";
     let above = "v -0.1 0.1 0.3\nv 0.1 0.1 0.3\nv 0.1 0.4 0.3\nv -0.1 0.4 0.3\n";
     let faces = "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
@@ -158,7 +161,8 @@ fn a_header_of_any_length_is_read_in_proportion() {
         assert!(fault.to_string().len() < 500, "{fault}");
         start.elapsed().as_secs_f64()
     };
-    // 60,000 names took 6 s when each name was compared with all previous ones.
+    // When each of 60,000 names was compared with all previous names, reading the header took 6
+    // s.
     let properties = header(200_000, &|i| format!("property int p{i}\n"));
     let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
     assert!(seconds(&properties) < 2.0);
@@ -170,8 +174,8 @@ fn a_header_of_any_length_is_read_in_proportion() {
     assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
 }
 
-/// The levels are the differences of photons and backward rays: 3 % with two cells, and below what
-/// 4e7 photons detect with eight.
+/// The relative difference between photons and backward rays is 3 % with two cells; with eight
+/// cells, it is below the difference that 4e7 photons detect.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

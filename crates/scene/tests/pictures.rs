@@ -35,7 +35,7 @@ fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
 }
 
-/// Writes channels of one size.
+/// Writes an OpenEXR file of channels with the same size.
 fn write_exr(
     file: &Path,
     size: [usize; 2],
@@ -60,7 +60,7 @@ fn singles(values: &[f64]) -> FlatSamples {
     FlatSamples::F32(values.collect())
 }
 
-/// Writes levels of two rows of three pixels.
+/// Writes a PNG file of two rows of three pixels.
 fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[u8]) {
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(file).unwrap()), 3, 2);
     encoder.set_color(color);
@@ -104,12 +104,12 @@ fn lobes_are_where_the_axes_put_them() {
     let folder = folder();
     let scene = resolved(&text(LOBES), folder.path()).unwrap();
     let found = environment(&scene);
-    // `up` is exact, and `front` is adjusted.
+    // In this environment, `up` is used exactly, and `front` is adjusted.
     let up = DVec3::new(0.0, 1.0, 0.2).normalize();
     assert!((found.frame.y - up).length() < 1e-15 && found.frame.d.z < -0.9); // rounding
     assert!((found.frame.x.cross(found.frame.y) - found.frame.d).length() < 1e-15); // likewise
-    // Straight above, the radiance is three times that of a lobe of 1, plus the tail of the other
-    // lobe.
+    // In the direction of `up`, the radiance is three times that of a lobe of radiance 1, plus
+    // the tail of the other lobe.
     let other = ((0.1 / 1.05_f64.sqrt() - 1.0) / 0.09).exp();
     let expected = 3.0 + 6.0 * other;
     assert!((found.radiance(-up) - expected).abs() < 1e-13); // rounding
@@ -121,7 +121,7 @@ fn maps_come_back_as_they_were_written() {
     let folder = folder();
     let file = folder.path().join("sky.exr");
     let map = LatLong::from_fn(16, 8, |d| {
-        // Numbers that f16 represents exactly.
+        // All pixel values are numbers that f16 represents exactly.
         ((2.0 + d.x + 0.5 * d.y) * 64.0).round() / 64.0
     });
     let values = map.raster().values();
@@ -147,7 +147,7 @@ fn maps_come_back_as_they_were_written() {
         };
         assert_eq!((found.raster().width(), found.raster().height()), (16, 8));
         for (a, b) in found.raster().values().iter().zip(&wanted) {
-            // The limit is the rounding error of the weights of red, green and blue.
+            // The tolerance is the rounding error of the weights of red, green and blue.
             assert!((a - b).abs() < 1e-14, "{a} {b}");
         }
         assert_eq!(
@@ -155,7 +155,7 @@ fn maps_come_back_as_they_were_written() {
             ["sky.exr", "wall.png"]
         );
     }
-    // Each channel has its weight.
+    // Each channel of the picture has its own weight in luminance.
     let channels = vec![
         ("R", singles(&[1.0, 0.0, 0.0])),
         ("G", singles(&[0.0, 1.0, 0.0])),
@@ -200,12 +200,12 @@ fn png_levels_are_read_as_they_are() {
         let scene = resolved(&text(LOBES), folder.path()).unwrap();
         let found = texture(&scene);
         assert_eq!((found.width(), found.height()), (3, 2));
-        // The limit is the rounding error.
+        // The tolerance is the rounding error of one value.
         assert!((found.values()[4] - last).abs() < 1e-15, "{found:?}");
     }
 }
 
-/// Each case: the replaced text, its replacement, and the beginning of the message.
+/// For each case: the text that is replaced, its replacement, and the beginning of the message.
 const BAD: &[(&str, &str, &str)] = &[
     (
         "up: (0, 1, 0.2)",

@@ -1,5 +1,5 @@
-//! Tests that files named by a scene are read only from below its folder, with links followed, and
-//! only if they are regular.
+//! Tests that a file named by a scene is read only if it is regular and, with links followed,
+//! below the scene's folder.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// Returns a folder `scene` with a mesh, and a folder `secret` beside it.
+/// Returns a folder with two folders in it: `scene`, which holds a mesh, and `secret`.
 fn folders() -> tempfile::TempDir {
     let top = tempfile::tempdir().unwrap();
     let at = |name: &str| top.path().join(name);
@@ -54,7 +54,7 @@ fn links_do_not_lead_out_of_the_scene_s_folder() {
         );
         assert!(!told.contains("secret") && !told.contains('='), "{told}");
     }
-    // Links that stay below the folder, and a folder that is itself a link, are accepted.
+    // If a link stays below the folder, or if the folder is itself a link, the file is accepted.
     symlink("meshes/tri.obj", scene.join("inside.obj")).unwrap();
     symlink("scene", top.path().join("other")).unwrap();
     for (mesh, folder) in [("inside.obj", "scene"), ("meshes/tri.obj", "other")] {

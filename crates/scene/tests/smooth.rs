@@ -1,5 +1,5 @@
-//! Tests smooth surfaces, pictures and planes on surfaces: what they resolve to, and what is
-//! refused.
+//! Tests smooth surfaces, pictures and planes on surfaces: which objects they resolve to, and
+//! which are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -54,8 +54,8 @@ fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
     let [a, b, c, _] = scene.planes.as_slice() else {
         panic!("four planes");
     };
-    // The central ray comes from the side of −X, and T is rotated to −X: longitude θ₀ before, −θ₀
-    // after.
+    // The central ray comes from the side of −X, and T is rotated to −X, so the longitude θ₀
+    // changes its sign.
     let angle = 0.6_f64.asin();
     assert!((a.longitude.abs() - angle).abs() < 1e-12, "{}", a.longitude); // rounding
     assert!((a.longitude + b.longitude).abs() < 1e-12); // rounding
@@ -67,7 +67,7 @@ fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
         (b.orientation, c.orientation),
         (Orientation::LocalNormals, Orientation::Orthogonal)
     );
-    // T is rotated to −X at normal incidence, so it is never along X.
+    // At normal incidence T is rotated to −X, so T never points along X.
     assert!(a.frame.x.dot(scene.path.frame.x) < 0.0);
 }
 
@@ -81,13 +81,14 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
     let scene = resolved(&text).unwrap();
     let hit = scene.path.legs[2].leaves.unwrap();
     let patch = scene.meshes[0].osculating(&hit).unwrap();
-    // The sphere has a radius of 0.2 m and triangles of 1 cm. The fit extends over 6 of them, where
-    // (r/R)² is a tenth and a paraboloid departs from the sphere.
+    // The sphere has a radius of 0.2 m and triangles of 1 cm. The fit extends over 6 edges of
+    // triangles, where (r/R)² is a tenth and the sphere departs from a paraboloid.
     for k in &patch.curvature[..2] {
         assert!((k / 5.0 - 1.0).abs() < 0.1, "{k}");
     }
     let outward = (hit.point - scene.meshes[0].center).normalize();
-    // Interpolation has an error of the square of a triangle's size over the radius.
+    // The error of interpolation is the square of a triangle's size divided by the radius of the
+    // sphere.
     assert!(
         hit.normal.dot(outward) > 1.0 - 1e-5,
         "{}",
@@ -107,15 +108,15 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
         .unwrap();
     let mut found = [patch.curvature[0], patch.curvature[1]];
     found.sort_by(f64::total_cmp);
-    // Vertices lie on a paraboloid: the fit is exact at its vertex, except that the ray ends on a
-    // facet (some 1e-5 m inside).
+    // The vertices of the mesh lie on a paraboloid, so the fit is exact at its vertex, except
+    // that the ray ends on a facet (some 1e-5 m inside).
     assert!(
         (found[0] + 0.5).abs() < 1e-4 && (found[1] - 0.3).abs() < 1e-4,
         "{found:?}"
     );
 }
 
-/// Each case: the replaced text, its replacement, and the reported field.
+/// For each case: the text that is replaced, its replacement, and the reported field.
 const BAD: &[(&str, &str, &str)] = &[
     (
         "facing: (0.6, 0, -0.8)",

@@ -1,5 +1,5 @@
-//! Tests lights, blockers, surfaces and planes of every kind: what they resolve to, and what is
-//! refused.
+//! Tests lights, blockers, surfaces and planes of every kind: which objects they resolve to, and
+//! which are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -61,7 +61,8 @@ fn everything_resolves_to_what_it_says() {
     let Mask::Grating(grating) = grating.mask else {
         panic!("a grating: {grating:?}");
     };
-    // ½ (1 + m cos(2πf (x − 0.25) + p)) about the grating's own origin.
+    // The expected transmittance is ½ (1 + m cos(2πf (x − 0.25) + p)) about the grating's own
+    // origin.
     assert!((grating.transmittance(0.25, 7.0) - 0.5 * (1.0 + 0.5 * 0.1_f64.cos())).abs() < 1e-14); // rounding
     let star = &scene.meshes[0];
     assert_eq!(star.triangles.len(), 4 * 10 * 9);
@@ -76,14 +77,14 @@ fn everything_resolves_to_what_it_says() {
         (Side::Before, 0, Quantity::DifferentialIrradiance)
     );
     assert_eq!(places[3], (Side::After, 1, Quantity::Radiance));
-    // The light that travels back reaches the grating.
+    // On its way back, the light reaches the grating.
     assert!((scene.path.legs[1].length - 0.8).abs() < 1e-15); // rounding
     let back = &scene.planes[4].frame;
     assert!((back.origin.z - 1.5).abs() < 1e-15 && back.d.z < 0.0 && back.x.x < 0.0); // rounding
     assert!((back.x.cross(back.y) - back.d).length() < 1e-15); // rounding
 }
 
-/// Each case: the replaced text, its replacement, and the reported field.
+/// For each case: the text that is replaced, its replacement, and the reported field.
 const BAD: &[(&str, &str, &str)] = &[
     ("bulb: Disc(0.1)", "bulb: Disc(0)", "light.bulb"),
     ("bulb: Disc(0.1)", "bulb: Square(-1)", "light.bulb"),
@@ -161,14 +162,14 @@ const BAD: &[(&str, &str, &str)] = &[
         "center: (0, inf, 0.5)",
         "blockers[2].center[1]",
     ),
-    // A grating stands at 1.2 m, and shapes at 1 m, beside the ray.
+    // A grating stands at 1.2 m, and shapes stand at 1 m beside the central ray.
     ("Distance(2.5)", "Distance(2.9)", "planes[4].at"),
     ("Distance(2.5)", "Distance(2)", "planes[4].at"),
     ("After(\"star\")", "After(\"moon\")", "planes[1].at"),
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
-/// More cases of refused scenes, for a path over an oblique wall to a floor.
+/// More refused scenes, for a path over an oblique wall to a floor.
 const BAD_PATHS: &[(&str, &str, &str)] = &[
     (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
     (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),
@@ -176,19 +177,19 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     (VISITS, "visits: []", "path.visits"),
     (VISITS, "visits: [\"floor\"]", "path.visits[0]"),
     (VISITS, "visits: [\"wall\", \"roof\"]", "path.visits[1]"),
-    // Directions behind the floor and along the floor, and the zero vector.
+    // The refused directions point behind the floor or along the floor, or are the zero vector.
     (VISITS, LEAVES[0], "path.leaves"),
     (VISITS, LEAVES[1], "path.leaves"),
     (VISITS, LEAVES[2], "path.leaves"),
     (VISITS, LEAVES[3], "path.leaves[2]"),
-    // Cases in which the floor lies behind the wall, or behind a card.
+    // In these cases the floor lies behind the wall or behind a card.
     (
         "center: (1.5, 0, 2)",
         "center: (-1.5, 0, 2)",
         "path.visits[1]",
     ),
     ("surfaces: [", CARD, "path.visits[1]"),
-    // The last leg goes straight back, and meets the wall at 5 m.
+    // The last leg goes straight back, and meets the wall at a distance of 5 m.
     ("Distance(4)", "Distance(5)", "planes[5].at"),
     ("Distance(4)", "Distance(3.5)", "planes[5].at"),
     ("After(\"wall\")", "After(\"roof\")", "planes[1].at"),
@@ -254,7 +255,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // Planes and visits that refer to this object are not reported too.
+        // If planes or visits refer to this object, they are not reported as faulty too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"
@@ -329,7 +330,7 @@ fn a_plane_beyond_blockers_that_the_central_ray_misses() {
         let star = text.find("    Mesh(name: \"star\"").unwrap();
         let planes = text.find("    (name: \"star\", at").unwrap();
         let irradiance = text.find("    (name: \"irradiance\"").unwrap();
-        // Without the grating and the mesh the ray meets only the light.
+        // Without the grating and the mesh, the central ray meets only the light.
         let text = [
             &text[..grating],
             &text[text[star..].find("],").unwrap() + star..planes],

@@ -1,5 +1,5 @@
-//! Bandwidths of slices: the frequency below which most of the power lies, at the azimuth where it
-//! is largest.
+//! Computes bandwidths of slices: the frequency below which most of the power lies, at the
+//! azimuth at which this frequency is largest.
 
 use etendue_field::{FrequencyAxis, SliceGrid};
 use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
@@ -10,12 +10,12 @@ pub const BANDWIDTH_FRACTION: f64 = 0.95;
 /// The bandwidth of one slice along one of its axes: [`bandwidth_rho`] or [`bandwidth_nu`].
 pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
 
-/// The largest bandwidth over azimuths, with its azimuth.
+/// The largest of the bandwidths at all azimuths, with its azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Widest<T> {
     /// The azimuth, radians.
     pub azimuth: f64,
-    /// The bandwidth at that azimuth.
+    /// The bandwidth at the azimuth of the largest bandwidth.
     pub value: T,
 }
 
@@ -31,8 +31,8 @@ pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64)
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several are
-/// equal, the first.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several
+/// azimuths have the largest bandwidth, returns the first of them.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,
@@ -44,7 +44,7 @@ pub fn widest(
     Some(Widest { azimuth, value })
 }
 
-/// Returns the index of the slice with the largest bandwidth, and that bandwidth.
+/// Returns the index of the slice with the largest bandwidth, and the bandwidth of this slice.
 pub(crate) fn widest_slice(
     power: ArrayView3<'_, f64>,
     grid: &SliceGrid,
@@ -57,13 +57,13 @@ pub(crate) fn widest_slice(
     each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
 }
 
-/// Returns the smallest B for which the power at |frequency| ≤ B is at least `fraction` of the
-/// total.
+/// Returns the smallest frequency B for which the power at |frequency| ≤ B is at least `fraction`
+/// of the total power.
 ///
 /// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency
-/// is spread uniformly over its cell, half a step to either side, so within a cell the enclosed
-/// power grows linearly with B. B has the unit of the axis. Returns `None` if the total is not
-/// positive.
+/// is spread uniformly over a cell that extends half a step to either side of the frequency, so
+/// within a cell the enclosed power grows linearly with B. B has the unit of the axis. Returns
+/// `None` if the total power is not positive.
 #[must_use]
 pub fn bandwidth(
     marginal: ArrayView1<'_, f64>,
@@ -77,7 +77,8 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Adds both cells at this distance from zero; the cell of zero extends to both sides.
+        // Adds the two cells at this distance from zero; the single cell at zero extends to both
+        // sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (
@@ -91,7 +92,8 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Only rounding errors lead here, because the total power exceeds every fraction of itself.
+    // The loop ends here only because of rounding errors, because the total power exceeds every
+    // fraction of itself.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 
@@ -107,7 +109,8 @@ mod tests {
 
     #[test]
     fn bandwidths_of_known_powers() {
-        // The power is uniform over 81 cells of width 0.25, and the share 0.95 is inside.
+        // The power is uniform over 81 cells of width 0.25, and 0.95 of it is within the
+        // bandwidth.
         let flat = bandwidth(Array1::ones(81).view(), &axis(40, 0.25), 0.95).unwrap();
         assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
         let of =
@@ -146,8 +149,8 @@ mod tests {
         sinc(2.0 * f) + 0.5 * (sinc(2.0 * f - 1.0) + sinc(2.0 * f + 1.0))
     }
 
-    /// Returns the power of a Hann window alone, or of a sine of contrast 1 under it, along one
-    /// axis.
+    /// Returns the power along one axis of a Hann window alone, or of a sine of contrast 1
+    /// multiplied by the window.
     fn seen(frequency: Option<f64>, axis: &FrequencyAxis) -> Array1<f64> {
         let values = axis.values().into_iter();
         let sides = |f: f64| frequency.map_or(0.0, |at| 0.5 * (hann(f - at) + hann(f + at)));
@@ -156,20 +159,20 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // The bandwidth is 0.55722 by the midpoint rule with 4·10⁴ points up to 20; it is 6.12 if
-        // the half-width is 0.09105.
+        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722; for a
+        // half-width of 0.09105 it is 6.12.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();
-            // The curvature of the power within a cell causes this error.
+            // The tolerance allows for the curvature of the power within a cell.
             assert!((found - 0.557_22).abs() < error, "{spacing}: {found}");
         }
     }
 
     #[test]
     fn a_bandwidth_is_not_below_the_signal() {
-        // A third of the power is around the frequency of the sine, and no more than a twentieth of
-        // the total is left out.
+        // A third of the power is near the frequency of the sine, and no more than a twentieth of
+        // the total power is outside the bandwidth.
         for frequency in [1.5, 3.04, 4.7] {
             let axis = axis(24, 0.25);
             let found = bandwidth(seen(Some(frequency), &axis).view(), &axis, 0.95).unwrap();

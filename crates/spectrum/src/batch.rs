@@ -1,12 +1,12 @@
-//! The measurement of one batch of photons, whole or in part.
+//! Defines the measurement of one batch of photons, of all its parts or of some.
 
 use crate::ray_moments::RayMoments;
 use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
 /// The measurement of one batch of photons at one plane.
 ///
-/// Slices and projection are sums over the batch divided by its number of emitted photons, so each
-/// batch is an unbiased estimate by itself.
+/// Slices and projection are sums over the batch, divided by the number of photons that the batch
+/// emitted, so each batch gives an unbiased estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneBatch {
     /// Number of photons that crossed the plane, inside and outside its window.
@@ -20,7 +20,7 @@ pub struct PlaneBatch {
 }
 
 impl PlaneBatch {
-    /// Adds the measurement of another part of the batch.
+    /// Adds the measurement of another part of the same batch at this plane.
     fn add(&mut self, other: &Self) {
         self.tally.add(&other.tally);
         self.slices.half += &other.slices.half;
@@ -31,7 +31,7 @@ impl PlaneBatch {
 }
 
 impl Batch {
-    /// Adds the measurement of another part of the batch.
+    /// Adds the measurement of another part of the same batch at all planes.
     pub(crate) fn add(&mut self, other: &Self) {
         self.ledger.add(&other.ledger);
         let planes = self.planes.iter_mut().zip(&other.planes);
@@ -39,29 +39,29 @@ impl Batch {
     }
 }
 
-/// The measurement of one batch of photons: a replicate, independent of all others.
+/// The measurement of one batch of photons, which is independent of all other batches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
     /// Number of the batch.
     pub index: u32,
     /// Number of photons emitted, including those that end with zero weight.
     pub emitted: u64,
-    /// The ledger of their flux.
+    /// The ledger of the emitted photons' flux.
     pub ledger: Ledger,
     /// One entry for each virtual plane, in the order of the measurement's planes.
     pub planes: Vec<PlaneBatch>,
 }
 
-/// The sum, in order, of the first parts of a batch. A measurement that continues from this sum
-/// gives bitwise the same result as an uninterrupted measurement.
+/// The sum of the first parts of a batch, added in order. A measurement that continues from this
+/// sum gives bitwise the same result as an uninterrupted measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartialBatch {
     /// The number of the batch.
     pub index: u32,
-    /// Number of parts in the sum.
+    /// Number of parts of the batch in the sum.
     pub parts: u32,
-    /// The sum, or `None` if there are no parts. Like all sums, it is per photon of the whole
-    /// batch.
+    /// The sum of the parts, or `None` if there are no parts. Like all sums, this sum is divided
+    /// by the number of photons of the complete batch.
     pub sum: Option<Batch>,
 }
 
@@ -76,7 +76,7 @@ impl PartialBatch {
         }
     }
 
-    /// Adds the next part.
+    /// Adds the next part of the batch.
     pub(crate) fn add(&mut self, part: Batch) {
         self.parts += 1;
         match &mut self.sum {

@@ -1,4 +1,4 @@
-//! The covariance of a light field over its rays, with errors.
+//! Estimates the covariance of a light field over its rays, with standard errors.
 
 use crate::estimate::TooFewBatches;
 use crate::jackknife::Jackknife;

@@ -1,10 +1,10 @@
-//! Bandwidths of a picture along each of its directions.
+//! Computes bandwidths of a picture along each direction in the plane of its two slopes.
 //!
-//! A picture is a windowed function of two slopes. Its 2D spectrum is measured along lines through
-//! zero, one for each azimuth: slices with ρ = 0 alone. [`DirectionalBandwidth`] has, for each
-//! direction e, the smallest B for which the power at |ν · e| > B is at most a twentieth of the
-//! total. Each frequency stands for its polar cell, whose power is spread uniformly over the range
-//! of ν · e in the cell.
+//! A picture is a windowed function of two slopes. Its 2D spectrum is measured along lines
+//! through zero, one line for each azimuth: slices with ρ = 0 alone. [`DirectionalBandwidth`]
+//! has, for each direction e, the smallest B for which the power at |ν · e| > B is at most a
+//! twentieth of the total. Each frequency represents its polar cell, whose power is spread
+//! uniformly over the range of ν · e within the cell.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
 use crate::estimate::TooFewBatches;
@@ -20,9 +20,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionalBandwidth {
     /// The bandwidths, cycles per unit slope, at the azimuths π k / K.
     pub along: Vec<f64>,
-    /// The largest bandwidth, with its azimuth in radians; if several are equal, the first.
+    /// The largest bandwidth, with its azimuth in radians; if several azimuths have the largest
+    /// bandwidth, the first of them.
     pub widest: Widest<Uncertain>,
-    /// The bandwidth across the direction of the largest bandwidth.
+    /// The bandwidth along the direction perpendicular to that of the largest bandwidth.
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
@@ -33,12 +34,12 @@ pub struct DirectionalBandwidth {
 impl DirectionalBandwidth {
     /// Computes the bandwidths of independent measurements of one picture.
     ///
-    /// Returns `None` if the total power is not positive for all measurements together, or with
-    /// one measurement left out.
+    /// Returns `None` if the total power is not positive, either for all measurements together or
+    /// if any one measurement is left out.
     ///
     /// # Errors
     ///
-    /// Fails with fewer than three measurements.
+    /// Fails if there are fewer than three measurements.
     ///
     /// # Panics
     ///
@@ -70,7 +71,7 @@ impl DirectionalBandwidth {
         Ok(Some(found))
     }
 
-    /// Returns the bandwidths of a window alone, without errors.
+    /// Returns the bandwidths of the spectrum of a window alone, without errors.
     ///
     /// # Panics
     ///
@@ -111,7 +112,7 @@ impl DirectionalBandwidth {
     }
 }
 
-/// The power of a picture in polar cells.
+/// The power of a picture, divided into polar cells.
 struct PolarPower<'a> {
     grid: &'a SliceGrid,
     cells: Vec<PolarCell>,
@@ -119,7 +120,7 @@ struct PolarPower<'a> {
 }
 
 impl<'a> PolarPower<'a> {
-    /// Returns `None` if there is no power.
+    /// Returns `None` if the total power is not positive.
     fn new(power: ArrayView3<'_, f64>, grid: &'a SliceGrid) -> Option<Self> {
         assert_eq!(
             grid.rho.half, 0,
@@ -147,9 +148,9 @@ struct PolarCell {
     azimuth: f64,
     /// The frequency along the azimuth.
     nu: f64,
-    /// Half of the cell's sides, along the azimuth and across it.
+    /// Half of the lengths of the cell's sides, along the azimuth and perpendicular to it.
     half: [f64; 2],
-    /// ∫ |F|² over the cell.
+    /// The power in the cell, ∫ |F|².
     power: f64,
 }
 
@@ -158,7 +159,7 @@ impl PolarCell {
         let nu = grid.nu.value(n);
         let turn = PI / grid.azimuths as f64;
         let step = grid.nu.spacing;
-        // The cells at zero share a disc of radius step / 2.
+        // At frequency zero, the cells of all azimuths share a disc of radius step / 2.
         let area = if n == grid.nu.half {
             0.25 * step * step * turn
         } else {
@@ -173,20 +174,21 @@ impl PolarCell {
     }
 }
 
-/// The power at |ν · e| below each of many limits.
+/// The cumulative power: the power at |ν · e| below each of many limits.
 struct Cumulative {
     step: f64,
-    /// The power between one limit and the next.
+    /// The power between each limit and the next limit.
     bins: Vec<f64>,
 }
 
-/// Number of bins for each step of the grid.
+/// Number of bins per frequency step of the grid.
 const BINS: f64 = 8.0;
 
 impl Cumulative {
     fn new(grid: &SliceGrid) -> Self {
         let step = grid.nu.spacing / BINS;
-        // A cell ends beyond the last frequency by at most half a step and the length of its side.
+        // A cell extends beyond the last frequency by at most half a step plus the length of the
+        // cell's side.
         let most = 2.0 * (grid.nu.max() + grid.nu.spacing);
         Self {
             step,
@@ -200,7 +202,7 @@ impl Cumulative {
         let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
         let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
         let per_bin = cell.power / (high - low);
-        // The part of the range below zero is reflected to positive frequencies.
+        // The part of the cell's range below zero is reflected to positive frequencies.
         for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
             if high <= low {
                 continue;
@@ -213,7 +215,7 @@ impl Cumulative {
         }
     }
 
-    /// Returns the first limit below which there is this power.
+    /// Returns the first limit below which the power is at least `wanted`.
     fn reaches(&self, wanted: f64) -> f64 {
         let mut within = 0.0;
         for (bin, power) in self.bins.iter().enumerate() {
@@ -222,7 +224,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // Only rounding errors lead to this line.
+        // This line is reached only because of rounding errors.
         self.bins.len() as f64 * self.step
     }
 }
@@ -258,8 +260,8 @@ mod tests {
         }
     }
 
-    /// Returns the spectrum of a + b cos(2π f · (u, v)) behind the window, over that of the point
-    /// in x.
+    /// Returns the spectrum of a + b cos(2π f · (u, v)) behind the window, divided by the
+    /// spectrum of the point in x.
     fn wave(mean: f64, contrast: f64, frequency: [f64; 2]) -> Slices {
         let (grid, window) = (grid(), window());
         let mut slices = Slices::zeros(grid);
@@ -286,15 +288,16 @@ mod tests {
     #[test]
     fn a_window_has_the_bandwidth_of_its_profile() {
         let found = DirectionalBandwidth::of_window(&window(), &grid());
-        // 0.55722 along the axes by the midpoint rule; the polar cells spread it by up to 2 %.
+        // The expected bandwidth is 0.55722 along the axes by the midpoint rule; the polar cells
+        // change it by up to 2 %.
         for azimuth in [0.0, FRAC_PI_2] {
             let value = found.at(azimuth);
             assert!((value - 0.557).abs() < 0.012, "{value}");
         }
     }
 
-    /// Without the mean, the bandwidth of a sine is its frequency plus the window's main lobe, at
-    /// any azimuth. The bandwidth along e is the bandwidth of the component f · e.
+    /// Without the mean, the bandwidth of a sine is the frequency of the sine plus the window's
+    /// main lobe, at any azimuth. The bandwidth along e is the bandwidth of the component f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {
         for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {
@@ -319,8 +322,8 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // If the mean is not removed, it hides the bandwidth. Removing it a second time has no
-        // effect.
+        // If the mean is not removed, it hides the bandwidth of the sine. If the mean is removed
+        // a second time, the result does not change.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

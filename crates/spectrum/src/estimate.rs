@@ -1,4 +1,4 @@
-//! Means over batches with their standard errors.
+//! Estimates means over batches with their standard errors.
 
 use crate::measurement::Measurement;
 use etendue_field::{Complex, Projection, Slices};
@@ -7,29 +7,30 @@ use ndarray::{Array2, Array3};
 /// The measured slices of a plane.
 ///
 /// The mean over batches is unweighted. This mean is unbiased because each batch is unbiased, even
-/// if the batches differ in size. Batches differ by one emitted photon at most, so weights would
-/// gain nothing.
+/// if the batches differ in size. The numbers of emitted photons of any two batches differ by at
+/// most one, so weights would gain nothing.
 #[derive(Clone, Debug)]
 pub struct SliceEstimate {
-    /// Number R of batches.
+    /// The number R of batches.
     pub batches: usize,
-    /// The mean S̄ of the batches S_r.
+    /// The mean S̄ of the slices S_r of the batches.
     pub mean: Slices,
-    /// The variance σ² of the mean (docs/theory.md (12)): E|S̄ − E S̄|², whose unbiased estimate is
-    /// Σ|S_r − S̄|²/(R(R−1)), also if the batches differ in size. [azimuth, ρ ≥ 0, ν].
+    /// The variance σ² of the mean (docs/theory.md (12)): E|S̄ − E S̄|², with the unbiased
+    /// estimate Σ|S_r − S̄|²/(R(R−1)), which also holds if the batches differ in size. [azimuth,
+    /// ρ ≥ 0, ν].
     pub variance: Array3<f64>,
 }
 
 /// A measured projection.
 #[derive(Clone, Debug)]
 pub struct ProjectionEstimate {
-    /// The mean over batches.
+    /// The mean projection over batches.
     pub mean: Projection,
-    /// The standard error of each cell, [x, u].
+    /// The standard error of the mean in each cell, [x, u].
     pub standard_error: Array2<f64>,
 }
 
-/// There are too few batches to estimate an error.
+/// The error if there are too few batches to estimate a standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{have} batches are too few for an error: at least {need} are needed")]
 pub struct TooFewBatches {
@@ -54,7 +55,7 @@ impl TooFewBatches {
 ///
 /// # Errors
 ///
-/// Fails with fewer than two batches.
+/// Fails if there are fewer than two batches.
 pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, TooFewBatches> {
     TooFewBatches::check(measurement, 2)?;
     let batches = measurement.batches().len();
@@ -83,12 +84,12 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 }
 
 /// Returns the relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
-/// independent frequencies. Returns `None` if no photon arrived, or if there is more noise than
-/// light.
+/// independent frequencies. Returns `None` if no photon arrived, or if the estimated noise Σσ²
+/// exceeds the power Σ|S̄|².
 ///
 /// # Errors
 ///
-/// Fails with fewer than two batches.
+/// Fails if there are fewer than two batches.
 pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let SliceEstimate { mean, variance, .. } = slices(measurement, plane)?;
     let (mut noise, mut both) = (0.0, 0.0);
@@ -106,7 +107,7 @@ pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, Too
 ///
 /// # Errors
 ///
-/// Fails with fewer than two batches.
+/// Fails if there are fewer than two batches.
 pub fn projection(
     measurement: &Measurement,
     plane: usize,

@@ -1,14 +1,14 @@
-//! The light field in cells of x and u.
+//! Sums the light field in cells of x and u.
 
 use etendue_field::{Projection, ProjectionGrid, TwoPlane};
 use ndarray::Array2;
 
-/// A partial sum of weighted rays, to become a [`Projection`], the primal counterpart of the slice
-/// at azimuth 0.
+/// A partial sum of weighted rays that becomes a [`Projection`], the counterpart in (x, u) of the
+/// slice at azimuth 0.
 #[derive(Clone, Debug)]
 pub struct ProjectionHistogram {
     grid: ProjectionGrid,
-    /// Σ w over the rays of each cell, [x, u].
+    /// The sum of the weights w of the rays in each cell, [x, u].
     sums: Array2<f64>,
 }
 
@@ -30,9 +30,10 @@ impl ProjectionHistogram {
         }
     }
 
-    /// Returns Σ w · `scale` / (area of a cell) for each cell, and empties the histogram.
+    /// Returns Σ w · `scale` / (area of a cell) for each cell, and sets the histogram to zero.
     ///
-    /// With `scale` = 1/emitted the result estimates the mean of ∫∫ L W dy dv over each cell.
+    /// If `scale` is 1/(number of emitted photons), the result estimates the mean of ∫∫ L W dy dv
+    /// over each cell.
     #[must_use]
     pub fn finish(&mut self, scale: f64) -> Projection {
         let values = &self.sums * (scale / self.grid.cell_area());

@@ -1,8 +1,8 @@
-//! Standard errors by the delete-one jackknife over batches.
+//! Computes standard errors by the delete-one jackknife over batches.
 
 use ndarray::{Array, Dimension};
 
-/// A number with its standard error.
+/// A number and its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertain {
     /// The number.
@@ -11,8 +11,8 @@ pub struct Uncertain {
     pub error: f64,
 }
 
-/// The delete-one jackknife: the variance of an estimate from its values θ_r with batch r left out,
-/// (R−1)/R Σ (θ_r − θ̄)² (Efron and Stein 1981).
+/// The delete-one jackknife: it computes the variance of an estimate, (R−1)/R Σ (θ_r − θ̄)², from
+/// the values θ_r of the estimate with batch r left out (Efron and Stein 1981).
 ///
 /// The jackknife receives the values one after another and keeps running sums (Welford 1962).
 pub(crate) struct Jackknife<D: Dimension> {
@@ -31,7 +31,7 @@ impl<D: Dimension> Jackknife<D> {
         }
     }
 
-    /// Adds the estimate with one more batch left out.
+    /// Adds the value of the estimate with the next batch left out.
     pub(crate) fn add(&mut self, value: &Array<f64, D>) {
         self.count += 1;
         let count = self.count as f64;

@@ -1,16 +1,17 @@
-//! Turns photons that cross virtual planes into spectra with statistical errors.
+//! Converts photons that cross virtual planes to spectra with statistical errors.
 //!
-//! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. [`measure`]
-//! runs batches of photons and keeps, for each batch and plane, the
-//! [`Slices`](etendue_field::Slices) of the windowed light field, its projection on (x, u) and the
-//! tally of the window. The output is a [`Measurement`], partial or whole, and the estimates made
-//! from its independent batches: mean slices with their variance ([`estimate::slices`]), radial
-//! power without the photons' noise ([`CrossPower`]), slopes ([`moments`]) and bandwidths
-//! ([`bandwidth`](mod@bandwidth)) with jackknife errors. [`field`] has the field itself on a 4D
-//! grid, with its full radial spectrum.
+//! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes.
+//! [`measure`] runs batches of photons and records, for each batch and plane, the
+//! [`Slices`](etendue_field::Slices) of the windowed light field, its projection on (x, u), and
+//! the numbers of photons inside and outside the window. The output is a [`Measurement`],
+//! complete or partial, and the estimates made from its independent batches: mean slices with
+//! their variance ([`estimate::slices`]), radial power without the photons' noise
+//! ([`CrossPower`]), and slopes ([`moments`]) and bandwidths ([`bandwidth`](mod@bandwidth)) with
+//! jackknife errors. [`field`] has the light field on a 4D grid, with its full radial spectrum.
 //!
-//! The transform is [`SliceTransform`](etendue_transform::SliceTransform). This crate does not
-//! trace, predict or decide on agreement: another crate compares results with a prediction.
+//! [`SliceTransform`](etendue_transform::SliceTransform) computes the transform of rays to
+//! slices. This crate does not trace photons, predict spectra or decide on agreement: another
+//! crate compares the results with a prediction.
 
 pub mod bandwidth;
 mod batch;

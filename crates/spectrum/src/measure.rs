@@ -16,12 +16,12 @@ pub const PROJECTION_BINS: usize = 64;
 
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///
-/// A part of a batch is the sequential work of one thread, and parts are added in order, so the
+/// One thread measures a part of a batch sequentially, and parts are added in order, so the
 /// result is bitwise identical on any number of threads. `progress` is called with the number of
 /// photons as they are traced.
 ///
-/// A batch without photons is left out: with fewer photons than batches the result has as many
-/// batches as photons.
+/// Batches without photons are left out: if there are fewer photons than batches, the result has
+/// as many batches as photons.
 #[must_use]
 pub fn measure(
     source: &dyn PhotonSource,
@@ -35,23 +35,23 @@ pub fn measure(
 
 /// Callbacks during a measurement; they may come from any thread.
 pub trait Watch: Sync {
-    /// Called after a further number of photons is traced.
+    /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether to measure a part of a batch; called just before this part is measured.
-    /// If it returns false, the rest of the batch is left out.
+    /// Returns whether a part of a batch should be measured; it is called just before this part
+    /// would be measured. If it returns false, the remaining parts of the batch are not measured.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
 
-    /// Called when more parts of a batch are done, but not all.
+    /// Receives a batch of which more parts are finished, but not all.
     fn begun(&self, _batch: &PartialBatch) {}
 
-    /// Called when a batch is done.
+    /// Receives a finished batch.
     fn done(&self, _batch: &Batch) {}
 }
 
-/// A [`Watch`] that only counts photons.
+/// A [`Watch`] that only reports the number of traced photons.
 struct Told<'a>(&'a (dyn Fn(u64) + Sync));
 
 impl Watch for Told<'_> {
@@ -60,11 +60,11 @@ impl Watch for Told<'_> {
     }
 }
 
-/// Runs [`measure`] on distinct batches in any order, and continues each batch after its finished
-/// parts. Returns the batches that are done, and the batches that `watch` has stopped.
+/// Runs [`measure`] on distinct batches in any order; each batch continues after its finished
+/// parts. Returns the finished batches, and the unfinished batches that `watch` has stopped.
 ///
-/// Threads take parts in order, which keeps the number of unfinished batches small. A part is
-/// summed only after all parts before it.
+/// Threads take the parts of batches in order, which keeps the number of unfinished batches
+/// small. A part is added to the sum only after all parts before it.
 #[must_use]
 pub fn measure_watched(
     source: &dyn PhotonSource,
@@ -113,14 +113,14 @@ pub fn measure_watched(
     (Measurement::of(planes, whole.into_iter()), begun)
 }
 
-/// Iterates over the parts of batches, one after the other.
+/// An iterator over the parts of batches, one after the other.
 struct BatchParts<'a> {
     source: &'a dyn PhotonSource,
     batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &'a dyn Watch,
-    /// The batches started so far.
+    /// The batches of which parts have been taken so far.
     all: &'a mut Vec<Arc<BatchSum>>,
-    /// The next part of the last batch.
+    /// The number of the next part of the last batch in `all`.
     next: u32,
 }
 
@@ -145,7 +145,7 @@ impl Iterator for BatchParts<'_> {
     }
 }
 
-/// The sum of the parts of a batch, in their order.
+/// The sum of the parts of a batch, added in their order.
 struct BatchSum {
     index: u32,
     /// Number of parts of the batch.
@@ -155,7 +155,7 @@ struct BatchSum {
 
 struct SumState {
     partial: PartialBatch,
-    /// Finished parts that must wait for an earlier part.
+    /// Finished parts that cannot be added until an earlier part is finished.
     waiting: BTreeMap<u32, Batch>,
 }
 
@@ -191,7 +191,7 @@ impl BatchSum {
     }
 }
 
-/// Returns the contribution of a part of a batch to the means over the whole batch.
+/// Returns the contribution of a part of a batch to the means over the entire batch.
 fn measure_part(
     source: &dyn PhotonSource,
     [index, part]: [u32; 2],
@@ -210,8 +210,8 @@ fn measure_part(
     }
 }
 
-/// Receives the crossings of one plane, applies the plane's quantity and window, and accumulates
-/// the sums.
+/// A receiver of the crossings of one plane: it applies the plane's quantity and window, and
+/// accumulates the sums.
 struct Recorder<'plan> {
     plane: &'plan VirtualPlane,
     tally: PlaneTally,
@@ -247,7 +247,8 @@ impl<'plan> Recorder<'plan> {
         }
     }
 
-    /// Returns the recorded sums per emitted photon and resets them for the next batch.
+    /// Returns the recorded sums divided by the number of emitted photons, and resets them for
+    /// the next part.
     fn finish(&mut self, scale: f64) -> PlaneBatch {
         PlaneBatch {
             tally: std::mem::take(&mut self.tally),

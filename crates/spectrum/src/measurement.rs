@@ -1,14 +1,14 @@
-//! Measurements: batches of photons at virtual planes.
+//! Defines measurements: batches of photons at virtual planes.
 
 use crate::batch::{Batch, PlaneBatch};
 use etendue_field::{Ledger, PlaneTally, VirtualPlane};
 use std::collections::BTreeMap;
 
-/// A measurement, whole or partial: some batches of photons at some virtual planes.
+/// A complete or partial measurement: some batches of photons at some virtual planes.
 ///
-/// A measurement records which batches it contains, so partial results of one experiment can be
-/// computed anywhere and merged in any order. All sums are over batches in order, so results are
-/// bitwise identical.
+/// A measurement records the numbers of its batches, so partial results of one experiment can be
+/// computed on different machines and merged in any order. Sums over batches are always in the
+/// order of the batches' numbers, so results are bitwise identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     planes: Vec<VirtualPlane>,
@@ -18,13 +18,13 @@ pub struct Measurement {
 /// The reason why a batch or a partial result cannot be added to a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// A batch is in both results: its photons would count twice.
+    /// A batch is in both results, so its photons would count twice.
     #[error("batch {0} is in both results")]
     BatchTwice(u32),
     /// The two results were measured at different planes.
     #[error("the results are of different planes: [{}] and [{}]", .0.join(", "), .1.join(", "))]
     Planes(Vec<String>, Vec<String>),
-    /// The slices of a batch do not match the planes.
+    /// The shape of a batch's slices does not match the planes.
     #[error("batch {batch} does not hold the slices of planes [{}]", .planes.join(", "))]
     Shape {
         /// The batch.
@@ -35,7 +35,7 @@ pub enum MergeError {
 }
 
 impl Measurement {
-    /// Returns a measurement at `planes` without batches.
+    /// Returns a measurement at `planes` that has no batches yet.
     #[must_use]
     pub fn new(planes: Vec<VirtualPlane>) -> Self {
         Self {
@@ -44,8 +44,8 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement with `batches`, which have distinct numbers and slices that match
-    /// `planes`.
+    /// Returns the measurement with `batches`; the batches must have distinct numbers and slices
+    /// that match `planes`.
     pub(crate) fn of(planes: &[VirtualPlane], batches: impl Iterator<Item = Batch>) -> Self {
         Self {
             planes: planes.to_vec(),
@@ -53,13 +53,13 @@ impl Measurement {
         }
     }
 
-    /// Returns the virtual planes.
+    /// Returns the virtual planes of the measurement.
     #[must_use]
     pub fn planes(&self) -> &[VirtualPlane] {
         &self.planes
     }
 
-    /// Returns the batches, by ascending number.
+    /// Returns the batches, in ascending order of their numbers.
     pub fn batches(&self) -> impl ExactSizeIterator<Item = &Batch> {
         self.batches.values()
     }
@@ -70,11 +70,12 @@ impl Measurement {
         self.batches.contains_key(&index)
     }
 
-    /// Returns the measurement of each batch at plane `plane`, by ascending number of the batch.
+    /// Returns the measurement of each batch at plane `plane`, in ascending order of the batches'
+    /// numbers.
     ///
     /// # Panics
     ///
-    /// Panics if there is no such plane and the iterator is used.
+    /// Panics when the iterator is used, if the measurement has no such plane.
     pub fn at_plane(&self, plane: usize) -> impl ExactSizeIterator<Item = &PlaneBatch> {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }
@@ -85,7 +86,7 @@ impl Measurement {
         self.batches.values().map(|batch| batch.emitted).sum()
     }
 
-    /// Returns the ledger of their flux, summed over batches.
+    /// Returns the ledger of the photons' flux, summed over batches.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
         let mut sum = Ledger::default();
@@ -95,7 +96,8 @@ impl Measurement {
         sum
     }
 
-    /// Returns the tally of plane `plane` over all batches.
+    /// Returns the numbers of photons inside and outside the window of plane `plane`, summed over
+    /// batches.
     #[must_use]
     pub fn tally(&self, plane: usize) -> PlaneTally {
         let mut sum = PlaneTally::default();
@@ -109,8 +111,8 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// Fails if the measurement contains the batch already, or if its slices do not match the
-    /// planes.
+    /// Fails if the measurement already contains the batch, or if the batch's slices do not match
+    /// the planes.
     pub fn insert(&mut self, batch: Batch) -> Result<(), MergeError> {
         if self.contains(batch.index) {
             return Err(MergeError::BatchTwice(batch.index));
@@ -126,11 +128,11 @@ impl Measurement {
         Ok(())
     }
 
-    /// Merges this with another partial result of the same experiment.
+    /// Merges this result with another partial result of the same experiment.
     ///
     /// # Errors
     ///
-    /// Fails if the planes differ or a batch is in both.
+    /// Fails if the planes of the two results differ, or if a batch is in both results.
     pub fn merge(mut self, other: Self) -> Result<Self, MergeError> {
         if self.planes != other.planes {
             return Err(MergeError::Planes(self.names(), other.names()));

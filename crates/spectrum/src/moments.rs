@@ -1,13 +1,15 @@
-//! Statistics of a power spectrum [ρ, ν], measured or predicted.
+//! Computes statistics of a power spectrum [ρ, ν], measured or predicted.
 
 use etendue_field::{Profile, SliceGrid, Window};
 use ndarray::{ArrayView2, Axis};
 
-/// Returns a second moment of the power, Σ P ρᵐ νⁿ / Σ P with m + n = 2, `powers` being [m, n].
+/// Returns the second moment Σ P ρᵐ νⁿ / Σ P of the power P, where `powers` is [m, n] with m + n
+/// = 2.
 ///
-/// The sum is over the frequencies of the grid: if the field has an edge it grows without bound
-/// with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more meaningful. Unit: cycles
-/// per metre to the m times cycles per unit slope to the n. Returns `None` if Σ P is not positive.
+/// The sum runs over the frequencies of the grid: if the field has an edge, the moment grows
+/// without bound with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more
+/// meaningful. The unit is (cycles per metre)^m times (cycles per unit slope)^n. Returns `None`
+/// if Σ P is not positive.
 #[must_use]
 pub fn second_moment(
     power: ArrayView2<'_, f64>,
@@ -22,10 +24,11 @@ pub fn second_moment(
     (all > 0.0).then(|| sum / all)
 }
 
-/// Returns the slope dν/dρ along which the power lies, by least squares: Σ P ρ ν / Σ P ρ².
+/// Returns the slope dν/dρ of the line along which the power lies, by least squares: Σ P ρ ν / Σ
+/// P ρ².
 ///
-/// Travel by d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit: metres.
-/// Returns `None` if Σ P ρ² is not positive.
+/// Travel by the distance d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit:
+/// metres. Returns `None` if Σ P ρ² is not positive.
 #[must_use]
 pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> {
     let (mut along, mut square) = (0.0, 0.0);
@@ -37,12 +40,12 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// Returns H, the share of energy above a cut in the spectrum at ν = 0: Σ_{|ρ| > cut} P(ρ, 0) / Σ
-/// P(ρ, 0).
+/// Returns H, the share of the energy at frequencies above a cut in the spectrum at ν = 0: Σ_{|ρ|
+/// > cut} P(ρ, 0) / Σ P(ρ, 0).
 ///
-/// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum
-/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow (Durand et al.
-/// 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
+/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν
+/// = 0 is that of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow
+/// (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -55,14 +58,15 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
     (all > 0.0).then(|| high / all)
 }
 
-/// Returns the share of power in the wedge of blockers between two distances from the plane,
-/// `[nearest, farthest]` in metres.
+/// Returns the share of the power that lies in the wedge of blockers between two distances from
+/// the plane, `[nearest, farthest]` in metres.
 ///
-/// A blocker at distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005, section
-/// 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside if its
-/// distance from the wedge is within the main lobe of a Hann window, 1/half-width along each axis.
-/// Frequencies within the main lobe around zero are left out, because they contain the mean of the
-/// light. Returns `None` if the sum over all other frequencies is not positive.
+/// A blocker at the distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005,
+/// section 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside
+/// the wedge if its distance from the wedge is within the main lobe of a Hann window,
+/// 1/half-width along each axis. Frequencies within the main lobe around zero are left out,
+/// because they contain the mean of the light. Returns `None` if the sum of the power over all
+/// other frequencies is not positive.
 #[must_use]
 pub fn wedge_share(
     power: ArrayView2<'_, f64>,
@@ -104,7 +108,7 @@ mod tests {
         }
     }
 
-    /// Returns a Gaussian ridge along ν = `slope` ρ.
+    /// Returns the power of a Gaussian ridge along ν = `slope` ρ.
     fn ridge(slope: f64) -> Array2<f64> {
         let grid = grid();
         Array2::from_shape_fn((grid.rho.count(), grid.nu.count()), |(i, j)| {
@@ -118,8 +122,8 @@ mod tests {
         let grid = grid();
         let ridge = ridge(0.5);
         let moment = |powers| second_moment(ridge.view(), &grid, powers).unwrap();
-        // ρ² has the mean 0.8²/2, ν given ρ has the mean ρ/2 and the variance ½; the tails off the
-        // grid are below e^-14.
+        // The mean of ρ² is 0.8²/2; for a given ρ, ν has the mean ρ/2 and the variance ½; the
+        // tails off the grid are below e^-14.
         let square = 0.5 * 0.8 * 0.8;
         assert!((moment([2, 0]) - square).abs() < 1e-4);
         assert!((moment([1, 1]) - 0.5 * square).abs() < 1e-4);
@@ -130,15 +134,16 @@ mod tests {
     fn the_slope_of_a_ridge_is_found() {
         for slope in [-2.0, -0.5, 0.0, 1.3] {
             let found = shear_slope(ridge(slope).view(), &grid()).unwrap();
-            // The ridge is e^-14 high at the ends of the ρ axis, where its ν leaves the grid.
+            // At the ends of the ρ axis, where the ridge leaves the grid in ν, its height is
+            // e^-14.
             assert!((found - slope).abs() < 1e-5, "{found}");
         }
         assert!(shear_slope((-ridge(1.0)).view(), &grid()).is_none());
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
     }
 
-    /// The lines of blockers 0.5 and 1 m away have equal power, and the line of a blocker 5 m away
-    /// has as much as both together.
+    /// The lines of blockers 0.5 and 1 m away have equal power, and the line of a blocker 5 m
+    /// away has as much power as these two lines together.
     #[test]
     fn lines_of_a_wedge_are_inside() {
         let grid = grid();
@@ -160,8 +165,9 @@ mod tests {
             outside.map(|(_, p)| p).sum::<f64>()
         };
         let all = beyond(-0.5) + beyond(-1.0) + 2.0 * beyond(-5.0);
-        // At most e^(−1) of each line is beyond the lobe of 0.5 /m. Near zero, the line of the far
-        // blocker is also within the lobe.
+        // For each of the two near blockers, at most e^(−1) of the power is beyond the main lobe,
+        // whose half-width is 0.5 /m. Near zero frequency, the line of the far blocker is also
+        // within the main lobe.
         let alone = (beyond(-0.5) + beyond(-1.0)) / all;
         assert!(share([0.5, 1.0]) > 0.9 * alone && share([0.5, 1.0]) < 0.8);
         assert!(share([0.5, 5.0]) > 0.97);
@@ -169,7 +175,7 @@ mod tests {
 
     #[test]
     fn share_above_a_cut_counts_the_row_without_slope() {
-        // Eleven of the 21 frequencies i · 0.3 have |i| ≤ 5; only the column at ν = 0 counts.
+        // Of the 21 frequencies i · 0.3, eleven have |i| ≤ 5; only the column at ν = 0 counts.
         let mut power = Array2::zeros((21, 81));
         power.index_axis_mut(Axis(1), 40).fill(2.0);
         power.index_axis_mut(Axis(1), 41).fill(100.0);

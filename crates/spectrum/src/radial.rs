@@ -1,4 +1,4 @@
-//! Power spectra averaged over azimuths.
+//! Averages power spectra over azimuths.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, SliceBandwidth, Widest, widest_slice};
 use crate::estimate::TooFewBatches;
@@ -8,63 +8,66 @@ use etendue_field::{Complex, SliceGrid, Slices};
 use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis, Slice};
 use std::ops::Range;
 
-/// The measured radial power of a plane: |S_φ|² averaged over the azimuths, [ρ, ν] ascending.
+/// The measured radial power of a plane, which is |S_φ|² averaged over the azimuths φ, [ρ, ν]
+/// ascending.
 #[derive(Clone, Debug)]
 pub struct RadialPower {
-    /// The power without the noise of the photons: unbiased, and possibly negative due to noise.
+    /// The power without the noise of the photons; it is unbiased, and noise can make it
+    /// negative.
     pub power: Array2<f64>,
-    /// The contribution of the photons' noise to the power of the mean spectrum; `power` does not
-    /// include it.
+    /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power`, by the delete-one jackknife over R batches. For frequencies
-    /// with noise alone, this error is conservative: it is √(2(R−1)/(R−2)) times too large.
+    /// The standard error of `power`, by the delete-one jackknife over R batches. At frequencies
+    /// that contain only noise, this error is conservative: it is √(2(R−1)/(R−2)) times too
+    /// large.
     pub sigma: Array2<f64>,
 }
 
-/// The power spectrum of a plane from products of independent batches (docs/theory.md (13)):
+/// The power spectrum U of a plane from products of independent batches (docs/theory.md (13)):
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
-/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so
-/// U is an unbiased estimate of |F|² even if the photons of one batch are correlated.
+/// U is the mean of Re(S_r conj S_s) over all pairs of batches r ≠ s. The noise of any two
+/// batches is independent, so U is an unbiased estimate of |F|² even if the photons of one batch
+/// are correlated.
 ///
-/// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and row_r = Σ_(s≠r) Re(S_r
-/// conj S_s): the jackknife needs no copies.
+/// If batch r is left out, the estimate is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and
+/// row_r = Σ_(s≠r) Re(S_r conj S_s): the jackknife needs no copies.
 #[derive(Clone, Debug)]
 pub struct CrossPower<'m> {
     grid: SliceGrid,
     batches: Vec<&'m Slices>,
-    /// The azimuths over which to average.
+    /// The range of azimuths over which to average.
     azimuths: Range<usize>,
-    /// Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
     sum: Array3<Complex>,
-    /// T at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum over pairs T at these azimuths, [azimuth, ρ ≥ 0, ν].
     pairs: Array3<f64>,
 }
 
-/// The fewest batches for a jackknife.
+/// The minimum number of batches for a jackknife.
 const NEED: usize = 3;
 
 impl<'m> CrossPower<'m> {
-    /// Computes the cross power of plane `plane`.
+    /// Computes the cross power of plane `plane` over all azimuths.
     ///
     /// # Errors
     ///
-    /// Fails with fewer than three batches, the minimum for a jackknife.
+    /// Fails if there are fewer than three batches, the minimum for a jackknife.
     pub fn new(measurement: &'m Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let azimuths = 0..measurement.planes()[plane].grid.azimuths;
         Self::over(measurement, plane, azimuths)
     }
 
-    /// Computes the cross power of the slice with index `azimuth`.
+    /// Computes the cross power of one slice of a plane, with the index `azimuth`.
     ///
     /// # Errors
     ///
-    /// Fails with fewer than three batches.
+    /// Fails if there are fewer than three batches.
     ///
     /// # Panics
     ///
-    /// Panics if there are not that many slices.
+    /// Panics if the plane has no slice with this index.
     pub fn of_slice(
         measurement: &'m Measurement,
         plane: usize,
@@ -88,11 +91,11 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Errors
     ///
-    /// Fails with fewer than three replicates.
+    /// Fails if there are fewer than three replicates.
     ///
     /// # Panics
     ///
-    /// Panics if there are not that many slices.
+    /// Panics if the replicates have no slices at these azimuths.
     pub fn of_replicates(
         replicates: &'m [Slices],
         azimuths: Range<usize>,
@@ -145,7 +148,7 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the power U, [ρ, ν].
+    /// Returns the power U averaged over the azimuths, [ρ, ν].
     #[must_use]
     pub fn power(&self) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -153,11 +156,11 @@ impl<'m> CrossPower<'m> {
             .unfold_radial((mean(&self.pairs) / (r * (r - 1.0))).view())
     }
 
-    /// Returns the power without the batch at index `left_out`, [ρ, ν].
+    /// Returns the power with the batch at index `left_out` left out, [ρ, ν].
     ///
     /// # Panics
     ///
-    /// Panics if there are not that many batches.
+    /// Panics if there is no batch with this index.
     #[must_use]
     pub fn without(&self, left_out: usize) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -166,7 +169,7 @@ impl<'m> CrossPower<'m> {
         self.grid.unfold_radial(power.view())
     }
 
-    /// Returns Σ_(s≠r) Re(S_r conj S_s) for a batch r.
+    /// Returns Σ_(s≠r) Re(S_r conj S_s) for the batch r.
     fn row(&self, batch: usize) -> Array3<f64> {
         let mut row = Array3::zeros(self.sum.raw_dim());
         ndarray::Zip::from(&mut row)
@@ -176,14 +179,14 @@ impl<'m> CrossPower<'m> {
         row
     }
 
-    /// Returns the contribution of noise to the power of the mean spectrum, [azimuth, ρ ≥ 0, ν].
+    /// Returns the power that noise adds to the mean spectrum, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn noise_at_azimuths(&self) -> Array3<f64> {
         let r = self.batches.len() as f64;
         self.sum.mapv(|s| s.norm_sqr() / (r * r)) - &self.pairs / (r * (r - 1.0))
     }
 
-    /// Returns the power at each azimuth, [azimuth, ρ ≥ 0, ν], from all batches and then with each
-    /// batch left out.
+    /// Returns the power at each azimuth, [azimuth, ρ ≥ 0, ν]: first from all batches, then with
+    /// each batch left out in turn.
     pub(crate) fn at_azimuths(&self) -> impl Iterator<Item = Array3<f64>> {
         let r = self.batches.len() as f64;
         let without = (0..self.batches.len()).map(move |left_out| {
@@ -192,7 +195,7 @@ impl<'m> CrossPower<'m> {
         std::iter::once(&self.pairs / (r * (r - 1.0))).chain(without)
     }
 
-    /// Returns power, shot noise and standard error.
+    /// Returns the power, the shot noise and the standard error.
     #[must_use]
     pub fn radial(&self) -> RadialPower {
         let power = self.power();
@@ -209,9 +212,10 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth.
-    /// If several bandwidths are nearly equal, noise selects the largest, which then exceeds the
-    /// true value by about its error.
+    /// Returns the largest bandwidth over the azimuths, with its standard error at the azimuth of
+    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise
+    /// decides which of them is largest, and the result exceeds the true value by about its
+    /// error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);
@@ -220,10 +224,11 @@ impl<'m> CrossPower<'m> {
         Some(Widest { azimuth, value })
     }
 
-    /// Returns a statistic of the power, such as a slope, with its standard error by the jackknife.
+    /// Returns a statistic of the power, such as a slope, with its standard error by the
+    /// delete-one jackknife.
     ///
-    /// Returns `None` if the statistic does not exist for all batches together, or with one batch
-    /// left out.
+    /// Returns `None` if the statistic does not exist, either for all batches together or if any
+    /// one batch is left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
         let value = of(self.power().view())?;
         let mut jackknife = Jackknife::new(ndarray::Ix0());
@@ -242,7 +247,7 @@ fn at<'a, T>(slices: &'a Array3<T>, azimuths: &Range<usize>) -> ArrayView3<'a, T
     slices.slice_axis(Axis(0), Slice::from(azimuths.clone()))
 }
 
-/// Returns the mean over azimuths.
+/// Returns the mean of slices over azimuths.
 fn mean(slices: &Array3<f64>) -> Array2<f64> {
     slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
 }

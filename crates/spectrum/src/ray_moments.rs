@@ -1,9 +1,10 @@
-//! Moments of a light field over its rays.
+//! Computes moments of a light field over its rays.
 
 use etendue_field::TwoPlane;
 use ndarray::Array2;
 
-/// Sums of the windowed light field over rays, to second order: ∫ ℓW, ∫ ℓW zᵢ and ∫ ℓW zᵢ zⱼ for i ≤ j, z = (x, y, u, v), in this order.
+/// Integrals of the windowed light field over rays, up to second order: ∫ ℓW, ∫ ℓW zᵢ and ∫ ℓW zᵢ
+/// zⱼ for i ≤ j with z = (x, y, u, v), in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayMoments(pub [f64; Self::COUNT]);
 
@@ -27,7 +28,8 @@ impl RayMoments {
         }
     }
 
-    /// Returns the sums so far times `scale` and resets them for the next batch.
+    /// Returns the sums of the recorded rays times `scale`, and resets the sums for the next
+    /// part.
     pub(crate) fn finish(&mut self, scale: f64) -> Self {
         let sums = std::mem::take(self);
         Self(sums.0.map(|s| s * scale))
@@ -67,7 +69,7 @@ mod tests {
             moments.deposit(&ray, weight);
         }
         let covariance = moments.finish(0.25).covariance().unwrap_or_default();
-        // The means are 1.5, 0.5, 0 and 0.125.
+        // The means of the four coordinates are 1.5, 0.5, 0 and 0.125.
         let expected = [
             (0, 0, 2.75),
             (0, 1, 0.75),

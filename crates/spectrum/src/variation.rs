@@ -1,20 +1,20 @@
-//! Light fields minus their mean.
+//! Subtracts the mean from light fields.
 //!
-//! Most of the power of a typical spectrum comes from the mean of the light behind the window. A
-//! bandwidth of all power would therefore say little about how fast the light changes.
+//! Most of the power of a typical spectrum comes from the mean of the light behind the window.
+//! The bandwidth of the total power would therefore say little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use ndarray::{Array2, Array3};
 
-/// The mean of light fields behind a window.
+/// The mean of a light field behind a window, to be subtracted from the field's slices.
 #[derive(Clone, Debug)]
 pub struct WindowedMean {
-    /// Ŵ / Ŵ(0), [azimuth, ρ ≥ 0, ν].
+    /// The transform of the window divided by its value at zero, Ŵ / Ŵ(0), [azimuth, ρ ≥ 0, ν].
     shape: Array3<f64>,
 }
 
 impl WindowedMean {
-    /// Builds the means behind a window, on the frequencies of a grid.
+    /// Builds the mean behind a window, at the frequencies of a grid.
     #[must_use]
     pub fn new(window: &Window, grid: &SliceGrid) -> Self {
         let shape = transform(window, grid);
@@ -24,11 +24,11 @@ impl WindowedMean {
         }
     }
 
-    /// Returns the slices of a windowed light field minus its mean: F − F(0) Ŵ / Ŵ(0), where F is
-    /// the spectrum of the light field times the window W.
+    /// Returns the slices of a windowed light field minus its mean, which are F − F(0) Ŵ / Ŵ(0),
+    /// where F is the spectrum of the light field times the window W.
     ///
-    /// The result is the spectrum of a product: the window times the deviations of the light field
-    /// from its mean. The mean is itself weighted by the window.
+    /// The result is the spectrum of the window times the deviation of the light field from its
+    /// mean. The mean of the light field is weighted by the window.
     ///
     /// # Panics
     ///
@@ -43,18 +43,19 @@ impl WindowedMean {
         varying
     }
 
-    /// Returns several slices, such as those of batches, each minus its own mean.
+    /// Returns several slices, such as those of batches, each minus the mean of its own light
+    /// field.
     ///
     /// # Panics
     ///
-    /// Panics if slices are on another grid.
+    /// Panics if any of the slices are on another grid.
     #[must_use]
     pub fn removed_from_all<'s>(&self, all: impl Iterator<Item = &'s Slices>) -> Vec<Slices> {
         all.map(|slices| self.removed_from(slices)).collect()
     }
 }
 
-/// Returns the transform of a window on the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
+/// Returns the transform of a window at the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
 pub(crate) fn transform(window: &Window, grid: &SliceGrid) -> Array3<f64> {
     let shape = grid.half_shape();
     let [azimuths, rho, nu] = shape;

@@ -32,7 +32,7 @@ fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
     measure(source, &source.planes, batches, &|_| ())
 }
 
-/// A shower whose photons at each plane are a separate part.
+/// A source of photons for which the photons at each plane of a shower are a separate part.
 struct Parted(Shower);
 
 impl PhotonSource for Parted {
@@ -70,7 +70,7 @@ impl PhotonSource for Parted {
     }
 }
 
-/// Parts of a batch add up to it, on any number of threads.
+/// The sum of the parts of a batch equals the batch, on any number of threads.
 #[test]
 fn parts_make_a_batch() {
     let whole = run(&shower(), 0..10);
@@ -84,7 +84,7 @@ fn parts_make_a_batch() {
     }
 }
 
-/// A source of two batches, each of five batches of a shower.
+/// A source of two batches, each made of five batches of a shower.
 struct Large(Shower);
 
 impl PhotonSource for Large {
@@ -111,10 +111,10 @@ impl PhotonSource for Large {
     }
 }
 
-/// Stops the first batch after a given number of parts.
+/// A [`Watch`] that stops the first batch after a given number of parts.
 struct Stop {
     parts: u32,
-    /// Number of parts of the batch in each partial sum, in order of the callbacks.
+    /// Number of parts of the batch in each partial sum, in the order of the callbacks.
     begun: Mutex<Vec<u32>>,
 }
 
@@ -132,8 +132,8 @@ impl Watch for Stop {
     }
 }
 
-/// A batch that stops after any of its parts continues from there to a bitwise identical result, on
-/// any number of threads.
+/// If a batch stops after any of its parts and continues from there, the result is bitwise
+/// identical, on any number of threads.
 #[test]
 fn a_batch_goes_on_where_it_was_left() {
     let source = Large(shower());
@@ -154,8 +154,8 @@ fn a_batch_goes_on_where_it_was_left() {
             };
             let first = watch(parts);
             let (found, left) = measured([0, 1].map(PartialBatch::new).to_vec(), &first);
-            // The sum contains all parts that were begun, and they are reported in the order of
-            // summation.
+            // The partial sum contains all parts that were begun, and partial sums are reported
+            // in the order of summation.
             assert_eq!(
                 left.iter().map(|b| (b.index, b.parts)).collect::<Vec<_>>(),
                 [(0, parts)]

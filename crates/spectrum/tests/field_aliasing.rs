@@ -1,4 +1,4 @@
-//! Tests of the aliasing of a 4D grid against the plain sum over the same rays.
+//! Tests the aliasing of a 4D grid against the direct sum over the same rays.
 
 use crate::common::{Random, boxed, grid, hann};
 use etendue_field::{Assignment, Complex, Crossing, FieldGrid, TwoPlane, Window};
@@ -24,8 +24,8 @@ fn small(window: &Window) -> FieldGrid {
     }
 }
 
-/// Returns the largest |grid − plain sum| / bound over all frequencies below Nyquist, in one half
-/// of the spectrum.
+/// Returns the largest ratio of |grid − direct sum| to the bound, over all frequencies below
+/// Nyquist in one half of the spectrum.
 fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     let grid = spectrum.grid;
     let mut largest = 0.0_f64;
@@ -43,7 +43,7 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
                         std::array::from_fn(|axis| harmonics[axis] as f64 * grid.spacing(axis));
                     let plain = direct::at(crossings, |_| 1.0, frequency);
                     let off = (spectrum.at(harmonics) - plain).norm();
-                    // The rounding error of both sums is 1e-13.
+                    // The rounding error of the two sums is 1e-13.
                     let bound = spectrum.alias_bound(harmonics) + 1e-13 * spectrum.at_zero();
                     largest = largest.max(off / bound);
                 }
@@ -53,8 +53,9 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     largest
 }
 
-/// Returns sets of rays: random rays, one ray, and one ray at the worst position. The worst
-/// position is half-way between centres of cells on one axis, and at a centre on the other axes.
+/// Returns sets of rays: many random rays, one random ray, and one ray at the position with the
+/// largest alias. The position with the largest alias is half-way between the centres of two
+/// cells on one axis, and at a cell's centre on the other axes.
 fn sets(window: &Window) -> Vec<Vec<Crossing>> {
     let grid = small(window);
     let mut random = Random(11);
@@ -94,14 +95,14 @@ fn no_frequency_is_beyond_its_bound() {
                 assert!(found <= 1.0, "{assignment:?}: {found}");
                 nearest = nearest.max(found);
             }
-            // The bound is tight: a single ray comes near it.
+            // The bound is tight: the alias of a single ray comes near it.
             assert!(nearest > 0.7, "{assignment:?}: {nearest}");
         }
     }
 }
 
-/// The spectrum is given faults: a wrong power of the sinc, a shift by half a cell along x, and a
-/// wrong sign of the transform.
+/// The spectrum is given one fault at a time: a wrong power of the sinc, a shift by half a cell
+/// along x, and a wrong sign of the transform.
 #[test]
 fn wrong_compensations_are_beyond_it() {
     let window = hann();
@@ -110,8 +111,8 @@ fn wrong_compensations_are_beyond_it() {
         if f == 0.0 { 1.0 } else { t.sin() / t }
     };
     for assignment in ALL {
-        // The largest ratio over the sets of rays, with each spectrum multiplied by `factor` of the
-        // cycles per cell.
+        // Returns the largest ratio over the sets of rays, with each spectrum multiplied by
+        // `factor`, a function of the cycles per cell.
         let with = |factor: &dyn Fn([f64; 4]) -> Complex| {
             let sets = sets(&window).into_iter();
             sets.map(|crossings| {
@@ -134,9 +135,10 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // The spectrum is compensated by too low a power of the sinc: by one less for TSC, and by
-        // two less for CIC, whose bound is as wide as the effect of one power. For the nearest
-        // cell the bound is so wide that it holds without any compensation.
+        // The spectrum is compensated by too low a power of the sinc: the power is lower by one
+        // for TSC, and by two for CIC, whose bound is as wide as the effect of one power. For
+        // assignment to the nearest cell, the bound is so wide that it holds even without any
+        // compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),
@@ -173,7 +175,8 @@ fn nothing_is_lost_on_the_grid() {
     }
 }
 
-/// The expected difference is exact for white noise, and too large for a smooth field.
+/// The expected difference due to aliasing is exact for white noise, and too large for a smooth
+/// field.
 #[test]
 fn the_slices_tell_the_aliasing() {
     let window = boxed();
@@ -188,7 +191,8 @@ fn the_slices_tell_the_aliasing() {
                 *weight = hann().value(ray) * 1e3;
             }
         } else {
-            // Weights of both signs have zero mean, which leaves only noise.
+            // The weights have both signs and a mean of zero, so the spectrum contains only
+            // noise.
             crossings.iter_mut().for_each(|c| c.weight -= 1.0);
         }
         let slices = {
@@ -201,15 +205,15 @@ fn the_slices_tell_the_aliasing() {
         for assignment in ALL {
             let spectrum = gridded(&crossings, field_grid, assignment);
             let aliasing = spectrum.aliasing(&slices, 1.0).unwrap();
-            // Each of two lines has one half of 15 × 19 frequencies, and both contain zero.
+            // Each of two lines has one half of 15 × 19 frequencies, and both lines contain zero.
             assert_eq!(aliasing.compared, 15 * 19 + 1);
             let ratio = aliasing.difference / aliasing.expected;
             if smooth {
                 assert!(aliasing.difference < aliasing.bound);
                 assert!(ratio < 1.5, "{ratio}");
             } else {
-                // A few of 286 frequencies have most of the difference, and the power beyond
-                // Nyquist is estimated from 150 frequencies.
+                // Most of the difference comes from a few of 286 frequencies, and the power
+                // beyond Nyquist is estimated from 150 frequencies.
                 assert!((0.6..1.5).contains(&ratio), "{assignment:?}: {ratio}");
             }
             assert!(aliasing.difference < last, "{assignment:?}"); // a smoother spline aliases less
@@ -228,8 +232,8 @@ fn what_is_not_shared_is_not_compared() {
         let field_grid = FieldGrid::new(&window, &slice_grid);
         gridded(&crossings, field_grid, Assignment::Tsc)
     };
-    // Slices with twice as fine a spacing share every other frequency. An odd number of azimuths
-    // shares one line.
+    // If the spacing of the slices is half as large, they share every other frequency with the
+    // grid. If the number of azimuths is odd, the slices share one line with the grid.
     for (azimuths, fineness, compared) in [
         (3, 1.0, 7 * 7 / 2 + 1),
         (3, 2.0, 7 * 7 / 2 + 1),

@@ -1,4 +1,4 @@
-//! Tests of the covariance of spectra, measured on Gaussian light fields whose covariance is known.
+//! Tests the covariance of spectra, measured on Gaussian light fields whose covariance is known.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -9,7 +9,7 @@ use etendue_spectrum::field::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Returns a window that is a Gaussian of variance w²/2π.
+/// Returns a window with a Gaussian profile of variance w²/2π along each axis.
 fn window() -> Window {
     let gaussian = |width: f64, cut: f64| Profile::Gaussian { width, cut };
     Window {
@@ -25,12 +25,12 @@ fn at() -> VirtualPlane {
     plane("at", window, grid(&window, 1, [7, 7], 1.0))
 }
 
-/// Distance that light has travelled, metres.
+/// The distance that the light has travelled, in metres.
 const TRAVEL: f64 = 0.8;
 /// Variances of x, y, u and v at the light.
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.03, 0.02];
 
-/// Photons sampled from a Gaussian light field after travel.
+/// A source of photons sampled from a Gaussian light field after travel.
 struct Gaussian {
     seed: u64,
     each: u64,
@@ -78,8 +78,8 @@ impl PhotonSource for Gaussian {
     }
 }
 
-/// Returns 1/8π² S⁻¹ of the windowed field, over (x, u) or (y, v): entries of positions, both,
-/// slopes.
+/// Returns 1/8π² S⁻¹ of the windowed field over (x, u) or (y, v): the entries of position and
+/// position, position and slope, and slope and slope.
 fn expected(axis: usize) -> [f64; 3] {
     let window = window();
     let width = |profile: Profile| match profile {
@@ -88,7 +88,7 @@ fn expected(axis: usize) -> [f64; 3] {
     };
     let [x, u] = [[window.x, window.u], [window.y, window.v]][axis].map(width);
     let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
-    // exp(−½ ((x − d u)²/sx + u²/su) − π x²/wx² − π u²/wu²)
+    // The windowed field is exp(−½ ((x − d u)²/sx + u²/su) − π x²/wx² − π u²/wu²).
     [
         1.0 / sx + TAU / (x * x),
         -TRAVEL / sx,
@@ -106,7 +106,8 @@ fn measured(seed: u64, each: u64) -> FieldMeasurement {
     measure_field(&source, 0, &at(), 0..16, &options, &|_| ()).unwrap()
 }
 
-/// Returns the known covariance: [[ρx²], ρx νu, νu²] and the same along y; all else is zero.
+/// Returns the known covariance: the entries ρx², ρx νu and νu², and the corresponding entries
+/// along y; all other entries are zero.
 fn known() -> [[f64; 4]; 4] {
     let mut matrix = [[0.0; 4]; 4];
     for axis in 0..2 {
@@ -131,17 +132,18 @@ fn photons_have_the_covariance_of_their_field() {
         }
         signal = signal.min(row[i] / found.error[i][i]);
     }
-    // The entries in units of their errors, from 16 groups, follow Student's t with 15 degrees of
-    // freedom. The largest of ten exceeds 4.1 once in a hundred times.
+    // Each entry's difference from the known value, divided by its error from 16 groups, follows
+    // Student's t with 15 degrees of freedom. The largest of ten such differences exceeds 4.1
+    // once in a hundred times.
     assert!(most < 4.1, "{most}");
-    // A shear of the wrong sign, A in place of A⁻ᵀ, and a factor of 2 each cause differences far
-    // above the errors.
+    // A shear of the wrong sign, A in place of A⁻ᵀ, and a factor of 2 would each cause
+    // differences far above the errors.
     assert!(signal > 20.0, "{signal}");
     let wrong = (found.value[0][2] + expected(0)[1]) / found.error[0][2];
     assert!(wrong.abs() > 20.0, "{wrong}");
 }
 
-/// With 20 photons in a group the noise floor exceeds the moments, and does not bias them.
+/// If a group has only 20 photons, the noise power exceeds the moments, but does not bias them.
 #[test]
 fn few_photons_have_no_bias() {
     let (mut all, mut naive) = (Vec::new(), Vec::new());
@@ -177,20 +179,20 @@ fn few_photons_have_no_bias() {
     };
     for (k, exact) in exact.into_iter().enumerate() {
         let (value, error) = mean(&all, k);
-        // One of four entries exceeds this limit by chance once in a thousand times.
+        // At least one of four entries exceeds this tolerance by chance once in a thousand times.
         assert!(
             (value - exact).abs() < 3.7 * error,
             "{k}: {value} {error} {exact}"
         );
         if k < 3 {
             let (value, error) = mean(&naive, k);
-            // Noise that is not removed exceeds the errors by far.
+            // If noise is not removed, the difference exceeds the error by far.
             assert!(value - exact > 20.0 * error, "{k}: {value} {error} {exact}");
         }
     }
 }
 
-/// Returns the same moments of |ℓ̂|², including noise.
+/// Returns the moments of |ℓ̂|² over the same band, including noise.
 fn with_noise(spectrum: &FieldSpectrum) -> etendue_spectrum::field::PowerMoments {
     let moments = Moments::new(spectrum.grid, &at().grid);
     moments.of(|index| spectrum.values[index].norm_sqr())
@@ -207,8 +209,8 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
         let [a, b, c] = expected(axis).map(|entry| 8.0 * PI * PI * entry);
         let determinant = a * c - b * b;
         let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
-        // The integral of the windowed Gaussian, divided by the integral of the density from which
-        // photons are sampled.
+        // The integral of the windowed Gaussian, divided by the integral of the density from
+        // which the photons are sampled.
         let integral = 1.0 / (determinant * sx * su).sqrt();
         (
             [c / determinant, -b / determinant, a / determinant],
@@ -226,7 +228,8 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
     })
 }
 
-/// The band contains the spectrum: sums over its frequencies equal the integrals.
+/// The band contains the entire spectrum, so sums over the band's frequencies equal the
+/// integrals.
 #[test]
 fn moments_of_a_gaussian_are_its_covariance() {
     let found = exact_moments().covariance().unwrap();
@@ -234,7 +237,8 @@ fn moments_of_a_gaussian_are_its_covariance() {
         for (j, expected) in row.iter().enumerate() {
             let scale = (known()[i][i] * known()[j][j]).sqrt();
             let off = (found[i][j] - expected).abs() / scale;
-            // The limit is the remainder beyond seven half-cycles of the narrowest axis.
+            // The tolerance is the part of the spectrum beyond seven half-cycles of the narrowest
+            // axis.
             assert!(off < 2e-3, "{i} {j} {off}");
         }
     }

@@ -1,4 +1,4 @@
-//! Tests of the light field of a plane on its grid, and of its full radial spectrum.
+//! Tests the light field of a plane on its 4D grid, and the field's full radial spectrum.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -55,7 +55,7 @@ fn threads_and_memory_do_not_change_a_bit() {
     assert!(one.full_radial.sigma.iter().all(|sigma| *sigma > 0.0));
 }
 
-/// Checks that photons, tallies and means over batches equal those of the slices.
+/// Checks that the photons, tallies and means over batches on the grid equal those of the slices.
 #[test]
 fn the_grid_sees_what_the_slices_see() {
     let source = shower();
@@ -74,7 +74,7 @@ fn the_grid_sees_what_the_slices_see() {
     }
 }
 
-/// A source that repeats the photons of one batch.
+/// A source that emits the photons of one batch in every batch.
 struct Same(Shower);
 
 impl PhotonSource for Same {
@@ -101,7 +101,7 @@ fn batches_that_agree_have_no_noise() {
     let source = Same(shower());
     let plane = &source.0.planes[0];
     for groups in [20, 7, 3] {
-        // 20 batches in 7 or 3 groups of unequal size.
+        // The 20 batches are divided into 7 or 3 groups of unequal size.
         let field = run(&source, plane, groups);
         #[expect(clippy::cast_possible_truncation, reason = "a few")]
         let value = |frequency: [f64; 4]| {
@@ -120,7 +120,7 @@ fn batches_that_agree_have_no_noise() {
     }
 }
 
-/// A shower without some of its batches.
+/// A shower from which some batches are omitted.
 struct Without<'a>(&'a Shower, &'a [u32]);
 
 impl PhotonSource for Without<'_> {
@@ -142,7 +142,8 @@ impl PhotonSource for Without<'_> {
     }
 }
 
-/// Checks the errors against a jackknife that leaves out each group by not emitting it.
+/// Checks the errors against a jackknife in which each group is left out because its photons are
+/// not emitted.
 #[test]
 fn the_jackknife_leaves_groups_out() {
     let source = shower();
@@ -163,7 +164,7 @@ fn the_jackknife_leaves_groups_out() {
     }
     let sigma = variance.mapv(f64::sqrt);
     assert!(largest(&(&whole.sigma - &sigma)) < 1e-10 * largest(&sigma)); // rounding of differences
-    // The groups have unequal sizes: 20 batches in 3 groups are 7, 7 and 6.
+    // The groups have unequal sizes: 20 batches in 3 groups make groups of 7, 7 and 6.
     let three = run(&source, plane, 3).full_radial;
     let groups = [0, 1, 2].map(|g| (g..20).step_by(3).collect::<Vec<u32>>());
     let bins = RadialBins::new(&run(&source, plane, 3).grid);
@@ -171,7 +172,7 @@ fn the_jackknife_leaves_groups_out() {
         let others: Vec<u32> = (0..20).filter(|b| !groups[g].contains(b)).collect();
         run(&Without(&source, &others), plane, 3).spectrum
     });
-    // The definition is Σ a_r a_s Re(S_r conj S_s) / Σ a_r a_s over r ≠ s.
+    // The definition of the power is Σ a_r a_s Re(S_r conj S_s) / Σ a_r a_s over r ≠ s.
     let share = |r: usize| groups[r].len() as f64 / 20.0;
     let pairs = [[0, 1], [0, 2], [1, 2]];
     let norm: f64 = pairs.iter().map(|[r, s]| share(*r) * share(*s)).sum();
@@ -185,7 +186,8 @@ fn the_jackknife_leaves_groups_out() {
     assert!(largest(&(&three.power - &expected)) < 1e-12 * largest(&expected)); // rounding
 }
 
-/// Photons all over a box, with weights of zero mean: only noise.
+/// A source of photons all over a box, with weights of zero mean, so that the field contains only
+/// noise.
 struct White(u64);
 
 impl PhotonSource for White {
@@ -216,8 +218,8 @@ fn shot_noise_is_removed() {
     let plane = plane("white", boxed(), grid(&boxed(), 2, [4, 5], 1.0));
     let (mut removed, mut left_in, mut variance, mut frequencies) = (0.0, 0.0, 0.0, 0.0);
     let trials = 40;
-    // E w²/N of the mean, times the aliasing of white noise averaged over the bins, is the same for
-    // every trial.
+    // The expected noise power, E w²/N of the mean times the aliasing of white noise averaged
+    // over the bins, is the same for every trial.
     for seed in 0..trials {
         let radial = run(&White(seed), &plane, 20).full_radial;
         let counts = radial.counts.mapv(|count| count as f64);
@@ -226,22 +228,22 @@ fn shot_noise_is_removed() {
         variance += (&radial.sigma * &counts).mapv(|s| s * s).sum();
         frequencies += counts.sum();
     }
-    // The sum over the bins of a trial has the variance noise² · R/(R−1) for each complex number,
-    // and there are effectively half as many of these as frequencies.
+    // For each complex number, the sum over the bins of a trial has the variance noise² ·
+    // R/(R−1), and there are effectively half as many complex numbers as frequencies.
     let noise = left_in / frequencies;
     assert!(noise > 1.0 / 3.0 / 2000.0); // E w² = 1/3 over 2000 photons; aliases come on top
     let sd = noise * (2.0 / frequencies * 20.0 / 19.0).sqrt();
     let mean = removed / frequencies;
-    // The limit is four standard deviations, times 1.5 because noise is not white on the grid (its
-    // aliases grow towards Nyquist).
+    // The tolerance is four standard deviations, times 1.5 because noise is not white on the grid
+    // (its aliases grow towards Nyquist).
     assert!(mean.abs() < 4.0 * 1.5 * sd, "{mean} {sd}");
     assert!(noise > 50.0 * sd); // left in it would be seen
-    // With pure noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
+    // If there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let ratio = variance / frequencies.powi(2) / (sd * sd) / (2.0 * 19.0 / 18.0);
     assert!((0.8..1.5).contains(&ratio), "{ratio}");
 }
 
-/// One photon in each batch: an almost deterministic field.
+/// A source of one photon per batch, whose field is almost deterministic.
 struct Lone(TwoPlane);
 
 impl PhotonSource for Lone {
@@ -312,7 +314,7 @@ fn too_few_batches_are_refused() {
         refused.unwrap_err().to_string(),
         "2 batches are too few for an error: at least 3 are needed"
     );
-    // A single group is not allowed, so the minimum number of groups is used.
+    // A single group is not allowed, so the minimum number of groups replaces it.
     assert_eq!(
         run(&source, &source.planes[0], 1),
         run(&source, &source.planes[0], 3)

@@ -1,12 +1,12 @@
-//! Tests of the effect of photon noise on spectra, and of its removal.
+//! Tests the effect of photon noise on spectra, and the removal of this noise.
 
 use crate::common::{Shower, boxed, grid, plane};
 use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
 use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
 use ndarray::{Axis, Slice};
 
-/// Measures photons that are uniform in a box one period wide, at azimuth 0: they have no
-/// structure, only noise.
+/// Returns a measurement at azimuth 0 of photons that are uniform in a box one period wide: their
+/// spectrum has no structure, only noise.
 fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     let window = boxed();
     let plane = plane("white", window, grid(&window, 1, [12, 16], fineness));
@@ -20,7 +20,7 @@ fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     measure(&source, planes, 0..batches, &|_| ())
 }
 
-/// A shower with every photon inside the window.
+/// A shower in which every photon is inside the window.
 struct Inside(Shower);
 
 impl PhotonSource for Inside {
@@ -50,7 +50,7 @@ impl PhotonSource for Inside {
     }
 }
 
-/// E w² of weights uniform in [0, 2).
+/// The expectation of w² for weights w uniform in [0, 2).
 const SQUARE: f64 = 4.0 / 3.0;
 
 #[test]
@@ -66,14 +66,16 @@ fn white_noise_is_flat() {
             let row = slice.index_axis_move(Axis(0), m);
             row.mapv(|s| s.norm_sqr() / expected).sum()
         });
-        // |S|² is exponential: its standard deviation is its mean.
+        // For noise, |S|² has an exponential distribution, so its standard deviation equals its
+        // mean.
         let count = f64::from(batches) * grid.nu.count() as f64;
         let z = (each.sum::<f64>() / count - 1.0) * count.sqrt();
         chi2 += z * z;
     }
     let bins = grid.rho.half as f64;
-    // The limit is four standard deviations of χ² with 12 degrees of freedom. A 10 % tilt of the
-    // kernel's correction gives hundreds of standard deviations.
+    // The tolerance is four standard deviations of χ² with 12 degrees of freedom. If the
+    // correction of the kernel had a tilt of 10 %, χ² would deviate by hundreds of standard
+    // deviations.
     assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
     assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
 }
@@ -84,23 +86,23 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     let measurement = white(2, photons, batches, 1.0);
     let radial = CrossPower::new(&measurement, 0).unwrap().radial();
     let noise = SQUARE / photons as f64;
-    // The frequencies of one half of the plane, without the line ρ = 0, are independent.
+    // The frequencies in one half of the (ρ, ν) plane, without the line ρ = 0, are independent.
     let zero = measurement.planes()[0].grid.rho.half;
     let power = radial.power.slice_axis(Axis(0), Slice::from(zero + 1..));
     let count = power.len() as f64;
     let mean = power.sum() / count;
-    // For each frequency Var U = s⁴/(R(R−1)) with s² = R · noise. The limit is four standard
+    // For each frequency, Var U = s⁴/(R(R−1)) with s² = R · noise. The tolerance is four standard
     // deviations of the mean over all frequencies.
     let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
     assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
-    // Noise that is not removed would be 20 standard deviations.
+    // If the noise were not removed, the mean would deviate by 20 standard deviations.
     let shot_noise = radial
         .shot_noise
         .slice_axis(Axis(0), Slice::from(zero + 1..));
     let left_in = shot_noise.sum() / count;
     assert!((left_in / noise - 1.0).abs() < 0.02, "{left_in}"); // Σw² of 32000 weights: 0.5 %, four of them
     assert!(left_in > 15.0 * sd);
-    // With pure noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
+    // If there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let sigma = radial.sigma.slice_axis(Axis(0), Slice::from(zero + 1..));
     let variance = sigma.mapv(|s| s * s).sum() / count;
     let ratio = variance / (sd * sd * count) / (2.0 * 63.0 / 62.0);
@@ -115,22 +117,23 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     let variance = estimate.variance.slice_axis(Axis(1), Slice::from(1..));
     let mean = variance.sum() / variance.len() as f64;
     let expected = SQUARE / photons as f64;
-    // The mean over 396 frequencies with 63 degrees of freedom each has an error of 0.6 %; the
-    // limit is four times this error.
+    // The mean over 396 frequencies with 63 degrees of freedom each has a relative error of 0.6
+    // %; the tolerance is four times this error.
     assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
     assert_eq!(estimate.batches, 64);
     let projection = estimate::projection(&measurement, 0).unwrap();
     let cells = projection.mean.values.len() as f64;
     let mean = projection.mean.values.sum() / cells;
-    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3
-    // %; the limit is four times this error.
+    // The expected mean is the mean weight 1, divided by the area 1.6 · 0.8. The sum of 32000
+    // weights has a relative error of 0.3 %; the tolerance is four times this error.
     assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
     let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
     let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);
     assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
 }
 
-/// The field of the box on a grid three times finer than its period: a known, non-zero power.
+/// The field of the box, on a grid three times finer than its period, has a known power that is
+/// not zero.
 #[test]
 fn jackknife_intervals_cover_the_truth() {
     let (trials, batches) = (300, 16);
@@ -140,7 +143,7 @@ fn jackknife_intervals_cover_the_truth() {
         let cross = CrossPower::new(&measurement, 0).unwrap();
         let grid: SliceGrid = measurement.planes()[0].grid;
         let [i, j] = [grid.rho.half + 1, grid.nu.half];
-        // The truth is |F|² = sinc²(ρ · 1.6), since the mean weight is 1.
+        // The true power is |F|² = sinc²(ρ · 1.6), because the mean weight is 1.
         let t = std::f64::consts::PI * grid.rho.value(i) * 1.6;
         let truth = (t.sin() / t).powi(2);
         let radial = cross.radial();
@@ -149,14 +152,14 @@ fn jackknife_intervals_cover_the_truth() {
         covered += u32::from(off < interval);
         halved += u32::from(off < 0.5 * interval);
 
-        // A field without shear has slope zero.
+        // If a field has no shear, its slope is zero.
         let slope = cross.statistic(|power| moments::shear_slope(power, &grid));
         let slope = slope.unwrap();
         statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
     }
     let share = |count: u32| f64::from(count) / trials as f64;
-    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times this
-    // error, plus 1 % for the error of the jackknife itself.
+    // The expected share of the 300 trials is 95 %, with an error of 1.3 %. The bounds are three
+    // times this error, plus 1 % for the error of the jackknife.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
     assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %

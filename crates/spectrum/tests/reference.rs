@@ -1,4 +1,4 @@
-//! Tests with twelve photons in four replicates, against values computed with mpmath at 25 digits.
+//! Tests twelve photons in four replicates against values computed with mpmath at 25 digits.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -63,13 +63,14 @@ fn crossing(photon: &Photon) -> Crossing {
     Crossing { ray, weight }
 }
 
-/// The untruncated Gaussian of the reference.
+/// Evaluates the Gaussian window of the reference, which is not truncated.
 fn gaussian(Widths { a, b }: &Widths, z: &TwoPlane) -> f64 {
     let exponent = (z.x * z.x + z.y * z.y) / (a * a) + (z.u * z.u + z.v * z.v) / (b * b);
     (-PI * exponent).exp()
 }
 
-/// The largest value of the reference; the tolerance is 1e-9 of it, rounding is 1e-16.
+/// The largest value of the reference; the tolerance is 1e-9 of this value, and rounding errors
+/// are 1e-16 of it.
 const LARGEST: f64 = 0.202_085_963_050_424_1;
 const TOLERANCE: f64 = 1e-9 * LARGEST;
 
@@ -129,7 +130,7 @@ fn sums_and_powers_of_the_reference() {
         assert!((squares - sample.sum_w2).abs() < TOLERANCE);
         assert!((sum.norm_sqr() - squares - sample.power_shot_corrected).abs() < TOLERANCE);
 
-        // The cross power and its mean need independent replicates.
+        // The cross power and its mean require independent replicates.
         let replicate = |r| {
             let photons = block.photons.iter().filter(move |p| p.replicate == r);
             let crossings: Vec<_> = photons.map(crossing).collect();
@@ -144,7 +145,8 @@ fn sums_and_powers_of_the_reference() {
         assert!((mean - complex(sample.mean_spectrum)).norm() < TOLERANCE);
         let power = CrossPower::new(&measurement, 0).unwrap().power()[[0, 0]];
         assert!((power - sample.cross_spectrum_power).abs() < TOLERANCE);
-        // The test is sensitive: the power of the mean is a different number.
+        // The test is sensitive, because the power of the mean spectrum differs from the cross
+        // power.
         assert!((mean.norm_sqr() - sample.cross_spectrum_power).abs() > 1e4 * TOLERANCE);
     }
 }

@@ -11,8 +11,8 @@ use etendue_transform::random;
 /// An equal mixture of several strategies to draw rays of light from an environment. The density
 /// of this mixture is over (x, y, u, v) at the beginning of the first leg.
 ///
-/// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
-/// environment through all space is infinite.
+/// Emission, aimed or plain, covers only rays that reach the window of some virtual plane,
+/// because the flux of an environment through all space is infinite.
 #[derive(Debug)]
 pub(crate) struct FromSky {
     sky: Sky,
@@ -21,20 +21,23 @@ pub(crate) struct FromSky {
 
 #[derive(Debug)]
 enum SkyStrategy {
-    /// Draws positions and slopes by the profiles of a plane's window.
+    /// Draws positions and slopes by the profiles of the window of one virtual plane.
     Window([Proposal; 2]),
-    /// Draws positions in a plane's window, and directions by the environment.
+    /// Draws positions uniformly in the window of a virtual plane, and directions in proportion
+    /// to the environment's radiance.
     Across {
         distance: f64,
         position: [ProfileDensity; 2],
     },
-    /// Draws positions and angles by the profiles of a plane on the first surface.
+    /// Draws positions and angles by the window profiles of a virtual plane that lies on the
+    /// first surface.
     Facing(Box<Facing>),
-    /// Draws points of the first surface, and directions by the environment.
+    /// Draws points of the first surface, and directions in proportion to the environment's
+    /// radiance.
     Onto(FootprintSampler),
 }
 
-/// A plane that sees light arriving on a surface.
+/// A virtual plane that records the light arriving on a surface.
 #[derive(Debug)]
 struct Facing {
     plane_on_leg: PlaneOnLeg,
@@ -59,7 +62,8 @@ impl Facing {
         }
     }
 
-    /// A ray of the window, given at the beginning of the leg; `None` if there is no such ray.
+    /// Returns a ray drawn in the window, given in the plane at the beginning of the leg, or
+    /// `None` if the drawn coordinates belong to no ray.
     fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
         let seen = TwoPlane {
             x: self.position[0].quantile(r[0]),
@@ -71,7 +75,8 @@ impl Facing {
         Some(ray)
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv at the beginning of the leg.
+    /// Returns the density of [`Self::sample`] with respect to dx dy du dv in the plane at the
+    /// beginning of the leg.
     fn density(&self, ray: &TwoPlane) -> f64 {
         let seen = || {
             let (seen, per_ray) = self.plane_on_leg.at_plane(ray, 1.0)?;
@@ -85,13 +90,15 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has two strategies for the window of each plane on the first leg: one by the
-    /// plane's profiles and one by the environment. For each other plane, it has a strategy for
-    /// the part of the first surface that the plane sees. If the plane is on the first surface,
-    /// there is also a strategy by the plane's profiles. Plain emission draws positions uniformly
-    /// over the windows of the planes on the first leg, over the first surface, and over the
-    /// windows of planes on that surface. Plain emission always draws directions by the
-    /// environment.
+    /// Aimed emission has two strategies for the window of each virtual plane on the first leg:
+    /// one draws rays by the window's profiles, and the other draws directions by the
+    /// environment. For each virtual plane on a later leg, aimed emission has a strategy for the
+    /// part of the first surface that this plane sees. If a virtual plane lies on the first
+    /// surface, aimed emission also has a strategy that draws rays by the profiles of that
+    /// plane's window. Plain emission draws positions uniformly over the windows of the virtual
+    /// planes on the first leg, over the first surface, and over the windows of virtual planes on
+    /// that surface. Plain emission always draws directions in proportion to the environment's
+    /// radiance.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();
@@ -117,7 +124,8 @@ impl FromSky {
         }
     }
 
-    /// A ray from eight random words; `None` when the direction drawn does not go forward.
+    /// Returns a ray drawn with eight random words, or `None` if its direction does not go
+    /// forward.
     pub(crate) fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
         let [r, s] = words.map(|words| words.map(random::unit));
         // A direction takes four of the random words in every strategy.
@@ -145,7 +153,7 @@ impl FromSky {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv.
+    /// Returns the density of [`Self::sample`] with respect to dx dy du dv.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let by_sky = self.sky.slope_density(ray);
         let densities = self.strategies.iter().map(|strategy| match strategy {
@@ -159,7 +167,7 @@ impl FromSky {
                 by_sky * position[0].density(x) * position[1].density(y)
             }
             SkyStrategy::Facing(facing) => facing.density(ray),
-            // No ray is drawn from a direction without light.
+            // A direction without light has density zero, so no ray is drawn along it.
             SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
             SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
@@ -167,12 +175,14 @@ impl FromSky {
     }
 }
 
-/// Whether a plane lies across the first leg. The plane may see light that has met no surface.
+/// Checks whether a virtual plane lies across the first leg. Such a virtual plane may see light
+/// that has met no surface.
 pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }
 
-/// The strategies through the window of a plane across the first leg.
+/// Returns the strategies that draw rays through the window of a virtual plane across the first
+/// leg.
 fn across(plane: &VirtualPlane, aimed: bool) -> Vec<SkyStrategy> {
     let (w, distance) = (&plane.window, plane.distance);
     let space = [&w.x, &w.y];

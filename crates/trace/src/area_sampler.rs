@@ -27,8 +27,8 @@ impl AreaSampler {
         }
     }
 
-    /// A point drawn uniformly on the surface, and the normal there, from three random numbers in
-    /// (0, 1).
+    /// Returns a point drawn uniformly on the surface with three random numbers in (0, 1), and
+    /// the surface's normal at this point.
     pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let [s, t, which] = r;
         let (corners, [s, t]) = match self {
@@ -42,12 +42,12 @@ impl AreaSampler {
     }
 }
 
-/// The two edges of a parallelogram or a triangle at its first corner.
+/// Returns the two edges of a parallelogram or a triangle that meet at its first corner.
 fn edges([corner, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
     [b - corner, c - corner]
 }
 
-/// The area of the parallelogram spanned by three corners.
+/// Returns the area of the parallelogram that three corners span.
 fn parallelogram(corners: &[DVec3; 3]) -> f64 {
     let [a, b] = edges(corners);
     a.cross(b).length()

@@ -38,13 +38,13 @@ impl Arrival {
         }
     }
 
-    /// Whether the photon arrives on the side that the surface faces.
+    /// Checks whether the photon arrives on the side that the surface faces.
     pub(crate) fn is_on_front(&self) -> bool {
         self.facing.dot(self.direction) < 0.0
     }
 
-    /// The same arrival in the frame of another leg. Both frames are given in the frame at the
-    /// light.
+    /// Returns this arrival, converted from the frame of one leg to the frame of another. The
+    /// frames `from` and `to` are given in the frame at the light.
     pub(crate) fn moved(&self, from: &Frame, to: &Frame) -> Self {
         let vector = |v: DVec3| to.vector_to_local(from.vector_to_world(v));
         Self {
@@ -57,7 +57,8 @@ impl Arrival {
     }
 }
 
-/// The ratio of radiance space to flux, (1 + u² + v²)² = 1/cos⁴θ.
+/// Returns the ratio of a photon's contribution to radiance space to its flux, (1 + u² + v²)² =
+/// 1/cos⁴θ.
 pub(crate) fn radiance_per_flux(ray: &TwoPlane) -> f64 {
     let secant_squared = ray.secant_squared();
     secant_squared * secant_squared

@@ -1,4 +1,5 @@
-//! Backward rays, an independent check of the photons.
+//! Traces rays backwards from virtual planes to the light, as an independent check of the
+//! photons.
 
 mod connected;
 mod end;

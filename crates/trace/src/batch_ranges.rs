@@ -9,7 +9,8 @@ pub(crate) const BLOCK: usize = 4096;
 /// thread; a run can stop only between parts. Summing up a part takes a few milliseconds.
 const PART: u64 = 1 << 20;
 
-/// The division of a run's photons: evenly over batches, in order.
+/// The division of the photons of a run into batches of nearly equal size, in the order of the
+/// photons' numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchRanges {
     photons: u64,
@@ -24,7 +25,7 @@ impl BatchRanges {
         }
     }
 
-    /// The photons of a batch.
+    /// Returns the range of the photons of a batch.
     pub(crate) fn of(&self, batch: u32) -> Range<u64> {
         let start = |b: u32| {
             let share = u128::from(self.photons) * u128::from(b) / u128::from(self.batches);
@@ -33,14 +34,15 @@ impl BatchRanges {
         start(batch)..start(batch + 1)
     }
 
-    /// The number of parts of a batch. A batch has at least one part; only an empty batch has an
-    /// empty part.
+    /// Returns the number of parts of a batch. A batch has at least one part; only an empty batch
+    /// has an empty part.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
         let parts = self.count(batch).div_ceil(self.part_length(batch));
         u32::try_from(parts).unwrap_or(u32::MAX).max(1)
     }
 
-    /// The photons of a part. All blocks of the part are full, except for the last.
+    /// Returns the range of the photons of a part of a batch. Every block of the part except the
+    /// last is full.
     pub(crate) fn part(&self, batch: u32, part: u32) -> Range<u64> {
         let range = self.of(batch);
         let length = u128::from(self.part_length(batch));
@@ -51,7 +53,7 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// The number of photons of each part of a batch, except for the last part. This number is
+    /// Returns the number of photons in each part of a batch except the last part. This number is
     /// chosen so that part numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
@@ -62,7 +64,7 @@ impl BatchRanges {
             .next_multiple_of(BLOCK as u64)
     }
 
-    /// The number of photons of a batch.
+    /// Returns the number of photons of a batch.
     pub(crate) fn count(&self, batch: u32) -> u64 {
         let range = self.of(batch);
         range.end - range.start
@@ -107,7 +109,8 @@ mod tests {
                 assert!(part.end - part.start < 2 * PART, "2^{exponent}: {part:?}");
             }
         }
-        // Even the largest number of photons is covered by the parts.
+        // Even the largest possible number of photons is divided into parts whose numbers fit in
+        // 32 bits.
         let most = two(u64::MAX);
         let last = most.parts(1) - 1;
         assert_eq!(most.part(1, last).end, u64::MAX);

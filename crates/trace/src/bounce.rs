@@ -7,11 +7,11 @@ use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// The scattering of light at the surface between the previous leg and this leg.
+/// How the surface between the previous leg and this leg scatters light.
 #[derive(Debug)]
 pub(crate) enum Bounce {
-    /// Diffuse reflection, with the albedo and a scatterer; the scatterer is `None` if no plane
-    /// sees light of this leg.
+    /// Diffuse reflection, with the albedo and a scatterer; the scatterer is `None` if no virtual
+    /// plane sees light of this leg.
     Diffuse(f64, Option<Scatterer>),
     /// Reflection by a BRDF that may vary over a patch, in the frame of the leg.
     Reflects {
@@ -24,7 +24,7 @@ pub(crate) enum Bounce {
 }
 
 impl Bounce {
-    /// Returns `None` for the first leg.
+    /// Returns `None` for the first leg, because no surface lies before it.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let diffuse = |albedo| Self::Diffuse(albedo, Scatterer::new(scene, leg));
@@ -50,8 +50,8 @@ impl Bounce {
         })
     }
 
-    /// The ray on which a photon continues, and its contribution to radiance space; `None` when the
-    /// photon stops.
+    /// Returns the direction in which a photon continues and its contribution to radiance space;
+    /// `None` if the photon stops.
     #[inline]
     pub(crate) fn sample(&self, arrival: &Arrival, words: [u32; 4]) -> Option<(DVec3, f64)> {
         match self {
@@ -63,7 +63,7 @@ impl Bounce {
                 let (point, normal) = (arrival.point, arrival.normal);
                 let (towards, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
                 // The reflected radiance is albedo/π · E, and the flux of a photon represents the
-                // irradiance E at its point.
+                // irradiance E at the photon's point of arrival.
                 Some((towards, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
             Self::Reflects {
@@ -87,14 +87,15 @@ impl Bounce {
                 let spread = Spread::Lobe { brdf, frame, wi };
                 let (towards, density) =
                     scatterer.as_ref()?.sample(point, facing, &spread, words)?;
-                // The reflected radiance is f · E, as for diffuse reflection.
+                // The reflected radiance is f · E, where f is the BRDF and E the irradiance that
+                // the photon's flux represents.
                 let value = spread.value(towards);
                 (value > 0.0).then(|| (towards, value * flux / density))
             }
             Self::Specular(lens, event) => {
                 let Arrival { point, facing, .. } = *arrival;
                 let onwards = event.turned(lens, facing, point, arrival.direction)?;
-                // The flux is cos⁴θ times the contribution to radiance space.
+                // The flux of the photon is cos⁴θ times its contribution to radiance space.
                 let secant = onwards.length() / onwards.z.abs();
                 Some((onwards, arrival.flux * secant.powi(4)))
             }
@@ -102,7 +103,7 @@ impl Bounce {
     }
 }
 
-/// The BRDFs at a point of a patch.
+/// Returns the BRDFs at a point of a patch, with their weights.
 #[inline]
 pub(crate) fn at<'a>(patch: &Patch, reflectance: &'a Reflectance, point: DVec3) -> Mixture<'a> {
     let at = patch.frame.to_local(point);

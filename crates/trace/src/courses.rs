@@ -10,12 +10,13 @@ use etendue_scene::{Leg, Scene};
 #[derive(Debug)]
 pub(crate) struct Both<T> {
     pub(crate) along: T,
-    /// Is `None` if no light travels backwards along the leg.
+    /// Data for light that travels against the central ray; `None` if no light travels backwards
+    /// along the leg.
     against: Option<Box<T>>,
 }
 
 impl<T> Both<T> {
-    /// Calls `make` for each direction, with the leg in the frame of that direction.
+    /// Calls `make` for each direction of light, with the leg in the frame of that direction.
     pub(crate) fn new(scene: &Scene, leg: usize, make: impl Fn(Heading, &Leg) -> T) -> Self {
         let this = &scene.path.legs[leg];
         let of = |heading: Heading| make(heading, &heading.leg(this));
@@ -34,9 +35,10 @@ impl<T> Both<T> {
     }
 }
 
-/// Whether light may travel back along a leg. Light may travel back if part of the surface at the
-/// leg's end lies behind part of the surface at its beginning, or if the window of a plane on one
-/// of these surfaces contains such light. Light of the first leg always goes forward.
+/// Checks whether light may travel back along a leg. Light may travel back along a leg if part of
+/// the surface at the leg's end lies behind part of the surface at the leg's beginning, or if the
+/// window of a plane on one of these surfaces contains light that travels back. Light of the
+/// first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {
@@ -58,7 +60,8 @@ fn goes_back(scene: &Scene, leg: usize) -> bool {
     reaches_back || looks_back
 }
 
-/// The distance from a leg's beginning within which hits are ignored.
+/// Returns the distance from a leg's beginning within which hits are attributed to rounding
+/// errors and ignored.
 pub(crate) fn rounding(leg: &Leg) -> f64 {
     const SHARE: f64 = 1e-9;
     match leg.leaves {

@@ -26,31 +26,33 @@ pub struct Emitter {
 /// The strategy to draw rays.
 #[derive(Debug)]
 enum EmissionStrategy {
-    /// One proposal for each plane, given by its factors over (x, u) and (y, v).
+    /// One proposal for each virtual plane, given by its factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent, drawn uniformly within several bounds that have equal shares. Bounds
-    /// are slopes along x and y, or positions for a beam.
+    /// Light without extent, drawn uniformly within one of several ranges, each chosen with equal
+    /// probability. Each range is given by bounds on the slopes along x and y, or on the
+    /// positions along x and y for a beam.
     Even(Vec<AxisBounds>),
     /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
 }
 
-/// The number of photons that are emitted together.
+/// The number of photons that one call emits together.
 pub const ABREAST: usize = 8;
 
 /// x, y, u and v of rays that are emitted together.
 type Columns = [[f64; ABREAST]; 4];
 
 impl Emitter {
-    /// The emitter of a scene.
+    /// Builds the emitter of a scene.
     ///
-    /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose
-    /// window the light reaches. For a plane on a later leg, the proposal aims at the part of the
-    /// first surface from which light can get to the plane. Where the light reaches no window,
-    /// emission is plain, and every window stays empty. For an environment, aimed or plain emission
-    /// covers only rays that a plane may see, and the ledger counts only these.
+    /// Aimed emission is a mixture with equal weights of proposals, one for each virtual plane
+    /// whose window the light reaches. For a virtual plane on a later leg, the proposal aims at
+    /// the part of the first surface from which light can reach that plane. If the light reaches
+    /// no window, emission is plain, and every window stays empty. For an environment, both aimed
+    /// and plain emission cover only rays that a virtual plane may see, and the ledger counts
+    /// only these rays.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light.clone();
@@ -67,8 +69,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A plane on the surface that ends the leg sees only some slopes; a plane beyond this
-            // surface sees light of any slope.
+            // A virtual plane on the surface that ends the leg sees only some slopes, but a
+            // virtual plane beyond this surface sees light of any slope.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
@@ -121,11 +123,11 @@ impl Emitter {
         }
     }
 
-    /// The emitter of a scene that emits light without extent uniformly towards the whole first
-    /// surface, and towards the windows of planes before that surface. Other planes have no
-    /// influence.
+    /// Builds an emitter that emits light without extent uniformly towards the entire first
+    /// surface, and towards the windows of virtual planes before that surface. Virtual planes
+    /// beyond the first surface have no influence on this emitter.
     ///
-    /// For any other light, and if the surface reaches back to the light, the result is the
+    /// If the light has extent or the surface reaches back to the light, the result is the
     /// emitter of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
@@ -139,9 +141,9 @@ impl Emitter {
         }
     }
 
-    /// The first block of random words that a photon's bounces use. The emission uses only the
-    /// last word of block 1, to select the plane at which a ray is aimed; light from an
-    /// environment uses all words.
+    /// Returns the number of the first block of random words that a photon's interactions with
+    /// surfaces use. From block 1, the emission uses only the last word, to select the virtual
+    /// plane at which a ray is aimed; light from an environment uses all words of block 1.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -150,9 +152,9 @@ impl Emitter {
         }
     }
 
-    /// Rays of photons that are emitted together, with their weights in radiance space; a ray that
-    /// carries no light has the weight zero. `words` returns the random words of a block of a
-    /// photon.
+    /// Emits several photons together: returns their rays and the weights of these rays in
+    /// radiance space; the weight is zero if a ray carries no light. `words` returns the random
+    /// words of one block of random numbers of one photon.
     #[must_use]
     pub fn emit(
         &self,
@@ -190,8 +192,8 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Rays aimed at planes, as columns of x, y, u and v; the plane of each ray is drawn at random
-    /// as well.
+    /// Returns rays aimed at virtual planes, as columns of x, y, u and v; the plane at which each
+    /// ray is aimed is drawn at random.
     #[inline]
     fn aimed(
         &self,
@@ -223,8 +225,8 @@ impl Emitter {
         rays
     }
 
-    /// A ray with slopes of a point or a projector, or positions of a beam, uniform within one of
-    /// several bounds, and its density with respect to these two coordinates.
+    /// Returns a ray of a light without extent and its density; the slopes of a point light or a
+    /// projector, or the positions of a beam, are uniform within one of several ranges.
     fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
             [only] => only,
@@ -245,8 +247,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; the
-        // ray then carries nothing.
+        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; such
+        // a ray carries no light.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {
@@ -255,8 +257,8 @@ impl Emitter {
     }
 }
 
-/// The density of rays aimed by several proposals, with respect to dx dy du dv; to du dv for a
-/// point light.
+/// Returns the density of rays aimed by several proposals, with respect to du dv for a point
+/// light and to dx dy du dv for any other light.
 #[inline(always)]
 fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
     let mut sums = [0.0; ABREAST];
@@ -272,10 +274,11 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// For each plane across the first leg, the bounds within which light crosses its window; for all
-/// other planes together, the bounds within which light meets the first surface. Bounds are slopes
-/// for a point or a projector, and positions for a beam. The list is empty if any of these bounds
-/// is unknown or receives no light.
+/// Returns ranges for uniform emission: for each virtual plane across the first leg, the range
+/// within which light crosses the plane's window, and for all other planes together, the range
+/// within which light meets the first surface. The ranges bound slopes for a point light or a
+/// projector, and positions for a beam. The list is empty if any of these ranges is unknown or
+/// receives no light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {
@@ -315,7 +318,7 @@ fn even(scene: &Scene) -> Vec<AxisBounds> {
     all.unwrap_or_default()
 }
 
-/// The uniform density within bounds.
+/// Returns the uniform density at (a, b) within the bounds along two axes.
 fn evenly_over([[left, right], [low, high]]: &AxisBounds, [a, b]: [f64; 2]) -> f64 {
     let inside = (*left..=*right).contains(&a) && (*low..=*high).contains(&b);
     if inside {

@@ -1,4 +1,4 @@
-//! Samples points of the first surface, at which light from an environment is aimed.
+//! Samples points of the first surface, towards which the light of an environment is aimed.
 
 use crate::area_sampler::AreaSampler;
 use crate::line::{direction, start};
@@ -22,15 +22,15 @@ pub(crate) struct FootprintSampler {
 
 #[derive(Debug)]
 enum PatternPoints {
-    /// Uniform over an area.
+    /// Uniform density over the area of flat pieces.
     Flat(AreaSampler),
-    /// Uniform over the disc in the tangent plane at the vertex.
+    /// Uniform density over the disc in the tangent plane at the vertex of a smooth surface.
     Smooth(Patch),
 }
 
 impl FootprintSampler {
-    /// A sampler of the whole first surface, or of the part that contributes to a plane; `None` if
-    /// no part contributes.
+    /// Builds a sampler of the entire first surface, or of the part of it that contributes to a
+    /// virtual plane; returns `None` if no part contributes.
     pub(crate) fn new(scene: &Scene, plane: Option<&VirtualPlane>) -> Option<Self> {
         let around = Around(Frame::IDENTITY);
         let tagged = |primitive| TaggedPrimitive { primitive, tag: () };
@@ -72,7 +72,7 @@ impl FootprintSampler {
         })
     }
 
-    /// A point of the surface, from three numbers in (0, 1).
+    /// Returns a point of the surface, drawn with three random numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 3]) -> DVec3 {
         match &self.points {
             PatternPoints::Flat(pieces) => pieces.point(r).0,
@@ -83,23 +83,24 @@ impl FootprintSampler {
         }
     }
 
-    /// The density of lines through a sampled point, with respect to dx dy where they cross the
-    /// beginning of the leg. The sum covers all points at which a line meets the surface, because
-    /// each of them can lead to this line.
+    /// Returns the density of lines through a sampled point, with respect to dx dy in the plane
+    /// at the beginning of the leg. The density sums over all points at which the line meets the
+    /// surface, because a sample at any of these points gives the same line.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
         let mut sum = 0.0;
         self.primitives.each(ray, |at, primitive| {
             let point = start(ray) + at * along;
             let normal = primitive.normal(point);
-            // The density of points per unit area of the surface.
+            // The density of sampled points per unit area of the surface.
             let density = match &self.points {
                 PatternPoints::Flat(pieces) => 1.0 / pieces.area(),
                 PatternPoints::Smooth(patch) => {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // Along the line, an area dA is projected onto |n · (u, v, 1)| dA of the plane.
+            // Along a ray with slopes (u, v), an area dA of the surface is projected onto the
+            // area |n · (u, v, 1)| dA of the plane at the beginning of the leg.
             sum += density / normal.dot(along).abs();
         });
         sum
@@ -132,9 +133,9 @@ mod tests {
         .unwrap()
     }
 
-    /// Two laws hold. For any direction the density over (x, y) integrates to 1, also where lines
-    /// meet the surface twice. Points follow the density: the mean over points of a function
-    /// divided by the density is the integral of the function.
+    /// Two laws hold. For any direction, the density over (x, y) integrates to 1, even if lines
+    /// meet the surface twice. The test also checks that points follow the density: the mean of a
+    /// function divided by the density, over sampled points, is the integral of the function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {
@@ -193,8 +194,9 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // The mid-point rule has an error: the density jumps at the outline, in 1 % of the
-            // cells, and has poles where lines graze.
+            // The mid-point rule has an error of about 1 %, because the density jumps at the
+            // outline of the surface, in 1 % of the cells, and has poles at lines that graze the
+            // surface.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

@@ -1,34 +1,34 @@
-//! Finds the flat shape, among many, that contains a point.
+//! Finds which of many flat shapes contains a point.
 
 use etendue_field::{Shape, whole};
 
-/// Flat shapes side by side in a plane across the leg, with a grid that finds those that may hold a
-/// point.
+/// Flat shapes side by side in a plane across the leg, with a grid that finds the shapes that may
+/// contain a point.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
-    /// Distance of the plane along the leg.
+    /// Distance along the leg at which the plane of the shapes lies.
     pub(crate) distance: f64,
-    /// The lowest and the highest x, and y, of all shapes.
+    /// The lowest and highest x, and the lowest and highest y, of all shapes.
     pub(crate) bounds: [[f64; 2]; 2],
     counts: [usize; 2],
-    /// Cells per metre along x and y.
+    /// Number of cells per metre along x and along y.
     density: [f64; 2],
     /// The index in `shapes` of the first shape of each cell, [y, x], and the end of the last
     /// cell.
     starts: Vec<usize>,
-    /// The shapes of each cell, cell by cell.
+    /// The shapes that overlap each cell, cell by cell.
     shapes: Vec<Shape>,
 }
 
-/// Cells per shape, chosen so that most cells hold one shape or none.
+/// The number of cells per shape, chosen so that most cells hold at most one shape.
 const FINENESS: f64 = 4.0;
 
-/// The largest average number of cells per shape; more cells would be needed only where shapes
-/// overlap.
+/// The maximum of the average number of cells that a shape occupies; the average exceeds this
+/// maximum only if shapes overlap.
 const COPIES: usize = 16;
 
-/// The extent of a shape along an axis. The extent includes a small margin, because rounding
-/// errors may make a point just beyond the edge count as inside.
+/// Returns the extent of a shape along an axis. The extent includes a small margin, because
+/// rounding errors may make a point just beyond the edge count as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
     let [low, high] = shape.bounds().extent(axis);
@@ -37,7 +37,7 @@ fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
 }
 
 impl Grid {
-    /// Returns `None` if a grid would not save time, because there are few shapes or many of them
+    /// Returns `None` if a grid would not save time, because there are few shapes or many shapes
     /// overlap.
     pub(crate) fn new(distance: f64, shapes: &[Shape]) -> Option<Self> {
         const MIN_SHAPES: usize = 8;
@@ -90,14 +90,14 @@ impl Grid {
         Some(grid)
     }
 
-    /// The cell along an axis that contains a coordinate within the bounds.
+    /// Returns the cell along an axis that contains a coordinate within the bounds.
     #[inline]
     fn cell(&self, axis: usize, at: f64) -> usize {
         let cell = (at - self.bounds[axis][0]) * self.density[axis];
         whole(cell).min(self.counts[axis] - 1)
     }
 
-    /// Whether a shape holds the point.
+    /// Checks whether any shape of the grid contains a point.
     #[inline]
     pub(crate) fn contains(&self, x: f64, y: f64) -> bool {
         let [[left, right], [low, high]] = self.bounds;
@@ -116,7 +116,7 @@ mod tests {
     use etendue_field::{Disc, Rectangle};
     use etendue_transform::random::{Stream, unit, words};
 
-    /// Shapes of all sizes up to `size`, scattered over the unit square.
+    /// Returns shapes of all sizes up to `size`, scattered over the unit square.
     fn strewn(count: u64, size: f64) -> Vec<Shape> {
         let shape = |i: u64| {
             let [x, y, a, b] = words(5, Stream::Photon, i, 0).map(unit);
@@ -145,7 +145,7 @@ mod tests {
                 held += usize::from(expected);
             }
             assert!(held > 500, "{held}");
-            // Corners and edges count as inside.
+            // Points on corners and edges of a shape count as inside.
             for shape in &shapes {
                 let [[left, right], [low, high]] = [0, 1].map(|axis| shape.bounds().extent(axis));
                 let [x, y] = [0.5 * (left + right), 0.5 * (low + high)];

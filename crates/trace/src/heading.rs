@@ -1,24 +1,24 @@
-//! The two directions of light along a leg, each with a frame of its own.
+//! Defines the two directions of light along a leg, each with its own frame.
 
 use crate::line::ray_through;
 use etendue_field::{Frame, TwoPlane};
 use etendue_scene::Leg;
 use glam::DVec3;
 
-/// The direction of light along a leg. Rays are represented by slopes across the central ray, so
-/// each direction has a frame of its own.
+/// The direction of light along a leg. Rays are represented by slopes relative to the central
+/// ray, so each of the two directions of light needs its own frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Heading {
     /// Along the central ray.
     #[default]
     Along,
-    /// Against the central ray, from one wide surface back to another.
+    /// Against the central ray: light from one extended surface back to another.
     Against,
 }
 
 impl Heading {
-    /// Converts a vector or a point between the frame of the leg and the frame of this direction: a
-    /// rotation about X.
+    /// Converts a vector or a point between the frame of the leg and the frame of this heading by
+    /// a rotation about X.
     #[inline]
     pub(crate) fn turned(self, v: DVec3) -> DVec3 {
         match self {
@@ -27,7 +27,7 @@ impl Heading {
         }
     }
 
-    /// The leg as seen by light of this direction.
+    /// Returns the leg in the frame of light with this heading.
     pub(crate) fn leg(self, leg: &Leg) -> Leg {
         let axis = |local| leg.frame.vector_to_world(self.turned(local));
         Leg {
@@ -41,9 +41,9 @@ impl Heading {
         }
     }
 
-    /// The heading of a direction, and the ray through a point along this direction in the frame
-    /// of the heading. Both arguments are in the frame of the leg. Returns `None` for a direction
-    /// across the leg.
+    /// Returns the heading of light that travels in a direction, and the ray through a point in
+    /// this direction, in the frame of the heading. Both arguments are in the frame of the leg.
+    /// Returns `None` if the direction is perpendicular to the leg.
     #[inline]
     pub(crate) fn of(point: DVec3, direction: DVec3) -> Option<(Self, TwoPlane)> {
         let heading = if direction.z < 0.0 {

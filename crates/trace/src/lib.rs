@@ -5,9 +5,9 @@
 //! The crate does not depend on the spectra of windows or on theory.
 //!
 //! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a distance
-//! along the central ray is a coordinate. Light that travels back along a leg has a reversed frame.
-//! The random numbers of a photon are functions of (seed, batch, photon), so its path does not
-//! depend on the thread that traces it.
+//! along the central ray is a coordinate. Light that travels back along a leg is described in a
+//! reversed frame. The random numbers of a photon are functions of (seed, batch, photon), so its
+//! path does not depend on the thread that traces it.
 
 mod aim;
 mod area_sampler;

@@ -3,18 +3,18 @@
 use etendue_field::TwoPlane;
 use glam::DVec3;
 
-/// The origin of a ray, in the frame of the ray.
+/// Returns the point at which a ray begins, in the frame of the ray.
 pub(crate) fn start(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.x, ray.y, 0.0)
 }
 
-/// The direction of a ray, with component 1 along D.
+/// Returns the direction of a ray, with component 1 along D.
 pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.u, ray.v, 1.0)
 }
 
-/// The ray through a point along a direction, both in the frame of the result; `None` when it does
-/// not go forward along D.
+/// Returns the ray through a point along a direction, or `None` if the direction does not go
+/// forward along D; the point and the direction are in the frame of the returned ray.
 pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
     let [u, v] = [direction.x / direction.z, direction.y / direction.z];
     (direction.z > 0.0).then_some(TwoPlane {

@@ -1,8 +1,8 @@
-//! A mesh as seen from a leg.
+//! Intersects the rays of a leg with a mesh.
 //!
-//! The triangles stay in the frame at the light, with one hierarchy over them, and rays are
-//! transformed to that frame. Whether a ray hits is decided in the frame of the leg, where a
-//! direction is (u, v, 1) and triangles that share an edge share the arithmetic.
+//! The triangles stay in the frame at the light, with one hierarchy over all triangles, and rays
+//! are transformed to that frame. Each hit is decided in the frame of the leg, in which a
+//! direction is (u, v, 1) and two triangles that share an edge use the same arithmetic for it.
 
 use crate::line::{direction, start};
 use etendue_field::triangle_distance;
@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::cmp::Reverse;
 use std::sync::Arc;
 
-/// A mesh, seen from a leg.
+/// A mesh in the coordinates of one leg of the path.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockerMesh {
     triangles: Triangles,
@@ -35,8 +35,9 @@ impl BlockerMesh {
         }
     }
 
-    /// The first triangle that a ray meets beyond `from`, and its distance; among triangles at the
-    /// same distance, it is the one with the lowest number. Hits beyond `until` may be ignored.
+    /// Returns the first triangle that a ray meets beyond `from`, and the distance of this
+    /// triangle; among triangles at the same distance, returns the triangle with the lowest
+    /// number. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -53,8 +54,8 @@ impl BlockerMesh {
         first
     }
 
-    /// The last triangle on the line of a ray before `until`; among triangles at the same
-    /// distance, it is the one with the lowest number.
+    /// Returns the last triangle on the line of a ray before `until`; among triangles at the same
+    /// distance, returns the triangle with the lowest number.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
@@ -67,8 +68,8 @@ impl BlockerMesh {
         last.map(|(at, Reverse(i))| (at, i))
     }
 
-    /// Whether a ray meets a triangle at a distance that satisfies `does`, between `from` and
-    /// `distance`. The search goes backwards.
+    /// Checks whether a ray meets a triangle at a distance between `from` and `distance` for
+    /// which `does` returns true. The search goes backwards from `distance`.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
@@ -78,13 +79,13 @@ impl BlockerMesh {
         let mut blocked = false;
         self.along(ray, -1.0, [distance, from], |at, _| {
             blocked |= does(at);
-            // After a hit the search ends.
+            // The search ends after the first hit.
             if blocked { f64::INFINITY } else { from }
         });
         blocked
     }
 
-    /// Passes every triangle on the line of a ray, with its distance, to `tell`.
+    /// Calls `tell` with the distance and number of every triangle on the line of a ray.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
         self.along(ray, 1.0, [f64::NEG_INFINITY, f64::INFINITY], |at, i| {
             tell(at, i);
@@ -116,7 +117,7 @@ impl BlockerMesh {
         });
     }
 
-    /// The corners of a triangle, in the frame of the leg.
+    /// Returns the corners of a triangle, in the frame of the leg.
     #[inline]
     fn corners(&self, i: usize) -> [DVec3; 3] {
         let corners = self.triangles[i];
@@ -126,7 +127,7 @@ impl BlockerMesh {
         }
     }
 
-    /// The unit normal at a point of a triangle.
+    /// Returns the unit normal at a point of a triangle.
     pub(crate) fn normal(&self, i: usize, point: DVec3) -> DVec3 {
         let corners = self.corners(i);
         let Some(normals) = &self.normals else {
@@ -138,7 +139,8 @@ impl BlockerMesh {
         interpolated_normal(&corners, &normals, point)
     }
 
-    /// All hits on the line of a ray, found without a hierarchy.
+    /// Returns all hits on the line of a ray, found by a test of every triangle without a
+    /// hierarchy.
     #[cfg(test)]
     pub(crate) fn in_turn(&self, ray: &TwoPlane) -> Vec<(f64, usize)> {
         let numbers = 0..self.triangles.len();
@@ -146,7 +148,7 @@ impl BlockerMesh {
         hits.collect()
     }
 
-    /// The lowest and the highest corner of the bounding box.
+    /// Returns the lowest and the highest corner of the mesh's bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let [low, high] = self.triangles.bounds();
         match &self.leg {
@@ -161,7 +163,8 @@ mod tests {
     use super::*;
     use etendue_transform::random::{self, Stream};
 
-    /// The frames of a leg that begins far from the light, and of the leg at the light.
+    /// Returns the frames of two legs: one that begins far from the light, and one that begins at
+    /// the light.
     fn legs() -> [Frame; 2] {
         let [origin, d] = [DVec3::new(3.0, -1.0, 2.5), DVec3::new(-3.0, 1.2, -1.4)];
         [
@@ -170,7 +173,7 @@ mod tests {
         ]
     }
 
-    /// A wavy sheet of 2n² triangles around (0, 0, 1).
+    /// Returns a wavy sheet of 2n² triangles around (0, 0, 1).
     fn sheet(n: u32) -> Triangles {
         let corner = |i: u32, j: u32| {
             let [x, y] = [i, j].map(|k| f64::from(k) / f64::from(n) * 2.0 - 1.0);
@@ -187,7 +190,7 @@ mod tests {
         Triangles::new(sheet, 0.5)
     }
 
-    /// The ray of a leg through two points in the frame at the light.
+    /// Returns the ray of a leg that passes through two points given in the frame at the light.
     fn ray(leg: &Frame, from: DVec3, to: DVec3) -> TwoPlane {
         let [from, to] = [from, to].map(|p| leg.to_local(p));
         let [u, v] = [0, 1].map(|axis| (to - from)[axis] / (to - from).z);
@@ -199,7 +202,8 @@ mod tests {
         }
     }
 
-    /// Hierarchies of one part and of several give the same hits.
+    /// A hierarchy, built in one part or in several, gives the same hits as a test of every
+    /// triangle.
     #[test]
     fn agrees_with_every_triangle_tried_in_turn() {
         for (n, rays) in [(16, 5000), (200, 200)] {

@@ -1,17 +1,17 @@
-//! The random numbers from which photons are drawn.
+//! Provides the random numbers with which photons are drawn.
 
 use etendue_scene::{Run, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
 
-/// The source of the random numbers of photons, and their layout.
+/// The source of the random numbers of photons, with their division into blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonNumbers {
     sampling: Sampling,
     seed: u64,
-    /// The streams of random numbers and of nets.
+    /// The two streams: one of random numbers and one of nets.
     streams: [Stream; 2],
-    /// The largest number of blocks of four numbers that a photon uses.
+    /// The maximum number of blocks, of four random numbers each, that a photon uses.
     blocks: u32,
 }
 
@@ -22,11 +22,11 @@ pub(crate) enum Numbers {
         seed: u64,
         stream: Stream,
     },
-    /// A net, and the photon that uses its first point.
+    /// A net, and the number of the photon that uses the net's first point.
     Net(Net, u64),
 }
 
-/// The number of points of a net, which is the number of 32-bit numbers.
+/// The number of points of a net, which equals the number of values of a 32-bit word.
 const POINTS: u64 = 1 << 32;
 
 impl PhotonNumbers {
@@ -40,8 +40,9 @@ impl PhotonNumbers {
         }
     }
 
-    /// The numbers for photons from `start` on, in the batch that begins with photon `first`. Each
-    /// batch has its own net, or several nets if it has more than 2³² photons.
+    /// Returns the random numbers for the photons from `start` on, in the batch whose first
+    /// photon has the number `first`. Each batch has its own net, or several nets if it has more
+    /// than 2³² photons.
     pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
         let Self { seed, blocks, .. } = *self;
         let [random, net] = self.streams;
@@ -60,7 +61,7 @@ impl PhotonNumbers {
 }
 
 impl Numbers {
-    /// Block `block` of the numbers of a photon.
+    /// Returns block `block` of the random numbers of a photon.
     #[inline]
     pub(crate) fn words(&self, photon: u64, block: u32) -> [u32; 4] {
         match self {

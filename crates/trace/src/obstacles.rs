@@ -9,7 +9,7 @@ use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, Tw
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
-/// The kind of thing that a photon meets.
+/// The kind of obstacle that a photon meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HitKind {
     Blocker,
@@ -31,7 +31,8 @@ pub(crate) enum ObstacleKind {
 }
 
 impl HitKind {
-    /// The object that the photon meets, if it is a surface; `None` for a blocker.
+    /// Returns the object that the photon meets if the obstacle is a surface, and `None` if it is
+    /// a blocker.
     pub(crate) fn object(&self) -> Option<Object> {
         match self {
             Self::Blocker => None,
@@ -39,16 +40,16 @@ impl HitKind {
         }
     }
 
-    /// Whether the photon meets the object on which a leg begins or ends.
+    /// Checks whether the obstacle is the object `end`, on which a leg begins or ends.
     pub(crate) fn is(&self, end: Option<Object>) -> bool {
         end.is_some() && self.object() == end
     }
 }
 
-/// All obstacles of light on one leg, with the queries of both tracers.
+/// All obstacles of light on one leg, with the queries of the forward and the backward tracer.
 ///
-/// Rays are given by their points in the plane at the beginning of the leg; distances are along
-/// the leg.
+/// A ray is given by its point in the plane at the beginning of the leg, and distances are
+/// measured along the leg.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
     primitives: PrimitiveSet<HitKind>,
@@ -57,7 +58,7 @@ pub(crate) struct Obstacles {
     semi_transparent: Vec<Layer<Mask>>,
 }
 
-/// A blocker that extends over its whole plane.
+/// A blocker that extends without bound in its plane: a half-plane or a semi-transparent mask.
 #[derive(Clone, Copy, Debug)]
 struct Layer<T> {
     distance: f64,
@@ -67,7 +68,8 @@ struct Layer<T> {
 }
 
 impl<T> Layer<T> {
-    /// The distance along the leg at which a ray crosses the plane, and the point in the plane.
+    /// Returns the distance along the leg at which a ray crosses the plane of the layer, and the
+    /// crossing point in that plane.
     #[inline]
     fn crossing(&self, ray: &TwoPlane) -> (f64, [f64; 2]) {
         let Some(leg) = &self.leg else {
@@ -85,7 +87,7 @@ impl<T> Layer<T> {
 }
 
 impl Obstacles {
-    /// The obstacles around a leg of the path.
+    /// Collects the obstacles around a leg of the path.
     #[expect(
         clippy::too_many_lines,
         reason = "the function has a case for each kind of obstacle"
@@ -158,7 +160,8 @@ impl Obstacles {
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
-        // The hierarchy tests rays that start farther to the side from a nearer point.
+        // If a ray starts farther to the side than this bound, the hierarchy tests the ray from a
+        // nearer point.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),
@@ -167,7 +170,8 @@ impl Obstacles {
         }
     }
 
-    /// The first obstacle that a ray meets beyond `from`, and its distance.
+    /// Returns the first obstacle that a ray meets beyond `from`, and the distance of this
+    /// obstacle.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -192,7 +196,8 @@ impl Obstacles {
         }
     }
 
-    /// The transmittance of semi-transparent masks along a ray between `from` and a plane.
+    /// Returns the transmittance of semi-transparent masks along a ray between the distance
+    /// `from` and a plane.
     #[inline]
     pub(crate) fn transmittance(
         &self,
@@ -209,14 +214,15 @@ impl Obstacles {
         met.product()
     }
 
-    /// Whether a ray meets an object anywhere beyond `from`, even if it meets other things first.
+    /// Checks whether a ray meets an object anywhere beyond `from`, even if the ray meets other
+    /// obstacles first.
     pub(crate) fn meets(&self, object: Option<Object>, ray: &TwoPlane, from: f64) -> bool {
         let other = |what: &HitKind| !what.is(object);
         self.primitives
             .is_occluded(ray, from, f64::INFINITY, false, other)
     }
 
-    /// Whether another point of the same object, beyond `from`, hides the point at a given
+    /// Checks whether another point of the same object, beyond `from`, hides the point at a given
     /// distance on a ray.
     pub(crate) fn is_behind(
         &self,
@@ -226,15 +232,15 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // Hits just before the point are ignored, because they may be the point itself with a
-        // rounding error.
+        // Hits just before the point are ignored, because each may be the point itself, shifted
+        // by a rounding error.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// The share of light on a ray that reaches a plane from `from`; the search goes backwards
-    /// from the plane. Objects that `ignored` accepts do not occlude.
+    /// Returns the share of light on a ray that reaches a plane from the distance `from`; the
+    /// search goes backwards from the plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,
         ray: &TwoPlane,
@@ -264,7 +270,7 @@ impl Obstacles {
 /// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
-/// The primitive that stands for any half-plane that a ray hits.
+/// A primitive that represents every half-plane that a ray hits.
 static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     primitive: Primitive::Flat {
         distance: 0.0,
@@ -276,7 +282,7 @@ static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     tag: HitKind::Blocker,
 };
 
-/// Whether light passes the position `obstacle` on its way to a plane at `distance`.
+/// Checks whether light passes the position `obstacle` before it reaches a plane at `distance`.
 fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     match side {
         Side::Before => obstacle < distance,
@@ -284,12 +290,12 @@ fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     }
 }
 
-/// Converts from the frame at the light to that of a leg.
+/// A conversion from the frame at the light to the frame of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around(pub(crate) Frame);
 
 impl Around {
-    /// The shapes in a plane of blockers.
+    /// Returns the primitives of the shapes in one plane of blockers.
     fn layer(&self, distance: f64, shapes: &[Shape]) -> Vec<Primitive> {
         let plane = self.0.decompose(&Frame::IDENTITY.travelled(distance));
         let forms: Vec<Primitive> = shapes
@@ -323,8 +329,8 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// A shape in the plane of a frame. If the axes of the frame are those of the leg, distances
-    /// are exact.
+    /// Returns the primitive of a flat shape in the XY plane of a frame. If the axes of this
+    /// frame are the axes of the leg, the distances of hits are exact.
     #[expect(
         clippy::float_cmp,
         reason = "with rounding errors, the general case is used, which is correct too"

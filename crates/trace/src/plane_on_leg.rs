@@ -1,4 +1,4 @@
-//! Virtual planes, and how rays of a leg cross them.
+//! Computes where rays of a leg cross virtual planes, and with which coordinates.
 
 use crate::heading::Heading;
 use crate::line::{direction, ray_through, start};
@@ -7,48 +7,49 @@ use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The position of a plane on its leg, and its coordinates for rays of the leg.
+/// The position of a virtual plane on its leg, with the conversion of rays of the leg to
+/// coordinates of the plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneOnLeg {
     pub(crate) plane: usize,
-    /// Distance along the leg.
+    /// Distance of the plane along the leg.
     pub(crate) distance: f64,
-    /// Heading of the light that the plane sees.
+    /// Heading of the light that the virtual plane sees.
     heading: Heading,
     pub(crate) side: Side,
-    /// The coordinates on a surface; `None` for a plane across the leg.
+    /// The coordinates of a plane on a surface; `None` for a plane across the leg.
     surface: Option<SurfaceCoordinates>,
 }
 
-/// The coordinates of a plane on a surface.
+/// The coordinates of rays at a virtual plane that lies on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceCoordinates {
-    /// (T, B, N) at the central hit, in the frame of the leg.
+    /// The frame (T, B, N) where the central ray meets the surface, in the frame of the leg.
     frame: Frame,
     longitude: f64,
-    /// Whether directions are reversed because light arrives.
+    /// Whether directions are reversed because the virtual plane sees arriving light.
     arriving: bool,
     /// Whether directions are also rotated about the normal.
     mirrored: bool,
-    /// The surface itself, in the frame of the leg; present only if angles are measured from its
-    /// local normals.
+    /// The curved surface, in the frame of the leg; present only if angles are measured from the
+    /// surface's local normals.
     patch: Option<Patch>,
 }
 
-/// The number of angles along each side of a window at which slopes are evaluated.
+/// The number of angles, along each side of a window, at which slopes are evaluated.
 const SIDE: u32 = 9;
-/// The factor by which the largest angle is increased, to cover directions between the evaluated
-/// ones.
+/// The factor by which the largest evaluated angle is increased, to cover directions between the
+/// evaluated directions.
 const MARGIN: f64 = 1.1;
-/// Light at larger angles to the central ray, in radians, is not aimed by its slopes.
+/// The largest angle to the central ray, in radians, at which light is aimed by its slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
 
-/// The points at which a line meets a patch.
+/// Returns the points at which a line meets a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let local = patch.frame.to_local(start);
     let direction = patch.frame.vector_to_local(along);
-    // A ray nearly across its leg starts far away, and a quadratic equation solved from there
-    // would lose digits.
+    // A ray that is nearly perpendicular to its leg starts far from the surface, and a quadratic
+    // equation solved from that start would lose digits.
     let near = -local.dot(direction) / direction.length_squared();
     let hits = patch.hits(local + near * direction, direction);
     let met = hits.into_iter().filter(|t| !t.is_nan());
@@ -56,11 +57,12 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 }
 
 impl PlaneOnLeg {
-    /// The ray, given at the beginning of the leg, that has the coordinates `seen` at the plane,
-    /// and dA / dx dy there; `None` if there is no such ray.
+    /// Returns the ray that has the coordinates `seen` at the virtual plane, and dA / dx dy at
+    /// the plane; the ray is given in the plane at the beginning of the leg, and is `None` if it
+    /// does not exist.
     ///
-    /// On a surface itself, light is counted per area of the surface (docs/theory.md, section 8);
-    /// everywhere else dA is dx dy.
+    /// If the virtual plane follows a curved surface, light is counted per area of the surface
+    /// (docs/theory.md, section 8); otherwise dA is dx dy.
     pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         match &self.surface {
             None => Some((seen.travelled(-self.distance), 1.0)),
@@ -68,8 +70,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// The point of the plane with given coordinates, in the frame of the leg, with the normal
-    /// there and dA over dx dy; `None` where the surface has no such point.
+    /// Returns the point of the virtual plane with given coordinates, in the frame of the leg,
+    /// and the normal and dA / dx dy at this point; `None` if the surface has no such point.
     pub(crate) fn point(&self, at: [f64; 2]) -> Option<(DVec3, DVec3, f64)> {
         let Some(view) = &self.surface else {
             return Some((DVec3::new(at[0], at[1], self.distance), DVec3::Z, 1.0));
@@ -78,14 +80,15 @@ impl PlaneOnLeg {
         Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
     }
 
-    /// Whether the point (x, y) of the plane lies beyond the beginning of the first leg. Part of a
-    /// surface may reach back beside the light.
+    /// Checks whether the point (x, y) of the virtual plane lies beyond the beginning of the
+    /// first leg. Part of a surface may extend back beside the light, before the beginning of the
+    /// leg.
     pub(crate) fn is_ahead(&self, at: [f64; 2]) -> bool {
         let arrives = self.surface.is_some_and(|view| view.arriving);
         !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)
     }
 
-    /// The coordinates on the surface of the plane; `None` across the leg.
+    /// Returns the surface coordinates of the virtual plane; `None` for a plane across the leg.
     pub(crate) fn view(&self) -> Option<SurfaceCoordinates> {
         self.surface
     }
@@ -95,8 +98,8 @@ impl PlaneOnLeg {
         Self::of(Heading::Along, leg, scene, index, plane)
     }
 
-    /// The position and coordinates of a plane for light of one heading on its leg, in the frame
-    /// of that heading.
+    /// Returns the position and coordinates of a virtual plane for light of one heading on the
+    /// plane's leg, in the frame of that heading.
     pub(crate) fn of(
         heading: Heading,
         leg: &Leg,
@@ -133,12 +136,13 @@ impl PlaneOnLeg {
         }
     }
 
-    /// The distance, at least `from`, at which light on a ray of the leg reaches the plane; `None`
-    /// if the light does not reach the plane.
+    /// Returns the distance, at least `from`, at which light on a ray of the leg reaches the
+    /// virtual plane; `None` if the light does not reach the plane.
     ///
-    /// A plane on a surface records light where it meets the surface. An oblique surface extends
-    /// before and behind its central hit, so an occluder may shade only a part of the surface.
-    /// Light that travels back along the leg only reaches planes on a surface.
+    /// A virtual plane on a surface records light at the point where the light meets the surface.
+    /// An oblique surface extends before and behind its central hit, so an occluder may shade
+    /// only a part of the surface. Light that travels back along the leg reaches only virtual
+    /// planes that lie on a surface.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         let Some(surface) = &self.surface else {
@@ -148,10 +152,10 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// Returns the distance as [`Self::crossing`] does, for a photon that starts at `from`.
-    /// `arrival` is the distance at which it arrives at the surface at the end of the leg, or
-    /// `None` if it meets something else first. A photon that starts or ends on the surface of the
-    /// plane crosses the plane there.
+    /// Returns the distance as [`Self::crossing`] does, for a photon that starts at the distance
+    /// `from`. `arrival` is the distance at which the photon arrives at the surface at the end of
+    /// the leg, or `None` if the photon meets another obstacle first. If a photon starts or ends
+    /// on the surface of the virtual plane, the photon crosses the plane at its start or end.
     #[inline]
     pub(crate) fn crossing_of_photon(
         &self,
@@ -167,14 +171,14 @@ impl PlaneOnLeg {
         known.or_else(|| self.crossing(ray, from))
     }
 
-    /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
-    /// window of a plane. Returns `None` for a plane across the leg, and if the slopes are too
-    /// large for aiming.
+    /// Returns the largest slopes relative to the leg, along x and y, of light that arrives on a
+    /// surface within the window of a virtual plane. Returns `None` for a plane across the leg,
+    /// or if the slopes are too large for aiming.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }
 
-    /// The ratio cos θ dω / du dv for a ray in the coordinates of the plane.
+    /// Returns the ratio cos θ dω / du dv for a ray in the coordinates of the virtual plane.
     pub(crate) fn flux_per_radiance(&self, seen: &TwoPlane) -> f64 {
         match &self.surface {
             None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
@@ -186,8 +190,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// A ray of the leg in the coordinates of the plane, with its contribution there; `None` when
-    /// the ray does not meet the surface.
+    /// Returns a ray of the leg in the coordinates of the virtual plane, with its contribution at
+    /// the plane; `None` if the ray does not meet the plane's surface.
     #[inline]
     pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         match &self.surface {
@@ -198,16 +202,17 @@ impl PlaneOnLeg {
 }
 
 impl SurfaceCoordinates {
-    /// The frame of the local normal at a point, on the side of the normal at the central hit;
-    /// `None` where the normals differ by a right angle or more. A line meets the surface once
-    /// from each side, so only one of two points with the same coordinates has such a frame.
+    /// Returns the frame of the local normal at a point, on the side of the normal at the central
+    /// hit; `None` if these two normals differ by a right angle or more. A line may meet a curved
+    /// surface once from each side, so only one of two points with the same coordinates has a
+    /// frame of the local normal.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);
         (normal.dot(self.frame.d) > 0.0).then(|| self.frame.turned_to(normal))
     }
 
-    /// The point of the surface at (x, y), and the frame of the normal there.
+    /// Returns the point of the surface at (x, y), and the frame of the normal at this point.
     fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         let Some(patch) = &self.patch else {
@@ -217,8 +222,8 @@ impl SurfaceCoordinates {
         over.find_map(|point| Some((point, self.local(patch, point)?)))
     }
 
-    /// The point where a ray meets the surface from the side that the plane sees, and the frame of
-    /// the normal there.
+    /// Returns the point where a ray meets the surface from the side that the virtual plane sees,
+    /// and the frame of the normal at this point.
     fn met(&self, start: DVec3, along: DVec3) -> Option<(DVec3, Frame)> {
         let Some(patch) = &self.patch else {
             let t = (self.frame.origin - start).dot(self.frame.d) / along.dot(self.frame.d);
@@ -232,7 +237,7 @@ impl SurfaceCoordinates {
         points(patch, start, along).find_map(|point| Some((point, frame(point)?)))
     }
 
-    /// The inverse of [`Self::at_plane`].
+    /// Returns the ray with given coordinates at the plane, as the inverse of [`Self::at_plane`].
     fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         let (point, frame) = self.point([seen.x, seen.y])?;
         let away = self.away(&frame, [seen.u, seen.v])?;
@@ -256,8 +261,8 @@ impl SurfaceCoordinates {
         Some((ray, weight / (secant_squared * secant_squared * measure)))
     }
 
-    /// The coordinates of a direction away from the surface, measured in `frame`, and the ratio
-    /// cos θ dω / du dv; `None` for a direction that points behind the surface.
+    /// Returns the coordinates of a direction away from the surface, measured in `frame`, and the
+    /// ratio cos θ dω / du dv; `None` for a direction that points behind the surface.
     fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
@@ -268,7 +273,8 @@ impl SurfaceCoordinates {
         (n > 0.0).then_some(([longitude - self.longitude, latitude], measure))
     }
 
-    /// The inverse of [`Self::seen`].
+    /// Returns the direction away from the surface with given angles, as the inverse of
+    /// [`Self::seen`].
     fn away(&self, frame: &Frame, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let angles = [turned * (u + self.longitude), turned * v];
@@ -282,7 +288,7 @@ impl SurfaceCoordinates {
 
     fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-        // An upper bound of how far the normals of the patch turn within the window.
+        // An upper bound of the angle by which the normals of the patch turn within the window.
         let turns = self.patch.map_or(0.0, |patch| {
             patch.curvature.map(f64::abs).iter().sum::<f64>() * libm::hypot(x, y)
         });
@@ -300,12 +306,12 @@ impl SurfaceCoordinates {
         (widest[0].max(widest[1]) < MAX_AIMED_ANGLE).then(|| widest.map(libm::tan))
     }
 
-    /// Whether the plane sees light that arrives.
+    /// Checks whether the virtual plane sees arriving light.
     pub(crate) fn is_arriving(&self) -> bool {
         self.arriving
     }
 
-    /// The frame in which angles are measured at a point of the surface.
+    /// Returns the frame in which angles are measured at a point of the surface.
     fn frame_at(&self, point: DVec3) -> Option<Frame> {
         match &self.patch {
             None => Some(self.frame),
@@ -313,12 +319,12 @@ impl SurfaceCoordinates {
         }
     }
 
-    /// The direction of a ray that leaves a point of the surface with the coordinates (u, v).
+    /// Returns the direction of a ray that leaves a point of the surface with the angles (u, v).
     pub(crate) fn direction(&self, point: DVec3, seen: [f64; 2]) -> Option<DVec3> {
         self.away(&self.frame_at(point)?, seen)
     }
 
-    /// The inverse of [`Self::direction`].
+    /// Returns the angles of a direction at a point, as the inverse of [`Self::direction`].
     pub(crate) fn angles(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let (seen, _) = self.seen(&self.frame_at(point)?, direction)?;
         Some(seen)

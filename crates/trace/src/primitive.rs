@@ -6,8 +6,8 @@ use crate::mesh::BlockerMesh;
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
-/// The geometry of an obstacle, in the frame of a leg. Large data are stored elsewhere, so that
-/// flat shapes, which are by far the most frequent, stay in the processor's cache.
+/// The geometry of an obstacle, in the frame of a leg. Large data are stored behind pointers, so
+/// that flat shapes, which are by far the most frequent obstacles, stay in the processor's cache.
 #[derive(Clone, Debug)]
 pub(crate) enum Primitive {
     /// A flat shape across the central ray.
@@ -16,16 +16,16 @@ pub(crate) enum Primitive {
     Grid(Box<Grid>),
     /// A flat shape in the XY plane of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
-    /// Triangles. The part that a ray meets is the number of the triangle.
+    /// Triangles. A mesh, in which a hit is identified by the number of the triangle.
     Mesh(Box<BlockerMesh>),
     /// A smooth surface.
     Smooth(Box<Patch>),
 }
 
 impl Primitive {
-    /// The distance along the central ray at which a ray meets the primitive, and the part of the
-    /// primitive that the ray meets. If there are several hits, it returns the first beyond
-    /// `from`; hits of a mesh beyond `until` are ignored.
+    /// Returns the distance along the central ray at which a ray meets the primitive, and the
+    /// number of the part (such as a triangle) that the ray meets. If there are several hits,
+    /// returns the first hit beyond `from`; hits of a mesh beyond `until` may be ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -44,8 +44,8 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// [`Self::closest_hit`] for primitives that are not flat. The function is not inlined, which
-    /// keeps loops short that mostly meet flat shapes.
+    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. This function
+    /// is not inlined, so that loops over mostly flat shapes stay short.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
@@ -65,8 +65,8 @@ impl Primitive {
         }
     }
 
-    /// The largest distance below `until` at which the line of a ray meets the primitive, and the
-    /// part of the primitive that it meets.
+    /// Returns the largest distance below `until` at which the line of a ray meets the primitive,
+    /// and the number of the part that the line meets.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         match self {
             Self::Mesh(mesh) => mesh.last(ray, until),
@@ -81,8 +81,8 @@ impl Primitive {
         }
     }
 
-    /// Whether a ray meets the primitive at a distance that satisfies `does`, between `from` and
-    /// `until`.
+    /// Checks whether a ray meets the primitive at a distance between `from` and `until` for
+    /// which `does` returns true.
     #[inline]
     pub(crate) fn is_occluded(
         &self,
@@ -97,13 +97,14 @@ impl Primitive {
         first.is_some_and(|(at, _)| does(at))
     }
 
-    /// Passes the distances at which the line of a ray meets the primitive, and the parts that it
-    /// meets, to `tell`.
+    /// Calls `tell` with each distance at which the line of a ray meets the primitive, and with
+    /// the number of the part at that hit.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
         match self {
             Self::Mesh(mesh) => mesh.each(ray, tell),
             Self::Smooth(patch) => {
-                // If a line has a single hit, its distance is passed twice.
+                // If a line touches the surface in a single hit, `tell` is called twice with the
+                // same distance.
                 let [first, last] = smooth_hits(patch, ray);
                 let second = (last > first).then_some(last);
                 let hits = [Some(first).filter(|at| !at.is_nan()), second];
@@ -117,7 +118,7 @@ impl Primitive {
         }
     }
 
-    /// The unit normal at a point of a part of the primitive.
+    /// Returns the unit normal at a point of a part of the primitive.
     pub(crate) fn normal(&self, part: usize, point: DVec3) -> DVec3 {
         match self {
             Self::Flat { .. } | Self::Grid(_) => DVec3::Z,
@@ -127,7 +128,7 @@ impl Primitive {
         }
     }
 
-    /// The lowest and the highest corner of the bounding box.
+    /// Returns the lowest and the highest corner of the primitive's bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         match self {
             Self::Flat { distance, shape } => {

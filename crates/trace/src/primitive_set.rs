@@ -1,4 +1,4 @@
-//! The set of primitives that end rays on a leg.
+//! Finds the primitives that end rays on a leg.
 
 use crate::line::{direction, start};
 use crate::primitive::Primitive;
@@ -13,7 +13,7 @@ pub(crate) struct TaggedPrimitive<T> {
     pub(crate) tag: T,
 }
 
-/// A primitive that a ray meets, and the part of it.
+/// A primitive that a ray meets, and the number of the part of the primitive at the hit.
 #[derive(Debug)]
 pub(crate) struct PrimitiveHit<'a, T> {
     primitive: &'a Primitive,
@@ -21,7 +21,7 @@ pub(crate) struct PrimitiveHit<'a, T> {
     pub(crate) tag: &'a T,
 }
 
-/// Primitives, and the hierarchy that finds the first one hit.
+/// Primitives, and a hierarchy that finds the first primitive that a ray hits.
 #[derive(Debug)]
 pub(crate) struct PrimitiveSet<T> {
     hierarchy: BinaryHierarchy,
@@ -29,8 +29,8 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The number of primitives up to which all are tested in turn, which is as fast as the start of a
-/// traversal.
+/// The largest number of primitives that are tested one after another, which is as fast as the
+/// start of a traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
 impl<T> TaggedPrimitive<T> {
@@ -53,14 +53,14 @@ impl<T> Clone for PrimitiveHit<'_, T> {
 impl<T> Copy for PrimitiveHit<'_, T> {}
 
 impl<T> PrimitiveHit<'_, T> {
-    /// The unit normal at the hit.
+    /// Returns the unit normal at the hit.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         self.primitive.normal(self.part, point)
     }
 }
 
 impl<T: Clone> PrimitiveSet<T> {
-    /// `origins` is the largest coordinate of any ray's start.
+    /// Builds the set; `origins` is the largest coordinate of the starting point of any ray.
     pub(crate) fn new(primitives: &[TaggedPrimitive<T>], origins: f64) -> Self {
         let bounds: Vec<_> = primitives
             .iter()
@@ -75,7 +75,7 @@ impl<T: Clone> PrimitiveSet<T> {
         }
     }
 
-    /// The first primitive that a ray meets beyond `from`, and its distance.
+    /// Returns the first primitive that a ray meets beyond `from`, and the distance of the hit.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -107,8 +107,8 @@ impl<T: Clone> PrimitiveSet<T> {
         first.map(|(primitive, part)| (nearest, primitive.met(part)))
     }
 
-    /// The last primitive on the line of a ray before `until`, and its distance; searched backwards
-    /// from there.
+    /// Returns the last primitive on the line of a ray before `until`, and the distance of the
+    /// hit; the search goes backwards from `until`.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut last = None;
         let mut farthest = f64::NEG_INFINITY;
@@ -127,7 +127,7 @@ impl<T: Clone> PrimitiveSet<T> {
         last.map(|(primitive, part)| (farthest, primitive.met(part)))
     }
 
-    /// Passes every primitive on the line of a ray, with its distance, to `tell`.
+    /// Calls `tell` with every primitive on the line of a ray and the distance of the hit.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, PrimitiveHit<'_, T>)) {
         let range = [f64::NEG_INFINITY, f64::INFINITY];
         let (start, direction) = (start(ray), direction(ray));
@@ -139,9 +139,9 @@ impl<T: Clone> PrimitiveSet<T> {
         });
     }
 
-    /// Whether light on a ray meets a primitive between `from` and `distance`; if `inclusive`, also
-    /// exactly at `distance`. The search goes backwards from `distance` and skips primitives that
-    /// `ignored` accepts.
+    /// Checks whether light on a ray meets a primitive between `from` and `distance`; if
+    /// `inclusive`, a hit exactly at `distance` counts. The search goes backwards from `distance`
+    /// and skips primitives that `ignored` accepts.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
@@ -156,7 +156,7 @@ impl<T: Clone> PrimitiveSet<T> {
         self.hierarchy.along(start, back, [-distance, -from], |i| {
             let TaggedPrimitive { primitive, tag } = &self.primitives[i];
             blocked |= !ignored(tag) && primitive.is_occluded(ray, [from, distance], does);
-            // After a hit the search ends.
+            // The search ends after the first hit.
             if blocked { f64::NEG_INFINITY } else { -from }
         });
         blocked
@@ -180,8 +180,8 @@ mod tests {
         )))
     }
 
-    /// Squares that share edges, discs and triangles: the cases in which rounding errors could let
-    /// rays through.
+    /// Returns squares that share edges, discs and triangles, which are the cases in which
+    /// rounding errors could let rays through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {
@@ -229,7 +229,8 @@ mod tests {
             .collect()
     }
 
-    /// The hits of a ray with primitives beyond its origin, found without a hierarchy.
+    /// Returns the hits of a ray with primitives beyond the ray's origin, found by a test of
+    /// every primitive without a hierarchy.
     fn in_turn(all: &[TaggedPrimitive<u32>], ray: &TwoPlane) -> Vec<f64> {
         let met = all.iter().flat_map(|primitive| match &primitive.primitive {
             Primitive::Mesh(mesh) => mesh.in_turn(ray),
@@ -284,8 +285,8 @@ mod tests {
         }
     }
 
-    /// Invalid primitives, which no valid scene has, are not passed to the builder, and valid
-    /// primitives beside them are still found.
+    /// Invalid primitives, which no valid scene has, are not passed to the builder of the
+    /// hierarchy, and rays still find the valid primitives beside them.
     #[test]
     fn forms_without_a_box_are_candidates_everywhere() {
         for bad in [f64::NAN, f64::INFINITY, 1e300] {

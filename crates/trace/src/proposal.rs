@@ -1,13 +1,13 @@
-//! Densities for drawing rays that pass a window.
+//! Defines densities for drawing rays that pass a window.
 
 use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
 ///
-/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of the two stays in 0..1.14
-/// and falls to zero at the edge, so the weights are bounded. Other profiles do not vanish at their
-/// edge and are approximated by a constant. For light that a surface receives, the density follows
-/// the cosine.
+/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of a Hann profile to the
+/// tent stays in 0..1.14 and falls to zero at the edge, so the weights of rays are bounded.
+/// Profiles other than Hann do not vanish at their edge, and are approximated by a constant. For
+/// light that a surface receives, the density follows the cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
     half: f64,
@@ -38,20 +38,20 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// The density for slopes, up to `half`, of light that a surface receives. This density is
-    /// weighted by the cosine as in 2D (docs/theory.md (6)).
+    /// Returns the density for slopes, up to `half`, of light that a surface receives. This
+    /// density is weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
     }
 
-    /// Sine of the angle at the largest slope.
+    /// Returns the sine of the angle at the largest slope.
     #[inline(always)]
     fn sine(&self) -> f64 {
         self.half / (1.0 + self.half * self.half).sqrt()
     }
 
-    /// Share of the density below `t`.
+    /// Returns the share of the density below `t`.
     #[inline(always)]
     fn cumulative(&self, t: f64) -> f64 {
         let s = (t / self.half).clamp(-1.0, 1.0);
@@ -87,7 +87,7 @@ impl ProfileDensity {
         s * self.half
     }
 
-    /// The density, with respect to dt.
+    /// Returns the density with respect to dt.
     #[inline(always)]
     pub(crate) fn density(&self, t: f64) -> f64 {
         let s = (t / self.half).abs();
@@ -104,7 +104,7 @@ impl ProfileDensity {
         }
     }
 
-    /// The values of a function of this density for several numbers. The kind of density is fixed
+    /// Evaluates a function of this density for several numbers. The kind of density is fixed
     /// inside each loop, so the compiler can vectorise the loops.
     #[inline(always)]
     fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
@@ -117,8 +117,8 @@ impl ProfileDensity {
     }
 }
 
-/// An array with a number for each index. `std::array::from_fn` would call its function separately
-/// for each index.
+/// Returns an array whose element at each index is the number that `f` returns for the index.
+/// `std::array::from_fn` would call its function separately for each index.
 #[inline(always)]
 pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     let mut all = [0.0; N];
@@ -128,8 +128,9 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance.
-/// The slopes are distributed by the window's profile over the slopes that cross the window.
+/// Slopes along one axis of rays that leave a point of a surface and cross a window at some
+/// distance. The slopes follow the window's profile over the range of slopes that cross the
+/// window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -146,8 +147,8 @@ impl Aim {
         }
     }
 
-    /// The cumulative densities at the two ends of the range of slopes that lead from `x` at
-    /// distance `from` through the window; `None` if the range is empty.
+    /// Returns the cumulative densities at the two ends of the range of slopes that lead from
+    /// `x`, at the distance `from`, through the window; `None` if this range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -163,14 +164,15 @@ impl Aim {
         (range[0] < range[1]).then_some(range)
     }
 
-    /// A slope at `x` and distance `from`, from a number in (0, 1).
+    /// Returns a slope for a ray from `x` at the distance `from`, drawn with a random number in
+    /// (0, 1).
     #[inline]
     pub(crate) fn sample(&self, x: f64, from: f64, random: f64) -> Option<f64> {
         let [low, high] = self.range(x, from)?;
         Some(self.slope.quantile(low + random * (high - low)))
     }
 
-    /// The density of [`Self::sample`] with respect to du.
+    /// Returns the density of [`Self::sample`] with respect to du.
     #[inline]
     pub(crate) fn density(&self, x: f64, from: f64, u: f64) -> f64 {
         let crosses = (x + (self.distance - from) * u).abs() < self.half;
@@ -184,14 +186,14 @@ impl Aim {
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
 /// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
-/// light and cross the window. The position x is drawn second, by the window's profile, from the
-/// positions that the light reaches in the window at that slope. All samples start on the light
-/// and cross the window. For a point light x is fixed, and the density is that of u alone.
+/// light and cross the window. The position x is drawn second: the window's profile is applied to
+/// the positions in the window that light with the drawn slope reaches. All samples start on the
+/// light and cross the window. For a point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
     distance: f64,
-    /// Extent of the light.
+    /// Extent of the light along this axis.
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
@@ -236,8 +238,8 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// The cumulative densities of the window's position, for slopes `u`, at the positions that
-    /// rays from the two ends of the light reach.
+    /// Returns, for slopes `u`, the cumulative densities of the window's position at the points
+    /// where rays from the two ends of the light cross the window.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {
@@ -247,7 +249,8 @@ impl Proposal {
         [at(self.light[0]), at(self.light[1])]
     }
 
-    /// Positions on the light and slopes, each from two numbers in (0, 1).
+    /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
+    /// 1).
     #[inline(always)]
     pub(crate) fn samples<const N: usize>(&self, [a, b]: [[f64; N]; 2]) -> [[f64; N]; 2] {
         let between = |low: f64, high: f64, r: f64| low + r * (high - low);
@@ -263,7 +266,7 @@ impl Proposal {
         [lanes(|i| x[i] - self.distance * u[i]), u]
     }
 
-    /// The density of [`Self::samples`] with respect to dx du.
+    /// Returns the density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
         let [left, right] = self.light;

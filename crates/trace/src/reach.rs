@@ -1,5 +1,5 @@
-//! The regions from which light can reach the window of a plane; emission and scattering are aimed
-//! at them.
+//! Computes the regions from which light can reach the window of a virtual plane; emission and
+//! scattering are aimed at these regions.
 
 use crate::line::{direction, start};
 use crate::plane_on_leg::PlaneOnLeg;
@@ -9,10 +9,11 @@ use etendue_field::{
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
-/// Half-widths, across the end of `leg`, of a box around the central ray. All light from `origins`
-/// (in the frame of the leg) that can reach the window of `plane` passes through this box. The
-/// plane is on a later leg, or on the surface that ends this leg. Returns `None` if there is no
-/// such light, or if light must go across or back along a later leg.
+/// Returns the half-widths of a box around the central ray, in the plane at the end of `leg`. All
+/// light from `origins` (in the frame of the leg) that can reach the window of `plane` passes
+/// through this box. `plane` lies on a later leg, or on the surface that ends `leg`. Returns
+/// `None` if no light reaches the window, or if light must travel perpendicular to a later leg or
+/// back along it.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -20,8 +21,8 @@ pub(crate) fn reach(
     origins: &[DVec3],
 ) -> Option<[f64; 2]> {
     let this = &scene.path.legs[leg];
-    // A plane that records the light arriving at a surface sees no light that has left this
-    // surface.
+    // A virtual plane that records the light arriving at a surface sees no light that has left
+    // this surface.
     let before = leg + 1 == plane.leg && !looks_at_surface(plane);
     let points = if before || leg == plane.leg {
         seen(scene, plane)
@@ -37,7 +38,7 @@ pub(crate) fn reach(
             if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
-            // The light cannot reach points behind it.
+            // Light cannot reach points behind the point from which it leaves.
             let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
@@ -46,8 +47,8 @@ pub(crate) fn reach(
     (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
 }
 
-/// The corners of the region that light can leave, in the frame at the light; for a mesh, those of
-/// its bounding box.
+/// Returns the corners of the region that light can leave, in the frame at the light; for a mesh,
+/// returns the corners of the bounding box.
 pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
         Object::Surface(i) => scene.surfaces[i].corners().to_vec(),
@@ -59,9 +60,9 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
-/// The part of a flat first surface from which light can reach the window of a plane on this
-/// surface or beyond it. The result is the lowest and the highest coordinates of this part in the
-/// surface's frame, or `None` if there is no such part.
+/// Returns the part of a flat first surface from which light can reach the window of a virtual
+/// plane on this surface or beyond it. The result is the lowest and the highest coordinates of
+/// this part in the surface's frame, or `None` if there is no such part.
 pub(crate) fn footprint(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -86,7 +87,7 @@ pub(crate) fn footprint(
     low.cmplt(high).all().then_some([low, high])
 }
 
-/// The corners of a plane's window, in the frame at the light.
+/// Returns the corners of the window of a virtual plane, in the frame at the light.
 fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let half = DVec3::new(half[0], half[1], 0.0);
@@ -94,7 +95,8 @@ fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     box_corners(-half, half).map(to_light).to_vec()
 }
 
-/// The corners of the part of a plane's surface that the plane's window sees, or of a larger part.
+/// Returns the corners of a region of a virtual plane's surface that contains everything that the
+/// plane's window sees.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
     let arriving = looks_at_surface(plane);
@@ -151,18 +153,19 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     points
 }
 
-/// Whether an object is a patch with a BRDF.
+/// Checks whether an object is a patch with a BRDF.
 pub(crate) fn reflects(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Patch(i) if matches!(scene.patches[i].event, Event::Reflects(_)))
 }
 
-/// Whether a plane records the light that arrives on a surface, in coordinates of the surface.
+/// Checks whether a virtual plane records the light that arrives on a surface, in coordinates of
+/// the surface.
 pub(crate) fn looks_at_surface(plane: &VirtualPlane) -> bool {
     plane.orientation != Orientation::Orthogonal && plane.side == Side::Before
 }
 
-/// The corners of a box around the part of a patch that a plane's window sees, in the frame at the
-/// light; `None` when the window may see the whole patch.
+/// Returns the corners of a box around the part of a patch that the window of a virtual plane
+/// sees, in the frame at the light; `None` if the window may see the entire patch.
 fn seen_of_patch(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -188,7 +191,8 @@ fn seen_of_patch(
     for x in ends(&w.x) {
         for y in ends(&w.y) {
             if plane.orientation.is_local() {
-                // The positions are themselves points of the surface.
+                // For a virtual plane on the surface, the window's positions are points of the
+                // surface, so the rays run along the normal.
                 rays.push([DVec3::new(x, y, 0.0), DVec3::Z]);
                 continue;
             }
@@ -202,15 +206,16 @@ fn seen_of_patch(
             }
         }
     }
-    // If light leaves along or behind the surface, the part from which it comes is unbounded.
+    // If light leaves nearly parallel to the surface or behind it, the part of the surface from
+    // which the light comes is unbounded.
     if rays.iter().any(|[_, along]| along.z < MIN_COSINE) {
         return None;
     }
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
-    // A point of the patch at distance r from the normal at the hit is at most |k| r² off the
-    // tangent plane. Lines through the window meet a slab of this thickness within a box. The box
-    // is computed repeatedly, beginning with that of the whole patch.
+    // A point of the patch at the distance r from the normal at the hit lies at most |k| r² from
+    // the tangent plane. Lines through the window meet a slab of this thickness within a box. The
+    // box is computed repeatedly; the first computation uses the box of the entire patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);
@@ -232,8 +237,8 @@ fn seen_of_patch(
     })
 }
 
-/// The rays through the corners of a window with the extreme slopes of the window, each given by
-/// two points in the frame at the light.
+/// Returns the rays through the corners of a window that have the window's extreme slopes, each
+/// ray given by two points in the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
     let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
@@ -252,16 +257,17 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     rays
 }
 
-/// The point where the line through two points meets the plane of a surface, in the surface's
-/// frame. Returns `None` if the line runs to the other side of the surface or along it.
+/// Returns the point where the line through two points meets the plane of a surface, in the
+/// surface's frame. Returns `None` if the line runs to the other side of the surface or parallel
+/// to it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;
     (side * leaves > MIN_COSINE).then(|| a - (a.z / leaves) * (b - a))
 }
 
-/// The cosine to the normal, and the share of a leg's length, below which light counts as parallel
-/// to a surface.
+/// The cosine of the angle to a normal, and the share of a leg's length, below which light counts
+/// as parallel to a surface.
 const MIN_COSINE: f64 = 1e-3;
 /// The margin by which the aimed region exceeds the visible region, to allow for rounding errors.
 const MARGIN: f64 = 1e-9;

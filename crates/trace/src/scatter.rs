@@ -1,4 +1,5 @@
-//! Draws the directions in which a surface scatters light, aimed at windows.
+//! Draws the directions in which a surface scatters light, aimed at the windows of virtual
+//! planes.
 
 use crate::brdf;
 use crate::plane_on_leg::{PlaneOnLeg, SurfaceCoordinates};
@@ -16,22 +17,22 @@ use glam::DVec3;
 /// 1 along D or against it: (u, v, ±1).
 #[derive(Clone, Debug)]
 pub(crate) struct Scatterer {
-    /// The strategies to draw a ray, with equal shares.
+    /// The strategies to draw a ray, each selected with equal probability.
     strategies: Vec<SamplingStrategy>,
 }
 
 /// One strategy to draw a ray.
 #[derive(Clone, Debug)]
 enum SamplingStrategy {
-    /// Draws directions towards a window, along X and along Y.
+    /// Draws directions towards a window, with one density along X and one along Y.
     Window([Aim; 2]),
-    /// Draws directions that a plane on the surface sees.
+    /// Draws directions that a virtual plane on the surface sees.
     Angles(Box<Angles>),
     /// Draws directions in proportion to the BRDF, or to the cosine for Lambertian scattering.
     Lobe,
 }
 
-/// The angles that a plane on the surface sees.
+/// The angles that a virtual plane on the surface sees.
 #[derive(Clone, Copy, Debug)]
 struct Angles {
     view: SurfaceCoordinates,
@@ -57,7 +58,8 @@ pub(crate) enum Spread<'a> {
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
-    /// A direction in which light leaves a point where the surface has this normal.
+    /// Returns a direction in which light leaves a point at which the surface has the normal
+    /// `normal`.
     #[inline]
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         match self {
@@ -68,8 +70,8 @@ impl Spread<'_> {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to n · (u, v, ±1) du dv, where `cosine` is n ·
-    /// (u, v, ±1).
+    /// Returns the density of [`Self::sample`] with respect to n · (u, v, ±1) du dv, where
+    /// `cosine` is n · (u, v, ±1).
     #[inline]
     fn density(&self, towards: DVec3, cosine: f64) -> f64 {
         let secant_squared = towards.length_squared();
@@ -82,7 +84,7 @@ impl Spread<'_> {
         }
     }
 
-    /// The BRDF towards a direction; for Lambertian scattering the albedo is left out.
+    /// Returns the value of the BRDF for a direction; Lambertian scattering omits the albedo.
     #[inline]
     pub(crate) fn value(&self, towards: DVec3) -> f64 {
         match self {
@@ -96,13 +98,14 @@ impl Spread<'_> {
 }
 
 impl Angles {
-    /// A direction in which light leaves a point, from two numbers in (0, 1).
+    /// Returns a direction in which light leaves a point, drawn with two random numbers in (0,
+    /// 1).
     fn sample(&self, point: DVec3, random: [f64; 2]) -> Option<DVec3> {
         let angles = [0, 1].map(|i| self.across[i].quantile(random[i]));
         self.view.direction(point, angles)
     }
 
-    /// The density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
+    /// Returns the density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
     fn density(&self, point: DVec3, towards: DVec3) -> f64 {
         self.view.angles(point, towards).map_or(0.0, |[u, v]| {
             self.across[0].density(u) * self.across[1].density(v) / libm::cos(v)
@@ -110,14 +113,14 @@ impl Angles {
     }
 }
 
-/// The ratio dω / (n · (u, v, ±1) du dv), where dω = du dv / (1 + u² + v²)^(3/2).
+/// Returns the ratio dω / (n · (u, v, ±1) du dv), where dω = du dv / (1 + u² + v²)^(3/2).
 #[inline]
 fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
     1.0 / (secant_squared * secant_squared.sqrt() * cosine)
 }
 
 impl Scatterer {
-    /// Returns `None` if no plane sees light that has come to this leg.
+    /// Returns `None` if no virtual plane sees light of this leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let leaves = this.leaves?.object;
@@ -145,8 +148,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on the surface that ends the leg sees only some slopes; a plane beyond
-                // this surface sees light of any slope.
+                // A virtual plane on the surface that ends the leg sees only some slopes, but a
+                // virtual plane beyond this surface sees light of any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {
@@ -160,8 +163,8 @@ impl Scatterer {
         looking.peek()?;
         let aims = looking.map(aim);
         let strategies: Vec<SamplingStrategy> = if by_brdf {
-            // A lobe may be narrower than any window or wider than all windows, so half of the
-            // directions are drawn by the lobe.
+            // A lobe of a BRDF may be narrower than any window or wider than all windows, so half
+            // of the directions are drawn by the lobe.
             let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
             let lobes = strategies.len().max(1);
             strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));
@@ -173,9 +176,10 @@ impl Scatterer {
         Some(Self { strategies })
     }
 
-    /// A direction in which light leaves a point where the surface has this normal, and its
-    /// density with respect to n · (u, v, ±1) du dv. Returns `None` if light from the point cannot
-    /// reach the chosen plane, or if the direction goes behind the surface.
+    /// Returns a direction in which light leaves a point with the normal `normal`, and the
+    /// density of this direction with respect to n · (u, v, ±1) du dv. Returns `None` if light
+    /// from the point cannot reach the selected virtual plane, or if the direction goes behind
+    /// the surface.
     #[inline]
     pub(crate) fn sample(
         &self,

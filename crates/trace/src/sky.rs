@@ -12,9 +12,9 @@ use glam::DVec3;
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead of the environment. The cosine is
-    /// needed if most light goes backwards, because forward directions would otherwise be drawn
-    /// too rarely.
+    /// The share of slopes that are drawn in proportion to the cosine instead of the
+    /// environment's radiance. If most light of the environment goes backwards, forward
+    /// directions would be drawn too rarely without the strategy by the cosine.
     by_cosine: f64,
 }
 
@@ -26,10 +26,10 @@ enum Choice {
     Map(LatLongSampler),
 }
 
-/// The number of directions drawn to estimate how many go forward.
+/// The number of directions that are drawn to estimate the share of directions that go forward.
 const TRIED: u64 = 1000;
-/// The upper limit of the share by the cosine, so that some directions are still drawn by the
-/// environment.
+/// The largest allowed share of slopes drawn by the cosine, so that some directions are still
+/// drawn by the environment.
 const MOST_BY_COSINE: f64 = 0.9;
 const LEAST_BY_COSINE: f64 = 0.1;
 
@@ -54,8 +54,8 @@ impl Sky {
         sky
     }
 
-    /// A unit direction in which light travels, in the frame at the light, from four numbers in (0,
-    /// 1).
+    /// Returns a unit direction in which light travels, in the frame at the light, drawn with
+    /// four random numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 4]) -> DVec3 {
         let from = match &self.choice {
             Choice::Lobes(lobes, flux) => {
@@ -70,7 +70,7 @@ impl Sky {
         -self.environment.frame.vector_to_world(from)
     }
 
-    /// The density of [`Self::sample`] per steradian.
+    /// Returns the density of [`Self::sample`] per steradian.
     pub(crate) fn density(&self, along: DVec3) -> f64 {
         let from = self.environment.origin_of(along);
         match &self.choice {
@@ -79,7 +79,7 @@ impl Sky {
         }
     }
 
-    /// The slopes of a direction; `None` when it does not go forward.
+    /// Returns the slopes of a drawn direction; `None` if the direction does not go forward.
     pub(crate) fn slopes(&self, r: [f64; 4]) -> Option<[f64; 2]> {
         let along = if r[0] < self.by_cosine {
             cosine_hemisphere([r[2], r[1]])
@@ -90,7 +90,7 @@ impl Sky {
         (along.z > FORWARD).then(|| [along.x / along.z, along.y / along.z])
     }
 
-    /// The density of [`Self::slopes`] with respect to du dv.
+    /// Returns the density of [`Self::slopes`] with respect to du dv.
     #[inline]
     pub(crate) fn slope_density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
@@ -100,15 +100,15 @@ impl Sky {
         density / (secant_squared * secant_squared.sqrt())
     }
 
-    /// Radiance along a ray, in the frame at the light.
+    /// Returns the radiance along a ray, in the frame at the light.
     #[inline]
     pub(crate) fn radiance(&self, ray: &TwoPlane) -> f64 {
         radiance(&self.environment, ray)
     }
 
-    /// The irradiance at a point with this normal, from one direction drawn by the cosine or by the
-    /// environment with equal probability. `incident` returns the radiance that arrives along a ray
-    /// at a distance on the first leg.
+    /// Returns the irradiance at a point with a given normal, estimated from one direction that
+    /// is drawn with equal probability by the cosine or by the environment. `incident` returns
+    /// the radiance that arrives along a ray at a given distance on the first leg.
     pub(crate) fn irradiance(
         &self,
         point: DVec3,
@@ -131,7 +131,7 @@ impl Sky {
     }
 }
 
-/// Radiance along a ray, in the frame at the light.
+/// Returns the radiance of an environment along a ray, in the frame at the light.
 #[inline]
 pub(crate) fn radiance(environment: &Environment, ray: &TwoPlane) -> f64 {
     if ray.secant_squared() * FORWARD * FORWARD < 1.0 {
@@ -162,7 +162,8 @@ mod tests {
             lobe(DVec3::NEG_Y, 0.8, 0.5),
             lobe(DVec3::X, 1000.0, 0.1),
         ];
-        // Bright pixels are at the left edge, where longitude wraps around, and at the poles.
+        // The map has bright pixels at its left edge, where longitude wraps around, and at the
+        // poles.
         let map = LatLong::from_fn(12, 7, |d| {
             let edge = d.z < -0.8 && d.x > 0.0;
             if edge { 4.0 } else { 0.2 * d.y * d.y }

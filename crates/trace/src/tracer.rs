@@ -17,14 +17,16 @@ use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
-/// on the way attenuate it. Blockers absorb the photon, and a Lambertian surface absorbs the share
-/// 1 − albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses
-/// the planes on the next leg, and so on. A photon that meets anything else ends.
+/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that
+/// it meets; gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and
+/// a Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the
+/// end of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
+/// continues from leg to leg. If a photon meets an obstacle other than the surface at the end of
+/// its leg, the photon ends.
 ///
-/// The ledger counts light that arrives at the front of a surface with a BRDF as stopped, because
-/// the reflected share has no closed form. The ledger does not count light that a surface scatters
-/// onwards, because this light is aimed.
+/// If light arrives at the front of a surface with a BRDF, the ledger counts it as stopped,
+/// because the reflected share has no closed form. The ledger does not count light that a surface
+/// scatters onwards, because scattered light is aimed at the windows of virtual planes.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
@@ -50,10 +52,12 @@ struct FlightLeg {
     rounding: f64,
 }
 
-/// The objects that photons in one direction along a leg can meet.
+/// The objects that photons can meet if they travel along a leg in one of the leg's two
+/// directions.
 #[derive(Debug)]
 struct Course {
-    /// The frame of the heading, in the frame at the light.
+    /// The frame of the heading (the direction of light along the leg), in the frame at the
+    /// light.
     frame: Frame,
     obstacles: Obstacles,
     planes_on_leg: Vec<PlaneOnLeg>,
@@ -64,9 +68,9 @@ struct Course {
 pub(crate) struct Flight {
     pub(crate) ray: TwoPlane,
     pub(crate) heading: Heading,
-    /// The distance, along the heading of the photon, at which the photon begins.
+    /// The distance at which the photon starts, measured along the photon's heading.
     pub(crate) from: f64,
-    /// The contribution to radiance space.
+    /// The contribution of the photon to radiance space.
     pub(crate) weight: f64,
 }
 
@@ -80,10 +84,10 @@ struct Photon {
 }
 
 impl Tracer {
-    /// The tracer of a scene.
+    /// Builds the tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        // Legs beyond the last plane are not traced.
+        // Legs beyond the last virtual plane are not traced.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
         let legs: Vec<FlightLeg> = legs.collect();
@@ -96,12 +100,13 @@ impl Tracer {
         }
     }
 
-    /// A second tracer of photons, for light without extent that no backward ray finds. The two
-    /// tracers share no random numbers, and do not aim the emission in the same way.
+    /// Builds a second tracer of photons, which checks light without extent that no backward ray
+    /// finds. The tracers of [`Self::new`] and of this function share no random numbers, and aim
+    /// the emission in different ways.
     ///
-    /// This tracer emits light uniformly towards the whole first surface and the windows before
-    /// this surface. It traces photons and aims scattered light in the same way as the tracer of
-    /// [`Self::new`].
+    /// This tracer emits light uniformly towards the entire first surface, and towards the
+    /// windows of virtual planes before this surface. It traces photons and aims scattered light
+    /// in the same way as the tracer of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -126,8 +131,8 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // At the end of the range, the group is filled up with copies of the last photon,
-            // which are discarded.
+            // At the end of the range, the group is filled with copies of the last photon, and
+            // these copies are discarded.
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
@@ -150,8 +155,9 @@ impl Tracer {
         }
     }
 
-    /// Traces a photon over a leg: finds what it meets, reports the planes that it crosses before,
-    /// and determines its start on the next leg. Returns false if the photon ends on this leg.
+    /// Traces a photon over a leg: finds the obstacle that the photon meets, reports the virtual
+    /// planes that the photon crosses before it, and computes the photon's start on the next leg.
+    /// Returns false if the photon ends on this leg.
     #[inline]
     fn follow(
         &self,
@@ -162,7 +168,8 @@ impl Tracer {
         ledger: &mut Ledger,
     ) -> bool {
         let this = &self.legs[leg];
-        // Scattered light is aimed at windows, so the ledger does not count it.
+        // Scattered light is aimed at the windows of virtual planes, so the ledger does not count
+        // it.
         let mut beyond = Ledger::default();
         let account = if photon.counts { ledger } else { &mut beyond };
         let Flight {
@@ -243,8 +250,8 @@ impl FlightLeg {
         }
     }
 
-    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` if
-    /// the photon ends there.
+    /// Returns the start on this leg of a photon that arrives at the end of the previous leg;
+    /// `None` if the photon ends at the previous leg.
     #[inline(never)]
     fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
         let arrival = arrival.moved(&before.frame, &self.courses.along.frame);
@@ -259,7 +266,7 @@ impl FlightLeg {
         })
     }
 
-    /// Reports the planes that a photon crosses before it meets anything.
+    /// Reports the virtual planes that a photon crosses before it meets an obstacle.
     #[inline]
     fn record(
         &self,
@@ -276,8 +283,9 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // Light that has left an object and would meet it again is lost, even if a blocker stops
-        // the light first. Otherwise a blocker beyond a plane would add light at the plane.
+        // If light has left an object and would meet the same object again, the light is lost,
+        // even if a blocker stops it first. If such light counted, a blocker beyond a virtual
+        // plane would add light at the plane.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
@@ -290,14 +298,14 @@ impl FlightLeg {
             let Some(distance) = plane_on_leg.crossing_of_photon(&ray, from, arrival) else {
                 continue;
             };
-            // A plane beside an object is at exactly the same distance, so rounding errors cannot
-            // separate them.
+            // A virtual plane beside an object is at exactly the same distance as the object, so
+            // rounding errors cannot separate them.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
-            // A plane records the light that a surface receives. If this surface is curved or
-            // oblique, part of it may lie before the plane.
+            // A plane records the light that a surface receives. If the surface that receives the
+            // light is curved or oblique, part of the surface may lie before the virtual plane.
             let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
@@ -315,7 +323,7 @@ impl FlightLeg {
     }
 }
 
-/// Whether a straight line may meet an object twice.
+/// Checks whether a straight line may meet an object twice.
 fn bends(scene: &Scene, object: Object) -> bool {
     match object {
         Object::Surface(_) => false,
@@ -375,8 +383,8 @@ impl PhotonSource for Tracer {
                 record(plane, crossings);
                 crossings.clear();
             }
-            // Each block has its own sum, so rounding errors grow with the number of blocks, not
-            // with the number of photons.
+            // Each block of photons has its own sum of fluxes, so rounding errors grow with the
+            // number of blocks instead of the number of photons.
             total.add(&block);
             progress(end - start);
         }

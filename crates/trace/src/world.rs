@@ -1,20 +1,21 @@
-//! Crossings of a plane as rays in world coordinates.
+//! Converts crossings of a virtual plane to rays in world coordinates.
 
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, Frame, TwoPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// Converts crossings of a plane to rays in world coordinates with their power.
+/// A converter from crossings of a virtual plane to rays in world coordinates with their power.
 #[derive(Debug)]
 pub struct PlaneInWorld {
     plane_on_leg: PlaneOnLeg,
-    /// The frame of the leg, in the world.
+    /// The frame of the plane's leg, in world coordinates.
     leg: Frame,
 }
 
 impl PlaneInWorld {
-    /// The plane of a scene with this index; `None` if there is none.
+    /// Returns the converter for the virtual plane of a scene with the index `plane`; `None` if
+    /// the scene has no such plane.
     #[must_use]
     pub fn new(scene: &Scene, plane: usize) -> Option<Self> {
         let at = scene.planes.get(plane)?;
@@ -25,9 +26,9 @@ impl PlaneInWorld {
         })
     }
 
-    /// The point where a ray crosses the plane, in metres, and the unit vector along which light
-    /// travels there. For a plane on a surface the point lies on the surface. Returns `None` for
-    /// coordinates that no ray has.
+    /// Returns the point where a ray crosses the virtual plane, in metres, and the unit vector
+    /// along which light travels at this point. If the virtual plane lies on a surface, the
+    /// returned point lies on this surface. Returns `None` for coordinates that belong to no ray.
     #[must_use]
     pub fn ray(&self, seen: &TwoPlane) -> Option<[DVec3; 2]> {
         let (point, ..) = self.plane_on_leg.point([seen.x, seen.y])?;
@@ -42,9 +43,9 @@ impl PlaneInWorld {
         Some([self.leg.to_world(point), along])
     }
 
-    /// The flux of a photon times the number of photons emitted, W. This is the photon's weight
-    /// times cos θ dω / du dv, because the reciprocal of this factor converts flux to radiance
-    /// space (docs/conventions.md).
+    /// Returns the flux of a photon times the number of photons emitted, W. This flux is the
+    /// photon's weight times cos θ dω / du dv, because the reciprocal of cos θ dω / du dv
+    /// converts flux to radiance space (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
         crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)

@@ -10,7 +10,7 @@ use etendue_trace::{Backward, Tracer};
 /// A test case: the name of a scene, its surfaces, its path and its planes.
 type Case = (&'static str, &'static str, &'static str, &'static str);
 
-/// All kinds of planes on one surface.
+/// All kinds of virtual planes on one surface.
 const ON_IT: &str = r#"(name: "incidence", at: Before("it"), orientation: Tangent), (name: "curvature", at: Before("it"), orientation: LocalNormals),
     (name: "mirrored", at: Before("it"), orientation: Mirrored), (name: "reflected", at: After("it"), orientation: LocalNormals),
     (name: "back", at: After("it"), orientation: Tangent, quantity: DifferentialIrradiance),
@@ -90,8 +90,8 @@ const CASES: &[Case] = &[
 ];
 
 fn scene((_, surfaces, path, planes): &Case, emission: &str, photons: u32, seed: u32) -> Scene {
-    // Angles to the normal stay well below 90 degrees, where the variance of the weights of plain
-    // photons is infinite.
+    // Angles to the normal stay well below 90 degrees, because the variance of the weights of
+    // plain photons is infinite at 90 degrees.
     let u = if surfaces.contains("0.966") { 0.2 } else { 0.4 };
     let text = format!(
         r#"(
@@ -127,7 +127,7 @@ fn all_ways_agree(cases: &[Case]) {
         let plain = scene(case, "Plain", 1_600_000, 2);
         let (backward, _) = estimates(&Backward::new(&aimed).unwrap(), &aimed);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // The rounding error of some 10^5 additions.
+        // The tolerance is the rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{}: {ledger:?}", case.0);
         let (plain, ledger) = estimates(&Tracer::new(&plain), &plain);
         assert!(ledger.imbalance().abs() < 1e-12, "{}: {ledger:?}", case.0); // as above
@@ -137,7 +137,8 @@ fn all_ways_agree(cases: &[Case]) {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 300 tests: 4.5 standard errors are exceeded in one run of 500.
+                    // Among some 300 tests, at least one exceeds 4.5 standard errors in one run
+                    // of 500.
                     assert!(z.abs() < 4.5, "{at}: {a:?} and {b:?}");
                 }
                 let most = if way == "aimed" { 0.04 } else { 0.3 };
@@ -158,7 +159,8 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     let scene = scene(&case, "Aimed", 100_000, 1);
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     for (a, b) in photons[0].iter().zip(&photons[1]) {
-        // The photons are the same, so the difference is rounding error.
+        // The photons at the two planes are the same, so the difference between the estimates is
+        // rounding error.
         assert!(
             (a[0] - b[0]).abs() < 1e-9 * photons[0][0][0],
             "{a:?} and {b:?}"
@@ -166,7 +168,7 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     }
 }
 
-/// A beam hits a rough plane. The ratio of leaving to arriving light is the directional albedo,
+/// A beam hits a rough plane. The ratio of leaving to arriving flux is the directional albedo,
 /// which is known from a separate quadrature.
 #[test]
 fn exitant_over_incident_flux_is_the_directional_albedo() {
@@ -203,7 +205,8 @@ fn exitant_over_incident_flux_is_the_directional_albedo() {
     }
 }
 
-/// The example in the repository, by both tracers.
+/// The forward and the backward tracer agree on the sphere of table 1, an example scene of this
+/// repository.
 #[test]
 fn both_ways_agree_on_the_sphere_of_table_1() {
     let file = SceneFile::parse(include_str!("../../../scenes/table1/ggx_sphere.ron")).unwrap();
@@ -211,13 +214,13 @@ fn both_ways_agree_on_the_sphere_of_table_1() {
     let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
     let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
     let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
-    // The rounding error of some 10^5 additions.
+    // The tolerance is the rounding error of some 10^5 additions.
     assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
     for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
         let name = &scene.planes[plane].name;
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // 21 tests: 4 standard errors are exceeded in one run of 700.
+            // Among 21 tests, at least one exceeds 4 standard errors in one run of 700.
             assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}");
         }
         assert!(b[0][1] < 0.02 * b[0][0], "{name}: {b:?} is too noisy");

@@ -1,4 +1,5 @@
-//! Tests light from environments: aimed, plain and backward, and against known integrals.
+//! Tests light from environments: compares aimed photons, plain photons and backward rays with
+//! each other, and with known integrals.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -67,12 +68,13 @@ impl Bench<'_> {
         resolve("test", SceneFile::parse(&text).unwrap(), folder, u64::MAX).unwrap()
     }
 
-    /// Compares the three ways at each plane; returns the number of tests.
+    /// Compares aimed photons, plain photons and backward rays at each virtual plane; returns the
+    /// number of tests.
     fn agrees(&self, what: &str) -> usize {
         let aimed = self.scene("Aimed", 600_000);
         let plain = self.scene("Plain", 2_000_000);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // The rounding error of some 10^5 additions.
+        // The tolerance is the rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}");
         let (plain, ledger) = estimates(&Tracer::new(&plain), &plain);
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}"); // likewise
@@ -89,7 +91,8 @@ impl Bench<'_> {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 200 tests: 4.3 standard errors are exceeded in one run of 300.
+                    // Among some 200 tests, at least one exceeds 4.3 standard errors in one run
+                    // of 300.
                     assert!(z.abs() < 4.3, "{what}: {way} at {name}: {a:?} and {b:?}");
                 }
             }
@@ -119,7 +122,7 @@ fn a_map_is_where_its_axes_put_it() {
     let folder = tempfile::tempdir().unwrap();
     write_map(folder.path(), "sky.exr", (0, 1));
     write_map(folder.path(), "turned.exr", (1, 1));
-    // Longitude grows to the left, and π/2 is along up × front.
+    // In a map, longitude grows to the left, and the longitude π/2 is along up × front.
     let (sin, cos) = (TAU / 24.0).sin_cos();
     let turned_back = format!("({sin}, {cos}, 0)");
     let found = [
@@ -144,8 +147,8 @@ fn a_map_is_where_its_axes_put_it() {
         let z = pairs.map(|(a, b)| (a[0] - b[0]).abs() / a[1].hypot(b[1]));
         z.fold(0.0, f64::max)
     };
-    // The bounds are six standard errors, and four for differences that share their random numbers.
-    // The faint pixels around the pole are equal.
+    // The tolerances are six standard errors, and four standard errors for differences between
+    // estimates that share their random numbers. The faint pixels around the pole are equal.
     assert!(differs(0, 1) > 6.0, "{}: {found:?}", differs(0, 1));
     assert!(differs(0, 2) < 4.0, "{}: {found:?}", differs(0, 2));
 }
@@ -249,8 +252,8 @@ fn all_ways_agree() {
     assert!(tests > 150, "{tests} tests");
 }
 
-/// Light that leaves a Lambertian wall has the radiance ρ E/π, so ∫ L W is this radiance times the
-/// integral of the window.
+/// Light that leaves a Lambertian wall has the radiance ρ E/π, so ∫ L W is ρ E/π times the
+/// integral of the window W.
 fn irradiance(light: &str) -> [[f64; 2]; 2] {
     let planes = r#"(name: "leaving", at: After("wall"), window: (x: Hann(0.4), u: Hann(0.4)))"#;
     let bench = Bench {
@@ -259,7 +262,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
         ..Bench::default()
     };
     let scene = bench.scene("Aimed", 400_000);
-    // The number is the integral of Hann windows in x, y, u and v.
+    // The integral of the Hann windows in x, y, u and v.
     let window = 0.4_f64.powi(4);
     let found = [
         estimates(&Tracer::new(&scene), &scene).0,
@@ -270,7 +273,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
 
 #[test]
 fn even_light_gives_a_wall_pi_times_its_radiance() {
-    // The light is uniform to a millionth.
+    // The radiance of this light is uniform to a millionth.
     let even = "Environment(center: (0, 0, 0), map: Lobes([(from: (1, 2, -1), width: 1000, radiance: 1.5)]))";
     for [found, error] in irradiance(even) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
@@ -297,8 +300,8 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // The tolerance is four standard errors; the mid-point rule is accurate to (step)²/24 of
-        // the whole, 1e-6.
+        // The tolerance is four standard errors; the relative error of the mid-point rule is
+        // (step)²/24, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,
             "{found} ± {error}, {sum}"

@@ -1,5 +1,5 @@
-//! Tests several reflections in a row, oblique surfaces and light that leaves a mesh: in three
-//! ways, and against a plain quadrature.
+//! Tests several reflections in a row, oblique surfaces and light that leaves a mesh: compares
+//! aimed photons, plain photons, backward rays and a plain quadrature.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -15,7 +15,8 @@ const WALL: &str = r#"Rectangle(name: "wall", center: (0.1, 0, 2), size: (2, 1.6
 const STAR: &str = r#"Mesh(name: "wall", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const FLOOR: &str = r#"Rectangle(name: "floor", center: (1.5, 0.3, 1.8), size: (2, 2), facing: (-1, 0, 0.1), albedo: 0.5)"#;
 const CEILING: &str = r#"Rectangle(name: "ceiling", center: (0.6, 1.2, 3), size: (1.5, 1.5), facing: (0, -1, -0.2), albedo: 0.9)"#;
-/// A blocker beside the light's path, and in the path of light that leaves the wall.
+/// Two blockers: one beside the path of the light, and one in the path of light that leaves the
+/// wall.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.7, 0, 1.6), shapes: [Disc(center: (0, 0), radius: 0.2)])"#;
 const GRATING: &str =
@@ -36,7 +37,7 @@ fn windowed(
     window: &str,
 ) -> Scene {
     let legs = visits.len();
-    // The near side of a mesh faces backwards.
+    // The near side of a mesh faces backwards, towards the light.
     let floor = match wall {
         STAR => FLOOR.replace("(1.5, 0.3, 1.8)", "(1.3, 0.3, 0.6)"),
         _ => FLOOR.to_owned(),
@@ -86,7 +87,7 @@ fn all_ways_agree_on_every_leg() {
         let plain = scene(wall, blockers, visits, "Plain", 2_500_000);
         let (backward, _) = estimates(&Backward::new(&aimed).unwrap(), &aimed);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // The rounding error of some 10^5 additions.
+        // The tolerance is the rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         let (plain, _) = estimates(&Tracer::new(&plain), &plain);
         for (way, other) in [("aimed", &photons), ("plain", &plain)] {
@@ -95,7 +96,8 @@ fn all_ways_agree_on_every_leg() {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 120 tests: 4.2 standard errors are exceeded in one run of 300.
+                    // Among some 120 tests, at least one exceeds 4.2 standard errors in one run
+                    // of 300.
                     assert!(
                         z.abs() < 4.2,
                         "{way} at {name}: {a:?} and {b:?}, {wall}, {blockers}"
@@ -112,8 +114,8 @@ fn all_ways_agree_on_every_leg() {
     assert!(tests > 100, "{tests} tests");
 }
 
-/// ∫ L W at the plane before the floor, whose light left the wall. Every integral is a plain sum,
-/// in world coordinates.
+/// Computes ∫ L W at the virtual plane before the floor, for light that left the wall. Every
+/// integral is a plain sum in world coordinates.
 #[test]
 fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     // The mid-point rule for Hann windows converges faster than any power.
@@ -155,14 +157,16 @@ fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let [mean, error] = photons[2][0];
     assert!(error < 3e-3 * mean, "{mean} ± {error}");
-    // The mid-point rule over the light, 8 × 8 points, is accurate to 1e-3; the rest is noise.
+    // The mid-point rule over 8 × 8 points of the light is accurate to 1e-3; the remaining
+    // difference is noise.
     assert!(
         (mean - sum).abs() < 4.0 * error + 1e-3 * sum,
         "{mean} ± {error}, {sum}"
     );
 }
 
-/// Surfaces that reflect and refract, the path through them, and its planes.
+/// Surfaces that reflect and refract, the path through these surfaces, and the virtual planes on
+/// the path.
 const SMOOTH: &[(&str, &str, &[&str], &str)] = &[
     (
         "a concave mirror, with planes of every orientation on it, and a floor that what it reflects falls on",
@@ -217,13 +221,13 @@ fn both_ways_agree_behind_smooth_surfaces() {
         let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
         let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
         let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
-        // The rounding error of some 10^5 additions.
+        // The tolerance is the rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Some 60 tests: 4 standard errors are exceeded in one run of 250.
+                // Among some 60 tests, at least one exceeds 4 standard errors in one run of 250.
                 assert!(z.abs() < 4.0, "{what}: {name}: {a:?} and {b:?}");
             }
             for [mean, error] in [a[0], b[0]] {
@@ -285,7 +289,7 @@ fn light_that_goes_back_along_a_leg_arrives() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // 24 tests: 4 standard errors are exceeded in one run of 600.
+                // Among 24 tests, at least one exceeds 4 standard errors in one run of 600.
                 assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}, {wall}, {blockers}");
             }
             let [mean, error] = b[0];
@@ -297,7 +301,8 @@ fn light_that_goes_back_along_a_leg_arrives() {
     }
 }
 
-/// ∫ L W at the plane after the floor: a sum over random points of the window, the wall and the light, in world coordinates.
+/// Computes ∫ L W at the virtual plane after the floor, as a sum over random points of the
+/// window, the wall and the light, in world coordinates.
 #[test]
 fn light_that_went_back_along_a_leg_is_what_a_plain_sum_says() {
     let scene = going_back(WIDE, "", &["wall", "floor"]);
@@ -312,7 +317,7 @@ fn light_that_went_back_along_a_leg_is_what_a_plain_sum_says() {
         let t = (floor.frame.origin - from).dot(floor.frame.d) / along.dot(floor.frame.d);
         from + t * along
     };
-    // cos θ cos θ' / r².
+    // The form factor cos θ cos θ' / r² between two points.
     let form = |way: DVec3, from: DVec3, to: DVec3| {
         way.dot(from).max(0.0) * (-way.dot(to)).max(0.0) / way.length_squared().powi(2)
     };

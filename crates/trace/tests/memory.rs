@@ -1,5 +1,4 @@
-//! Measures the memory of a mesh of a million triangles, which has only one hierarchy for all
-//! legs.
+//! Measures the memory of a mesh of a million triangles, for which all legs share one hierarchy.
 //!
 //! The test runs in its own process, because it measures the memory of the whole process.
 
@@ -25,7 +24,7 @@ const SCENE: &str = r#"(
     frequencies: (rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// A number of bytes that the kernel reports for this process.
+/// Returns a number of bytes that the kernel reports for this process.
 fn bytes(what: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with(what)).unwrap();

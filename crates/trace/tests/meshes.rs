@@ -15,7 +15,7 @@ use std::path::Path;
 
 const MESHES: u64 = 2000;
 
-/// The random numbers of one mesh, in sequence.
+/// The source of the random numbers of one mesh, which are used in sequence.
 struct Draw {
     mesh: u64,
     next: Cell<u32>,
@@ -46,7 +46,7 @@ struct Parts {
     triangles: Vec<[usize; 3]>,
 }
 
-/// A bumpy square around the origin, facing along z.
+/// Returns a bumpy square around the origin, facing along z.
 fn square(draw: &Draw, bumps: f64) -> Parts {
     let n = 1 + draw.below(5);
     let at = |i: usize| 2.0 * i as f64 / n as f64 - 1.0;
@@ -69,7 +69,7 @@ fn square(draw: &Draw, bumps: f64) -> Parts {
     }
 }
 
-/// A closed surface of eight triangles.
+/// Returns a closed surface of eight triangles.
 fn octahedron(draw: &Draw) -> Parts {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let vertices = axes.into_iter().flat_map(|axis| [axis, -axis]);
@@ -88,7 +88,7 @@ fn octahedron(draw: &Draw) -> Parts {
     }
 }
 
-/// Triangles between random vertices.
+/// Returns triangles between random vertices.
 fn soup(draw: &Draw) -> Parts {
     let vertices = (0..3 + draw.below(6)).map(|_| draw.point(1.0));
     let vertices: Vec<DVec3> = vertices.collect();
@@ -110,17 +110,18 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     let any = draw.below(parts.triangles.len());
     let [a, b, c] = parts.triangles[any];
     match kind {
-        // The changes are a reversed triangle, a duplicate, and a triangle present from both sides.
+        // The three kinds of change are a reversed triangle, a duplicated triangle, and a
+        // triangle that is present from both sides.
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
-        // Adds the reverse of every triangle.
+        // This change adds the reverse of every triangle.
         6 => {
             let other = |[a, b, c]: &[usize; 3]| [*a, *c, *b];
             let other: Vec<_> = parts.triangles.iter().map(other).collect();
             parts.triangles.extend(other);
         }
-        // Vertices nearly coincide, or nearly lie on a line.
+        // This change makes vertices nearly coincide, or nearly lie on a line.
         7 => {
             let near = 10_f64.powf(draw.between(-40.0, -3.0));
             parts.vertices[a] = parts.vertices[b] + near * draw.point(1.0);
@@ -139,7 +140,8 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     parts
 }
 
-/// Returns the text of a mesh file. OBJ files count from 1, and PLY files from 0.
+/// Returns the text of a mesh file. Vertices are counted from 1 in OBJ files, and from 0 in PLY
+/// files.
 fn written(parts: &Parts, obj: bool) -> String {
     let mut text = String::new();
     let Parts {
@@ -166,7 +168,7 @@ fn written(parts: &Parts, obj: bool) -> String {
     text
 }
 
-/// A mesh of half-width `size` in front of a light of that size.
+/// Returns a scene with a mesh of half-width `size` in front of a light of the same size.
 fn scene(file: &str, event: &str, scale: f64, size: f64, center: DVec3) -> String {
     let (length, wide) = (size.clamp(1e-9, 1e9), size.clamp(1e-8, 1e8));
     let light = center + 3.0 * size * DVec3::new(0.3, -0.2, 1.0);
@@ -217,7 +219,7 @@ fn assert_sound(scene: &Scene, what: &str) {
         };
         source.emit(0, &mut record, &|_| ());
     }
-    // Some of these meshes are kilometres wide, which is a warning of its own.
+    // Some random meshes are kilometres wide, for which the scene gives a warning about units.
     let of_units = |warning: &String| warning.contains("are those millimetres?");
     let (units, others): (Vec<_>, Vec<_>) = scene.warnings().into_iter().partition(of_units);
     assert!(units.len() <= 1 && others.len() <= 1, "{what}");
@@ -263,8 +265,8 @@ fn random_smooth_meshes_are_refused_or_traced() {
             Err(other) => panic!("{other}: {text}"),
         }
     }
-    // Both outcomes must occur often; otherwise the meshes were too irregular or too regular for
-    // the test.
+    // Meshes must often be accepted and often be refused; otherwise they were too irregular or
+    // too regular for the test.
     let often = |counts: [u32; 13]| counts.iter().sum::<u32>() > 400;
     assert!(often(sound) && often(refused), "{sound:?} and {refused:?}");
 }

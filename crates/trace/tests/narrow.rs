@@ -1,5 +1,5 @@
-//! Tests lights without extent: photons, backward rays drawn towards the light, and photons that
-//! are not aimed.
+//! Tests lights without extent: compares aimed photons, backward rays drawn towards the light,
+//! and photons that are not aimed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -15,7 +15,7 @@ const LIGHTS: [&str; 3] = [
         grating: (axis: X, frequency: 3, modulation: 0.8, phase: 0.5)))",
     "Beam(center: (0, 0, 0), irradiance: 2, image: (width: (0.5, 0.4)))",
 ];
-/// A blocker in the light's path, a little beside its middle.
+/// A blocker in the path of the light, a little beside the middle of the path.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.1, 0, 0.4), shapes: [Disc(center: (0, 0), radius: 0.05)])"#;
 const BALL: &str = r#"Smooth(name: "s", center: (0, 0, 1), facing: (0.3, -0.5, -0.8),
@@ -25,7 +25,7 @@ const WALL: &str = r#"Rectangle(name: "s", center: (0, 0, 1), size: (2, 1.6),
 const STAR: &str = r#"Mesh(name: "s", center: (0, 0, 1),
     mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const SPHERE: &str = r#"Mesh(name: "m", center: (0.2, -0.1, 0.5), mesh: Star(radius: 0.08, relief: 0.3, lobes: 4, rings: 10), albedo: 0.8)"#;
-/// A surface in the path of light that leaves the wall, by mirror reflection or upwards.
+/// A mirror that light reaches after it leaves the wall, by mirror reflection or upwards.
 const MIRROR: &str = r#"Smooth(name: "mirror", center: (0.5, -0.8, 0), facing: (-0.4, 1, 0.2),
     form: Sphere(-0.1), aperture: 1.5, event: Mirror)"#;
 
@@ -47,25 +47,25 @@ fn scene(light: &str, surfaces: &str, visits: &str, planes: &[&str]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Checks that a second way of measuring agrees with the photons.
+/// Checks that a second source of estimates agrees with the photons.
 fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
     let (photons, _) = estimates(&Tracer::new(scene), scene);
     let (others, _) = estimates(other, scene);
     for (plane, (a, b)) in scene.planes.iter().zip(photons.iter().zip(&others)) {
         let what = format!("{what}, {:?} {:?}", plane.orientation, plane.side);
-        // Noise must not be so large that it hides missing light.
+        // Noise must be so small that missing light would be detected.
         for found in [a, b] {
             assert!(found[0][1] < 0.03 * found[0][0], "{what}: {a:?}, {b:?}");
         }
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Some 250 tests: 4.5 standard errors are exceeded in one run of 600.
+            // Among some 250 tests, at least one exceeds 4.5 standard errors in one run of 600.
             assert!(z.abs() < 4.5, "{what}: {a:?} and {b:?}");
         }
     }
 }
 
-/// The routes to a plane; each is given by the objects of the scene, the objects that the path
+/// The path to a virtual plane, given by the objects of the scene, the objects that the path
 /// visits, and the planes.
 type Way<'a> = (String, &'a str, &'a [&'a str]);
 
@@ -117,7 +117,7 @@ fn what_a_mirror_turns_first_is_sent_evenly() {
     }
 }
 
-/// A plane at the light records more than the light that meets a small mirror.
+/// A virtual plane at the light records more light than the light that meets a small mirror.
 #[test]
 fn windows_before_a_small_mirror_are_sent_evenly() {
     let small = BALL
@@ -132,7 +132,7 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
 }
 
 /// A point light with uniform emission is not aimed, because the check must be independent of the
-/// aiming that it checks.
+/// aiming under test.
 #[test]
 fn what_is_sent_evenly_has_one_density() {
     let mirror = BALL.replace("EVENT", "Mirror");

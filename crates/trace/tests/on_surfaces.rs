@@ -1,4 +1,5 @@
-//! Tests planes in the coordinates of obliquely met surfaces, by photons and by backward rays.
+//! Tests virtual planes in the coordinates of surfaces that the central ray meets obliquely, by
+//! photons and by backward rays.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +7,8 @@ use crate::common::estimates;
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// The direction towards the arriving light, rotated out of the plane of X and the central ray.
+/// The direction from the surface towards the arriving light, rotated out of the plane of X and
+/// the central ray.
 const FACING: &str = "(0.3, -0.5, -0.8)";
 
 fn smooth(event: &str) -> String {
@@ -15,7 +17,8 @@ fn smooth(event: &str) -> String {
     )
 }
 
-/// Checks that both tracers find the same light at every given plane.
+/// Checks that the forward and the backward tracer find the same light at every given virtual
+/// plane.
 fn agree(surface: &str, planes: &[&str]) {
     agree_along("\"s\"", surface, planes);
 }
@@ -44,11 +47,11 @@ fn agree_in(window: &str, visits: &str, surface: &str, planes: &[&str]) {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let (rays, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
     for (plane, (a, b)) in planes.iter().zip(photons.iter().zip(&rays)) {
-        // Noise must not be so large that it hides missing light.
+        // Noise must be so small that missing light would be detected.
         assert!(a[0][1] < 0.02 * b[0][0], "{surface}, {plane}: {a:?}");
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Some 70 tests: 4.5 standard errors are exceeded in one run of 2,000.
+            // Among some 70 tests, at least one exceeds 4.5 standard errors in one run of 2,000.
             assert!(z.abs() < 4.5, "{surface}, {plane}: {a:?} and {b:?}");
         }
     }
@@ -58,7 +61,7 @@ fn named((i, plane): (usize, &&str)) -> String {
     format!("(name: \"p{i}\", {plane})")
 }
 
-/// Arriving light is recorded completely, for every kind of surface.
+/// For every kind of surface, a virtual plane records all light that arrives.
 #[test]
 fn arriving() {
     let tangent = r#"at: Before("s"), orientation: Tangent"#;
@@ -74,7 +77,7 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
-/// A surface that reaches back beside the light is dark in that part.
+/// If a surface extends back beside the light, the part of the surface beside the light is dark.
 #[test]
 fn arriving_behind_the_light() {
     let near = smooth("Mirror").replace("(0, 0, 1)", "(0, 0, 0.04)");
@@ -85,7 +88,7 @@ fn arriving_behind_the_light() {
     }
 }
 
-/// A tangent plane that extends beyond its surface also records light that passes beside the
+/// If a tangent plane extends beyond its surface, it also records light that passes beside the
 /// surface.
 #[test]
 fn arriving_beside() {
@@ -95,14 +98,15 @@ fn arriving_beside() {
     }
 }
 
-/// Light that leaves a wall is recorded about the wall's normal, and not about the central ray.
+/// Directions of light that leaves a wall are measured from the wall's normal, and not from the
+/// central ray.
 #[test]
 fn leaving() {
     let wall =
         format!(r#"Rectangle(name: "s", center: (0, 0, 1), size: (3, 3), facing: {FACING})"#);
     let after = r#"at: After("s"), orientation: Tangent"#;
     agree(&wall, &[after]);
-    // The wall's axes differ from those of the leg.
+    // The axes of the wall's surface differ from the axes of the leg.
     agree_in(
         "(x: Hann(0.4), y: Box(0.05), u: Hann(0.3))",
         "\"s\"",
@@ -111,8 +115,8 @@ fn leaving() {
     );
 }
 
-/// Some slopes of a window may point along a tilted wall, or at its back: the visible part of the
-/// wall is then unbounded.
+/// Some slopes of a window may point along a tilted wall, or at the wall's back: the part of the
+/// wall that the window sees is then unbounded.
 #[test]
 fn leaving_along_the_wall() {
     let wall = r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0.93, 0, -0.36), form: Plane, aperture: 4.2, event: Reflects(brdf: (lobe: Lambertian)))"#;
@@ -120,7 +124,7 @@ fn leaving_along_the_wall() {
     agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
 }
 
-/// Backward rays find light from all of a wide light, even if the slopes are narrow.
+/// If slopes are narrow, backward rays still find light from every part of a large light.
 #[test]
 fn narrow_slopes() {
     let window = "(x: Hann(0.1), u: Box(0.001))";
@@ -135,7 +139,8 @@ fn narrow_slopes() {
     }
 }
 
-/// Light for a plane on the second surface comes from the whole first surface.
+/// Light that reaches a virtual plane on the second surface comes from all points of the first
+/// surface.
 #[test]
 fn arriving_from_a_wall() {
     let wall =

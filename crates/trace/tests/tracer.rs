@@ -1,5 +1,4 @@
-//! Tests the tracer against closed forms, its two kinds of emission against each other, and its
-//! ledger.
+//! Tests the tracer: against closed forms, with plain against aimed emission, and by its ledger.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -17,8 +16,8 @@ fn scene(overrides: &[(&str, &str)]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns, for each plane, the mean of weight times window per emitted photon with its standard
-/// error, and the ledger of all photons.
+/// Returns, for each virtual plane, the mean per emitted photon of the weight times the window,
+/// with its standard error, and the ledger of all photons.
 fn windowed_integrals(scene: &Scene) -> (Vec<[f64; 2]>, Ledger) {
     let tracer = Tracer::new(scene);
     let mut sums = vec![[0.0; 2]; scene.planes.len()];
@@ -41,7 +40,8 @@ fn windowed_integrals(scene: &Scene) -> (Vec<[f64; 2]>, Ledger) {
     (sums.into_iter().map(estimate).collect(), ledger)
 }
 
-/// At the light, ∫ L W = L · (∫ over the light of the window in x)² · (∫ of the window in u)².
+/// At the light, ∫ L W = L · (∫ over the light of the window in x)² · (∫ of the window in u)²,
+/// where L is the radiance and W the window.
 #[test]
 fn light_has_the_flux_it_should_by_either_emission() {
     let (a, b, half) = (0.5, 0.5, 0.1);
@@ -75,7 +75,8 @@ fn aimed_and_plain_emission_agree_at_every_plane() {
     for (plane, (aimed, plain)) in estimate("Aimed").iter().zip(estimate("Plain")).enumerate() {
         let z = (aimed[0] - plain[0]) / aimed[1].hypot(plain[1]);
         assert!(aimed[1] < plain[1], "aiming does not pay at plane {plane}");
-        // Four planes are tested; 3.7 standard errors are exceeded once in a thousand runs.
+        // Among the four planes tested, at least one exceeds 3.7 standard errors once in a
+        // thousand runs.
         assert!(z.abs() < 3.7, "plane {plane}: {aimed:?} and {plain:?}");
     }
 }
@@ -119,8 +120,8 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     ); // every photon carries the same: rounding
 }
 
-/// Blockers that fill the plane let nothing through; without blockers, both sides of the plane see
-/// the same photons.
+/// If blockers fill their plane, no light passes; without blockers, a virtual plane sees the same
+/// photons on both sides of the blockers' plane.
 #[test]
 fn blockers_block() {
     let count = |overrides: &[(&str, &str)]| {

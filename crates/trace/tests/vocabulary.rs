@@ -1,4 +1,5 @@
-//! Tests every kind of light, blocker and plane in three ways: aimed, plain and backward.
+//! Tests every kind of light, blocker and virtual plane: compares aimed photons, plain photons
+//! and backward rays.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +7,7 @@ use crate::common::estimates;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// A scene with a light, blockers, and planes on both legs.
+/// Returns a scene with a light, blockers, and virtual planes on both legs.
 fn scene(light: &str, blockers: &str, emission: &str, photons: u32) -> Scene {
     let text = format!(
         r#"(
@@ -57,7 +58,7 @@ fn all_ways_agree() {
             let aimed = scene(light, &blockers, "Aimed", 400_000);
             let plain = scene(light, &blockers, "Plain", 1_500_000);
             let (reference, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-            // The rounding error of some 10^5 additions.
+            // The tolerance is the rounding error of some 10^5 additions.
             assert!(ledger.imbalance().abs() < 1e-12, "{of}: {ledger:?}");
             let mut others = vec![("plain", estimates(&Tracer::new(&plain), &plain).0)];
             let backward = Backward::new(&aimed).unwrap();
@@ -71,7 +72,8 @@ fn all_ways_agree() {
                     for (a, b) in a.iter().zip(b) {
                         let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                         tests += 1;
-                        // With some 400 tests, one run in 400 exceeds 4.5 standard errors by chance.
+                        // Among some 400 tests, at least one exceeds 4.5 standard errors by
+                        // chance in one run of 400.
                         assert!(
                             z.abs() < 4.5,
                             "{of}: {way} at plane {plane}: {a:?} and {b:?}"

@@ -1,5 +1,5 @@
-//! Tests crossings as rays in world coordinates: they hold the flux that crossed, and lie on the
-//! lines of the photons.
+//! Tests the conversion of crossings to rays in world coordinates: the rays carry the flux that
+//! crossed the plane, and lie on the lines of the photons.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,8 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// A square light away from the world's origin that shines obliquely, on a curved glossy surface if
-/// that is visited.
+/// Returns a scene with a square light away from the world's origin that shines obliquely; if
+/// `visits` names the curved glossy surface, the light shines on it.
 fn scene(visits: &str, planes: &str) -> Scene {
     let text = format!(
         r#"(light: Rectangle(center: (0.3, -0.2, 0.1), size: (0.06, 0.04), radiance: 2),
@@ -25,7 +25,8 @@ fn scene(visits: &str, planes: &str) -> Scene {
     resolve("test", file, Path::new("."), u64::MAX).unwrap()
 }
 
-/// All photons that cross a plane: position, direction, and flux in W.
+/// Returns the position, the direction and the flux in W of all photons that cross a virtual
+/// plane.
 fn rays(scene: &Scene, plane: usize) -> Vec<(DVec3, DVec3, f64)> {
     let tracer = Tracer::new(scene);
     let world = PlaneInWorld::new(scene, plane).unwrap();
@@ -48,8 +49,8 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
     rays.iter().map(|(.., watts)| watts).sum()
 }
 
-/// A Lambertian rectangle emits the flux π L A in total. With plain emission each photon has the
-/// same flux.
+/// A Lambertian rectangle emits the flux π L A in total. With plain emission, all photons have
+/// the same flux.
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
     let scene = scene(
@@ -59,22 +60,23 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     for plane in 0..2 {
         let rays = rays(&scene, plane);
         let expected = PI * 2.0 * 0.06 * 0.04;
-        // The limits are the sum of 32768 rounding errors and, at the second plane, the loss of
-        // light that grazes the adjacent surface.
+        // The tolerance is the sum of 32768 rounding errors at the first plane, and at the second
+        // plane the loss of light that grazes the adjacent surface.
         let slack = [1e-11, 0.3][plane];
         assert!(
             (total(&rays) / expected - 1.0).abs() < slack,
             "{}",
             total(&rays)
         );
-        // Each ray traced back ends at the light.
+        // If a ray is traced back to the plane of the light, it ends within the light.
         let (center, d) = (DVec3::new(0.3, -0.2, 0.1), DVec3::new(0.0, 0.6, 0.8));
         for (point, along, _) in rays {
             assert!((along.length() - 1.0).abs() < 1e-12 && along.dot(d) > 0.0);
             let back = (point - center).dot(d) / along.dot(d);
             let from = point - back * along - center;
             let y = DVec3::new(0.0, 0.8, -0.6);
-            // The bounds are the half-sides, plus rounding errors, which steep rays magnify.
+            // The bounds are the half-sides of the light, plus rounding errors, which steep rays
+            // magnify.
             let steep = 1.0 / along.dot(d);
             assert!(
                 from.x.abs() < 0.03 + 1e-12 * steep && from.dot(y).abs() < 0.02 + 1e-12 * steep,
@@ -84,8 +86,8 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     }
 }
 
-/// Planes on one hit record the same photons in different coordinates: flux, directions and lines
-/// are the same.
+/// Virtual planes at the same hit record the same photons in different coordinates, so the flux,
+/// the directions and the lines are the same.
 #[test]
 fn planes_on_a_surface_have_one_flux() {
     let planes = r#"(name: "across", at: Before("it")), (name: "tangent", at: Before("it"), orientation: Tangent),
@@ -97,13 +99,13 @@ fn planes_on_a_surface_have_one_flux() {
     for ((p, d, watts), (q, e, same)) in local.iter().zip(&mirrored) {
         assert!((*p - *q).length() < 1e-12 && (*d - *e).length() < 1e-9); // arcsines of numbers near 1 lose half their digits
         assert!((watts / same - 1.0).abs() < 1e-9); // the same
-        // The point lies on the sphere of radius 2 whose vertex is the central hit.
+        // The recorded point lies on the sphere of radius 2 whose vertex is the central hit.
         let normal = DVec3::new(0.2, -0.5, -1.0).normalize();
         let center = DVec3::new(0.3, 0.4, 0.9) - 2.0 * normal;
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
         assert!(d.dot(*p - center) < 0.0); // it arrives from outside
     }
-    // Each of these photons is also recorded by the other planes: on the same line, with the same
+    // The other virtual planes also record each of these photons: on the same line, with the same
     // power.
     for others in [&across, &tangent] {
         let mut found = 0;

@@ -8,7 +8,7 @@ use etendue_scene::RunFile;
 use etendue_store::Method;
 use std::path::{Path, PathBuf};
 
-/// Overrides of the scene's measurement settings.
+/// Options that override the measurement settings of the scene.
 #[derive(Debug, Args)]
 pub(crate) struct PhotonArgs {
     /// Number of photons to emit [default: as in the scene]
@@ -59,7 +59,7 @@ pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
 }
 
 impl PhotonArgs {
-    /// Overrides the settings of a scene.
+    /// Overrides the measurement settings of a scene with these options.
     pub(crate) fn set(&self, run: &mut RunFile) {
         run.photons = self.photons.unwrap_or(run.photons);
         run.seed = self.seed.unwrap_or(run.seed);
@@ -80,7 +80,7 @@ pub(crate) struct ThreadArgs {
     pub(crate) count: Option<u16>,
 }
 
-/// Options of commands that may take long.
+/// Options of commands that may take a long time.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
@@ -141,7 +141,7 @@ pub(super) fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((path.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// The largest share that may be written without a unit; a larger number is probably meant as a
+/// The largest share that may be written without a unit; a larger number is probably a
 /// percentage.
 const MAX_PLAIN_SHARE: f64 = 0.05;
 
@@ -163,7 +163,7 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses a whole number, also as 10_000_000, 1e7 or 2^23.
+/// Parses a whole number, which may be written as 10_000_000, 1e7 or 2^23.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,5 @@
-//! Arguments of commands on several values of a scene, and of covariances.
+//! Arguments of commands that run a scene for several values of its fields, and of the command
+//! for covariances.
 
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;

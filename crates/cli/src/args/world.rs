@@ -329,7 +329,7 @@ impl ProbeArgs {
     }
 }
 
-/// Parses a number that gives at least one ray to each of 64 batches.
+/// Parses a number of rays or photons that gives at least one to each of 64 batches.
 fn enough(text: &str) -> Result<u64, String> {
     let number = whole_number(text)?;
     if ranges::RAYS.contains(&number) {

@@ -1,4 +1,4 @@
-//! Covariances as a table.
+//! Formats covariances as a table.
 
 use etendue_compare::{AXES, CovarianceReport};
 use etendue_field::{tidy, uncertain};
@@ -7,7 +7,7 @@ use etendue_pipeline::table::aligned;
 /// The matrix entries that are shown: variances, and the covariances that arise as light travels.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 
-/// A table for each plane, with remarks.
+/// Returns a table of covariances for each plane, with remarks.
 pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
         "Covariance of the power spectrum, in cycles² per m², per m × slope and per slope²."

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A scene of this repository.
+/// Returns the path of a scene of this repository.
 pub fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes")
@@ -27,7 +27,7 @@ pub fn etendue() -> Command {
     Command::new(env!("CARGO_BIN_EXE_etendue"))
 }
 
-/// All files of a folder, by their relative names.
+/// Returns all files of a folder, by their relative names.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -63,8 +63,8 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557),
 )"#;
 
-/// The scene as `small.ron`, its measurement in two parts `a` (batches 0..20) and `b` (20..64), and
-/// its prediction `p`.
+/// Returns a folder with the scene as `small.ron`, its measurement in two parts `a` (batches
+/// 0..20) and `b` (20..64), and its prediction `p`.
 pub fn stages() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -80,7 +80,7 @@ pub fn stages() -> TempDir {
     folder
 }
 
-/// Runs `etendue` with these arguments, quietly; file names are relative to `folder`.
+/// Runs `etendue` with the given arguments and `--quiet`; file names are relative to `folder`.
 pub fn call(folder: &Path, arguments: &str) -> Output {
     etendue()
         .current_dir(folder)
@@ -107,7 +107,7 @@ pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     assert!(!folder.join("out").exists(), "{arguments}: out was written");
 }
 
-/// A JSON object that ends with its own hash, as indices do.
+/// Returns a JSON object that ends with its own hash, as the indices of results do.
 pub fn sealed(mut tree: Value) -> Vec<u8> {
     tree.as_object_mut().unwrap().remove("index_hash");
     let text = tree.to_string();
@@ -120,7 +120,7 @@ pub fn json(file: &Path) -> Value {
     serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
 }
 
-/// An array of an NPZ file, which must be in C order.
+/// Reads an array of an NPZ file; the array must be in C order.
 pub fn array<A: ReadableElement, D: Dimension>(file: &Path, name: &str) -> Array<A, D> {
     let mut npz = NpzReader::new(File::open(file).unwrap()).unwrap();
     let array: Array<A, D> = npz.by_name(name).unwrap();

@@ -1,4 +1,4 @@
-//! Placement of numbers and names in a cut.
+//! Places the numbers and names in a cut.
 
 use crate::section::{PlaneMark, Section, Segment};
 use crate::sizes::TICK_TEXT;
@@ -6,7 +6,7 @@ use crate::svg::Area;
 use crate::text::width;
 use etendue_field::Side;
 
-/// Half of the minimum distance of two numbers.
+/// Half of the minimum distance between two numbers.
 const ASIDE: f64 = 9.0;
 /// The position of a segment's name.
 #[derive(Debug)]
@@ -16,8 +16,8 @@ pub(super) struct SegmentName {
     pub(super) row: usize,
 }
 
-/// Positions of the plane numbers, without overlaps. A number is below the line of its plane, or
-/// is shifted to the side if other numbers are near.
+/// Returns positions of the planes' numbers that do not overlap. The number of a plane is below
+/// the plane's line, or to the side of it if other numbers are near.
 pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
     let true_places = || section.planes.iter().map(|plane| across(plane.distance));
     let aside = |(i, plane): (usize, &PlaneMark)| {
@@ -32,8 +32,8 @@ pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> V
     let mut places: Vec<f64> = section.planes.iter().enumerate().map(aside).collect();
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-    // Numbers of planes before an object move towards the light, and those of planes after it move
-    // away from the light.
+    // The numbers of planes before an object move towards the light, and the numbers of planes
+    // after the object move away from the light.
     for pair in order.windows(2).rev() {
         if section.planes[pair[0]].side == Side::Before {
             places[pair[0]] = places[pair[0]].min(places[pair[1]] - 2.0 * ASIDE);

@@ -13,15 +13,14 @@ impl Mesh {
     /// In OBJ files, the `v` and `f` lines of all objects and groups form one mesh. Normals,
     /// texture coordinates, colors, weights, materials, points and lines are ignored, and
     /// free-form surfaces are refused. PLY files may be ASCII or binary in either byte order, with
-    /// coordinates and lists of any type. Their other elements and properties are ignored. Faces
-    /// of more than three corners become fans about their first corner, which is right for convex
-    /// faces, and have at most 4,096 corners. Triangles of zero area are dropped where others
-    /// remain.
+    /// coordinates and lists of any type. The readers ignore other elements and properties of PLY
+    /// files. If a face has more than three corners, it becomes a fan of triangles about its
+    /// first corner, which is correct for convex faces; a face has at most 4,096 corners.
+    /// Triangles of zero area are dropped, unless no other triangles remain.
     ///
-    /// # Errors
-    /// The first fault found, with its place in the file, the value and what is allowed. Elements
-    /// are counted as in the format, from 1 in OBJ and from 0 in PLY files; lines and corners are
-    /// counted from 1.
+    /// # Errors The first fault found: its position in the file, the faulty value and the values
+    /// that are allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as
+    /// these formats do; lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
             let mesh = ply::detailed::read(bytes, false)?;
@@ -29,8 +28,8 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices
-    /// as `uint`.
+    /// Returns the mesh as a binary little-endian PLY file without loss: coordinates as `double`,
+    /// indices as `uint`.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {
         ply::write(&self.vertices, &self.triangles)

@@ -35,7 +35,8 @@ const PASSED_OVER: [&[u8]; 19] = [
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let bytes = without_mark(bytes);
     let vertices = vertices(bytes)?;
-    // Faces may refer to vertices that follow them, so they are read after all vertices.
+    // Faces may refer to vertices that follow them in the file, so faces are read after all
+    // vertices.
     let triangles = triangles(bytes, |word, [before, ..]| {
         corner(word, before, vertices.len())
     })?;
@@ -47,8 +48,8 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Returns statements with the number of their first line; comments are removed, and continued
-/// lines are joined.
+/// Returns the statements of an OBJ file, each with the number of its first line; comments are
+/// removed, and continued lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
         let end = line.iter().position(|b| *b == b'#');
@@ -71,8 +72,8 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Returns the points of the `v` lines, at least one; values after the three coordinates (weight,
-/// color) are ignored.
+/// Returns the points of the `v` lines; at least one is required, and values after the three
+/// coordinates (weight, color) are ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
     for (line, statement) in statements(bytes) {
@@ -106,8 +107,8 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Returns the triangles of the `f` lines, at least one. `index` resolves a corner from its word
-/// and the numbers of `v`, `vt` and `vn` lines above it.
+/// Returns the triangles of the `f` lines; at least one is required. `index` resolves a corner
+/// from its word and the numbers of `v`, `vt` and `vn` lines above the corner's line.
 fn triangles(
     bytes: &[u8],
     mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,
@@ -144,11 +145,12 @@ fn triangles(
     }
 }
 
-/// The value of a faulty corner, and the values that are allowed.
+/// The text of a faulty corner, and a description of the values that are allowed.
 type CornerFault = (String, String);
 
-/// Returns the index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or
-/// backwards from the last of the `before` vertices above this line.
+/// Returns the vertex index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: indices count
+/// from 1, and negative indices count backwards from the last of the `before` vertices above the
+/// line.
 fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {
     let mut parts = word.split(|b| *b == b'/');
     let vertex: Option<i64> = parts.next().and_then(number);

@@ -1,4 +1,4 @@
-//! The mesh of a paraboloid.
+//! Generates the mesh of a paraboloid.
 
 use super::shared::Mesh;
 use etendue_scenefile::Fault;
@@ -8,9 +8,10 @@ impl Mesh {
     /// Returns a smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤
     /// `half`, facing along z.
     ///
-    /// It has `cells` × `cells` squares, each cut into two triangles along the same diagonal. The
-    /// triangles around an inner vertex are point-symmetric, so the error of the area-weighted
-    /// normal is proportional to the square of the cell size. Vertices lie on the surface.
+    /// The mesh has `cells` × `cells` squares, each cut into two triangles along the same
+    /// diagonal. The triangles around an inner vertex are point-symmetric, so the error of the
+    /// area-weighted normal is proportional to the square of the cell size. All vertices lie
+    /// exactly on the paraboloid.
     ///
     /// # Errors
     /// When [`Self::new`] refuses the mesh, for example without cells or with vertices that are not

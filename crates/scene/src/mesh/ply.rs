@@ -10,7 +10,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use header::PlyElement;
 
-/// Returns the positions of x, y and z among a vertex's properties.
+/// Returns the positions of x, y and z among the properties of a PLY vertex.
 fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
@@ -29,7 +29,7 @@ fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     Ok(axes)
 }
 
-/// Returns the position of the corner list among a face's properties.
+/// Returns the position of the list of corners among the properties of a PLY face.
 fn list(element: &PlyElement) -> Result<usize, Fault> {
     let names = ["vertex_indices", "vertex_index"];
     let mut properties = element.properties.iter();
@@ -53,7 +53,8 @@ fn vertex(row: PlyRow<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
     Ok(DVec3::from_array(values))
 }
 
-/// Writes a face's corners, among `count` vertices.
+/// Appends the triangles of a face, whose corners must be indices below `count`, the number of
+/// vertices.
 fn face(
     row: PlyRow<'_>,
     values: &[f64],

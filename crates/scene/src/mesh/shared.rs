@@ -1,4 +1,4 @@
-//! Triangles with shared vertices, and the limits of a mesh.
+//! Defines a mesh of triangles with shared vertices, and its limits.
 
 use etendue_scenefile::limits::MAX_NUMBER;
 use etendue_scenefile::{Fault, fault};
@@ -8,8 +8,8 @@ use glam::{DAffine3, DVec3};
 ///
 /// A `Mesh` is always valid: it has at least one triangle, each triangle has an area and valid
 /// vertex indices, and coordinates are within ±10⁹. Corners run counterclockwise as seen from
-/// outside if the file lists them in this order. The surface need not be closed. Unused vertices
-/// are allowed.
+/// outside, if the file lists corners in this order. The surface need not be closed. Unused
+/// vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,
@@ -17,11 +17,11 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the mesh of these triangles without those of zero area (in f64), which occur in real
-    /// files. A scene may drop or refuse further triangles depending on where it places them.
+    /// Returns the mesh of the given triangles without triangles of zero area (in f64), which
+    /// occur in real files. A scene may drop or refuse further triangles, depending on where the
+    /// scene places the mesh.
     ///
-    /// # Errors
-    /// When a coordinate or an index is out of range, or no triangle has an area.
+    /// # Errors When a coordinate or an index is out of range, or when no triangle has an area.
     pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Fault> {
         // The largest index is never used, so the number of vertices also fits in a u32.
         let count = u32::try_from(vertices.len())
@@ -47,11 +47,10 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of
-    /// corners, so that triangles still face outward.
+    /// Returns the mesh under an affine map. If the map mirrors the mesh, the order of corners is
+    /// reversed, so that triangles still face outward.
     ///
-    /// # Errors
-    /// When coordinates exceed ±10⁹, or no triangle has an area after the map.
+    /// # Errors When coordinates exceed ±10⁹, or when no triangle has an area after the map.
     pub fn transformed(&self, map: DAffine3) -> Result<Self, Fault> {
         let vertices = self.vertices.iter().map(|v| map.transform_point3(*v));
         let mirrored = map.matrix3.determinant() < 0.0;
@@ -60,19 +59,19 @@ impl Mesh {
         Self::new(vertices.collect(), triangles.collect())
     }
 
-    /// Returns the vertices; triangles refer to them by index.
+    /// Returns the vertices of the mesh, to which triangles refer by index.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Returns the corners of each triangle, as indices of [`Mesh::vertices`].
+    /// Returns the corners of each triangle, as indices into [`Mesh::vertices`].
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Returns the corner points of each triangle in turn.
+    /// Returns the three corner points of each triangle, triangle by triangle.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let point = |i: u32| self.vertices[i as usize];
         self.triangles.iter().map(move |corners| corners.map(point))
@@ -94,8 +93,8 @@ fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }
 
-/// The largest number of corners of a face. All triangles of a fan share its first corner, so a ray
-/// near it meets the boxes of most of them.
+/// The maximum number of corners of a face. All triangles of a fan share the first corner of
+/// their face, so a ray near this corner meets the bounding boxes of most of the triangles.
 const MAX_CORNERS: usize = 4096;
 
 /// Checks the number of corners of a face.
@@ -116,7 +115,7 @@ pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Re
     }
 }
 
-/// Returns the triangles of a face: the fan about its first corner.
+/// Returns the triangles of a face as a fan about the face's first corner.
 pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

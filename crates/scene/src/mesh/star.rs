@@ -1,4 +1,4 @@
-//! The mesh of a sphere with a relief.
+//! Generates the mesh of a sphere with a relief.
 
 use super::shared::Mesh;
 use etendue_scenefile::{Fault, fault};
@@ -10,15 +10,15 @@ impl Mesh {
     /// axis: r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus
     /// its sectoral harmonic.
     ///
-    /// θ steps through `rings` bands and φ through 2 `rings` segments. Each pole is one vertex and
-    /// no vertex is doubled at φ = 0, so the surface is watertight. It has 2 `rings`(`rings` − 1) +
-    /// 2 vertices and 4 `rings`(`rings` − 1) triangles (50 624 for 113 rings), which face outward.
-    /// Vertices lie on the smooth surface, whose volume for l ≥ 1 is R³(4π/3 + 2π relief²
-    /// (2l)!!/(2l+1)!!). The volume within the facets is smaller by an amount proportional to
-    /// rings⁻².
+    /// The angle θ steps through `rings` bands, and the angle φ steps through 2 `rings` segments.
+    /// Each pole is one vertex and no vertex is doubled at φ = 0, so the surface is watertight.
+    /// The mesh has 2 `rings`(`rings` − 1) + 2 vertices and 4 `rings`(`rings` − 1) triangles (50
+    /// 624 for 113 rings), which face outward. Vertices lie on the smooth surface, whose volume
+    /// for l ≥ 1 is R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!). The volume of the mesh is smaller than
+    /// the volume of the smooth surface, by an amount proportional to rings⁻².
     ///
-    /// # Errors
-    /// When there are fewer than four segments per lobe, or [`Self::new`] refuses the mesh.
+    /// # Errors When there are fewer than four segments per lobe, or when [`Self::new`] refuses
+    /// the mesh.
     ///
     /// # Panics
     /// With fewer than two rings.

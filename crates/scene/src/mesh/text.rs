@@ -1,9 +1,9 @@
 //! Splits mesh files of arbitrary bytes into lines, words and numbers.
 
-/// Lines with their number, from 1, without surrounding white space.
+/// The lines of a file with their numbers, counted from 1, without surrounding white space.
 ///
-/// Every line ends at the character that ends the first line: a line feed, with or without a
-/// carriage return before it, or a carriage return alone (old Macintosh files).
+/// Every line ends in the same way as the first line: at a line feed, with or without a carriage
+/// return before it, or at a carriage return alone (old Macintosh files).
 pub(super) struct Lines<'a> {
     /// The bytes after the last line returned.
     pub(super) rest: &'a [u8],
@@ -60,7 +60,8 @@ impl<'a> Iterator for LineWords<'a> {
     }
 }
 
-/// Returns the number that a word represents: decimal, with an optional exponent, infinite or NaN.
+/// Returns the number that a word represents; the number is decimal with an optional exponent,
+/// infinite, or NaN.
 pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }

@@ -10,11 +10,11 @@ use etendue_scenefile::number;
 use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use glam::DVec3;
 
-/// The approximate number of rectangles into which a prediction divides a disc.
+/// The approximate number of rectangles into which a prediction divides a disc of a mask.
 const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
-    /// Returns the blockers that lie across the central ray.
+    /// Returns the layers of blockers that lie across the central ray.
     pub(super) fn blockers(&mut self, file: &SceneFile, frame: &Frame) -> Vec<BlockerLayer> {
         let blockers = file.blockers.iter().enumerate();
         blockers
@@ -22,7 +22,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    /// Checks that blockers stand on the first leg, which has this length.
+    /// Checks that blockers stand on the first leg, whose length is `length`.
     pub(super) fn ends(&mut self, file: &SceneFile, layers: &[BlockerLayer], length: f64) {
         for (i, blockers) in file.blockers.iter().enumerate() {
             let layer = layers.iter().find(|layer| layer.name == blockers.name());
@@ -39,7 +39,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the layer of these blockers; `None` for a mesh.
+    /// Returns the layer of blockers; `None` if the blockers are a mesh.
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
@@ -58,7 +58,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the mask of the blockers, and the distance between their repetitions.
+    /// Returns the mask of the blockers, and the distance between the repetitions of the mask.
     fn mask(
         &mut self,
         of: &str,
@@ -114,8 +114,8 @@ impl Resolver<'_> {
         if !(fill > 0.0 && fill <= 1.0) {
             let allowed = "above 0, at most 1: a share of the pitch";
             self.faults.add(format!("{of}.fill"), number(fill), allowed);
-        // The prediction would count overlapping squares twice. The tolerance admits a fill of 0.7
-        // with a jitter of 0.3 in spite of rounding errors.
+        // If squares overlapped, the prediction would count the overlap twice. In spite of
+        // rounding errors, the tolerance admits a fill of 0.7 with a jitter of 0.3.
         } else if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
             let allowed = format!("0 to 1 − fill, which is {}", tidy(1.0 - fill));
             self.faults
@@ -128,7 +128,7 @@ impl Resolver<'_> {
         squares.into_iter().map(Shape::Rectangle).collect()
     }
 
-    /// Returns the shapes, moved to `center`.
+    /// Returns the mask of the shapes, moved to `center`.
     fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
         if !(1..=limits::SHAPES).contains(&files.len()) {
             let allowed = format!("1 to {} shapes", limits::SHAPES);
@@ -140,7 +140,7 @@ impl Resolver<'_> {
         }
         let moved = |c: [f64; 2]| [center[0] + c[0], center[1] + c[1]];
         let (mut shapes, mut half_planes) = (Vec::new(), Vec::new());
-        // The position of each shape in the file.
+        // The index of each shape and of each half-plane in the file.
         let (mut of_shapes, mut of_half_planes) = (Vec::new(), Vec::new());
         for (i, file) in files.iter().take(limits::SHAPES).enumerate() {
             match file {
@@ -171,8 +171,8 @@ impl Resolver<'_> {
         opaque(shapes, half_planes)
     }
 
-    /// Refuses overlaps, which the prediction would count twice. `places` are the positions of
-    /// shapes and of half-planes in the file.
+    /// Refuses overlaps of shapes, which the prediction would count twice. `places` are the
+    /// indices of shapes and of half-planes in the file.
     fn apart(
         &mut self,
         of: &str,
@@ -195,8 +195,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Limits the product of the numbers of shapes of all layers, because a prediction multiplies
-    /// them out.
+    /// Limits the product of the numbers of shapes of all layers, because a prediction sums over
+    /// all combinations of shapes.
     pub(super) fn layers(&mut self, file: &SceneFile) {
         let terms = |b: &BlockersFile| match b {
             BlockersFile::JitteredSquares { count, .. } => {

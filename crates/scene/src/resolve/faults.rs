@@ -10,10 +10,10 @@ use std::fmt::Debug;
 #[derive(Default)]
 pub(super) struct Faults {
     pub(super) all: Vec<Fault>,
-    /// Whether there is a fault in the origin or the direction of the central ray.
+    /// Whether the origin or the direction of the central ray has a fault.
     pub(super) astray: bool,
-    /// Whether there is a fault in the central ray's origin or direction, or in the position of an
-    /// object.
+    /// Whether the origin or direction of the central ray, or the position of an object, has a
+    /// fault.
     displaced: bool,
 }
 
@@ -35,8 +35,8 @@ impl Faults {
         });
     }
 
-    /// Adds a fault of positions along the path. The fault is omitted if the position of this or
-    /// another object is already faulty, because the path is then unknown.
+    /// Adds a fault in the position of an object along the path. The fault is omitted if the
+    /// position of any object is already faulty, because the path is then unknown.
     pub(super) fn add_on_path(
         &mut self,
         field: impl Into<String>,
@@ -48,7 +48,7 @@ impl Faults {
         }
     }
 
-    /// Checks whether a field, or a field within it, has a fault.
+    /// Checks whether a field, or a field nested in it, has a fault.
     pub(super) fn has_below(&self, field: &str) -> bool {
         let below = |fault: &Fault| {
             fault
@@ -59,8 +59,8 @@ impl Faults {
         self.all.iter().any(below)
     }
 
-    /// Returns the faults without duplicates, because planes share the scene's window and
-    /// frequencies.
+    /// Returns the faults without duplicates, which arise because planes share the window and
+    /// frequencies of the scene.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
         let is_new: Vec<bool> = self.all.iter().map(|fault| seen.insert(fault)).collect();
@@ -70,8 +70,8 @@ impl Faults {
     }
 }
 
-/// Checks whether a field sets the position of a surface or of blockers, which determines what the
-/// central ray meets.
+/// Checks whether a field sets the position of a surface or of blockers, which determines the
+/// objects that the central ray meets.
 fn is_of_place(field: &str) -> bool {
     let of_things = |list: &str| {
         field
@@ -97,12 +97,12 @@ pub(super) fn vector(values: &[f64]) -> String {
     format!("({})", values.join(", "))
 }
 
-/// Returns a value as it is written, truncated for a message.
+/// Returns a value as it is written in a scene file, truncated for a message.
 pub(super) fn show(value: impl Debug) -> String {
     shown(format_args!("{value:?}"), limits::VALUE)
 }
 
-/// Returns the names to choose from, for a message.
+/// Returns the list of allowed names for a message.
 pub(super) fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     let first = all.by_ref().take(limits::FAULTS);
     let mut listed: Vec<String> = first.map(|name| shown(name, limits::NAME)).collect();

@@ -1,8 +1,8 @@
-//! Paths of fields in a scene file, found by the name of an object.
+//! Finds the paths of fields in a scene file by the name of an object.
 
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
-/// Returns the paths of the objects with a name, such as `blockers[0]` or `surfaces[0]`.
+/// Returns the paths of the objects with a given name, such as `blockers[0]` or `surfaces[0]`.
 pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
     let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
     let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();

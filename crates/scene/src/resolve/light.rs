@@ -6,7 +6,8 @@ use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
 use etendue_scenefile::{BulbFile, ImageFile, LightFile};
 
 impl Resolver<'_> {
-    /// Returns the light around the origin of the central ray, which is the origin of its frame.
+    /// Returns the light at the origin of the central ray, which is the origin of the frame at
+    /// the light.
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
             shape,

@@ -7,8 +7,8 @@ use etendue_scenefile::{
 };
 
 impl Resolver<'_> {
-    /// Adds a fault for each kind of object that is too numerous, and returns whether there was no
-    /// such fault.
+    /// Adds a fault for each kind of object that is too numerous, and returns whether no fault
+    /// was added.
     pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
         let lobes = match &file.light {
             LightFile::Environment {

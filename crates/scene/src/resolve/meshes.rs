@@ -12,7 +12,7 @@ use etendue_scenefile::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile
 use glam::DVec3;
 use std::path::Path;
 
-/// A mesh of the file, placed in the scene.
+/// A mesh of the scene file, placed in the scene.
 struct PlacedMesh<'a> {
     of: String,
     name: &'a String,
@@ -100,7 +100,7 @@ impl Resolver<'_> {
             Some(event) => Some(self.smooth(&at, event, &mesh, frame)?),
             None => None,
         };
-        // Frees the mesh before a hierarchy is built.
+        // The mesh of the file is freed before a hierarchy is built.
         drop(mesh);
         Some(MeshObject {
             name: placed.name.clone(),
@@ -112,7 +112,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns a mesh with the normals of its vertices.
+    /// Returns a smooth mesh with the normals of its vertices.
     fn smooth(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -147,7 +147,7 @@ impl Resolver<'_> {
                 };
                 Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
             }
-            // A faulty size of the mesh has been reported already.
+            // If the size of the mesh is faulty, the fault has been reported already.
             _ if self.faults.has_below(&format!("{of}.mesh")) => None,
             &MeshSource::Paraboloid {
                 curvatures,
@@ -172,8 +172,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the largest distance from the origin at which light may begin or leave a surface, which
-/// bounds the coordinates of rays and meshes.
+/// Returns the largest distance from the origin at which light may begin or leave a surface; this
+/// distance bounds the coordinates of rays and meshes.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {
         SurfaceFile::Rectangle { center, .. }

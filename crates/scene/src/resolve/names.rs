@@ -8,7 +8,7 @@ use etendue_scenefile::limits;
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
 impl Resolver<'_> {
-    /// Checks the name of the scene, which names a folder of results.
+    /// Checks the name of the scene, which becomes the name of a folder of results.
     pub(super) fn name_of_scene(&mut self, name: &str) {
         if !is_name(name) || name == "." || name == ".." || name.contains('/') {
             let field = "the name of the scene file";

@@ -5,24 +5,25 @@ use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The smallest allowed cosine between the normal of a vertex and the normals of its triangles;
-/// the angle is 89.4°.
+/// The smallest allowed cosine between the normal of a vertex and the normals of the triangles
+/// around it; the angle is 89.4°.
 ///
 /// An interpolated normal is a weighted mean of the normals of three vertices, with weights from 0
 /// to 1. The component of each vertex normal along the normal of the triangle is at least this
-/// cosine, and so is that of their mean: the mean cannot vanish or point to the other side. The
-/// error of each weight is at most 4e-4 (`triangles.rs`), so at least eight tenths of this
-/// component remain.
+/// cosine, and so is the component of their mean: the mean cannot vanish or point to the other
+/// side. The error of each weight is at most 4e-4 (`triangles.rs`), so at least eight tenths of
+/// the component along the triangle's normal remain.
 ///
 /// The same limit applies to a ratio at each vertex: the length of the sum of the area-weighted
-/// normals of its triangles, divided by the sum of their lengths. This ratio is the area-weighted
-/// mean of the cosines, so if it is below the limit, the cosine of some triangle is too. The test
-/// of the ratio therefore refuses no mesh that would pass the test of the cosines.
+/// normals of the triangles around it, divided by the sum of the lengths of these normals. This
+/// ratio is the area-weighted mean of the cosines, so if the ratio is below the limit, the cosine
+/// of at least one triangle is below the limit too. The test of the ratio therefore refuses no
+/// mesh that would pass the test of the cosines.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// Returns the normals of all vertices: the area-weighted mean over the triangles around each;
-    /// zero at vertices without a triangle.
+    /// Returns the normal of each vertex, the area-weighted mean of the normals of the triangles
+    /// around it; the normal is zero if the vertex has no triangle.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
@@ -65,13 +66,14 @@ impl Resolver<'_> {
         cancel.is_empty().then_some(normals)
     }
 
-    /// Checks that the normal of a vertex is on the same side as each triangle around it.
+    /// Checks that the normal of each vertex is on the same side as the normals of the triangles
+    /// around it.
     fn one_side(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh, normals: &[DVec3]) -> Option<()> {
         let mut turned = Vec::new();
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
             let normal = across(corners).normalize();
             let cosines = indices.map(|i| (i, normals[i as usize].dot(normal)));
-            // A vertex without a normal has been reported already.
+            // If a vertex has no normal, the fault has been reported already.
             let turned_here = |(i, cosine): &(u32, f64)| {
                 *cosine < MIN_NORMAL && normals[*i as usize] != DVec3::ZERO
             };
@@ -97,7 +99,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns a vector along the normal of a triangle, with the length of twice its area.
+/// Returns a vector along the normal of a triangle; its length is twice the triangle's area.
 fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

@@ -1,4 +1,4 @@
-//! The objects that the central ray may meet.
+//! Defines the set of objects that the central ray may meet.
 
 use crate::scene::{BlockerLayer, MeshObject, PatchObject, Surface};
 

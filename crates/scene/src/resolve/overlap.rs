@@ -1,17 +1,17 @@
-//! Detects overlaps of the shapes of a layer in n log n.
+//! Detects overlaps of the shapes of a layer in O(n log n) steps.
 
 use etendue_field::{HalfPlane, Shape};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// A shape or a half-plane, by its index.
+/// A shape or a half-plane of a layer, by its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Thing {
     Shape(usize),
     HalfPlane(usize),
 }
 
-/// Returns the first two shapes or half-planes that overlap, given finite numbers.
+/// Returns the first two shapes or half-planes that overlap; all coordinates must be finite.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
     // Among any three half-planes, two overlap, so only the first three are tested.
     let first = &half_planes[..half_planes.len().min(3)];
@@ -30,7 +30,7 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..count).flat_map(|j| (0..j).map(move |i| [i, j]))
 }
 
-/// Returns the first shape that overlaps another, and the first that it overlaps.
+/// Returns the first shape that overlaps another shape, and the first shape that it overlaps.
 ///
 /// The bounding boxes of disjoint shapes overlap only where the shapes touch, or in the corners of
 /// the boxes of discs. Few boxes of similar size overlap at any point, so few pairs are tested.
@@ -56,7 +56,8 @@ fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     [[left, bottom], [right, top]]
 }
 
-/// Overlaps by less than this share of the sizes count as rounding, because shapes may touch.
+/// The largest relative overlap, as a share of the sizes of the shapes, that counts as a rounding
+/// error, because shapes may touch.
 const TOUCH: f64 = 1e-9;
 
 fn meet(a: &Shape, b: &Shape) -> bool {

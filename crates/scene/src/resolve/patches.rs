@@ -87,7 +87,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the specular event; `None` for a surface that reflects by a BRDF.
+    /// Returns the specular event of a surface; `None` if the surface reflects by a BRDF.
     pub(super) fn specular(
         &mut self,
         of: &str,

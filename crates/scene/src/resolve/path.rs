@@ -9,15 +9,16 @@ use etendue_scenefile::did_you_mean;
 use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
-/// The share of a leg's length, from its beginning, within which hits on the surface that the ray
-/// leaves are ignored.
+/// The share of a leg's length, from the leg's beginning, within which hits on the surface that
+/// the ray leaves are ignored.
 const MIN_LEG_SHARE: f64 = 1e-9;
 
-/// The cosine of the angle to the normal below which a surface counts as edge-on.
+/// The cosine of the angle between the ray and the normal below which a surface counts as
+/// edge-on.
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// Returns the legs up to the first faulty leg, whose length is NaN.
+    /// Returns the legs up to and including the first faulty leg, whose length is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,
@@ -64,7 +65,8 @@ impl Resolver<'_> {
         CentralRay { frame, legs }
     }
 
-    /// Returns the distance of visit `i` along the leg, and the hit.
+    /// Returns the distance along the leg at which the central ray makes visit `i` to a surface,
+    /// and the hit.
     fn visit(
         &mut self,
         i: usize,
@@ -76,7 +78,7 @@ impl Resolver<'_> {
         let visit = &file.path.visits[i];
         let known = things.objects();
         let Some(&(object, _)) = known.iter().find(|(_, name)| name == visit) else {
-            // A faulty surface has been reported already.
+            // If the surface is faulty, the fault has been reported already.
             let mut written = file.surfaces.iter().map(SurfaceFile::name);
             if !written.clone().any(|name| name == visit) {
                 let value = show(visit) + &did_you_mean(visit, written.clone());
@@ -121,7 +123,7 @@ impl Resolver<'_> {
         Some((length, hit))
     }
 
-    /// Returns the direction in which the central ray leaves visit `i`.
+    /// Returns the direction in which the central ray leaves the surface of visit `i`.
     fn onwards(
         &mut self,
         i: usize,
@@ -161,7 +163,7 @@ impl Resolver<'_> {
         let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
             let known = things.objects();
             let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
-                // The fault is reported when the visit itself is checked.
+                // The fault is reported when the visit is checked.
                 return Some(hit.normal);
             };
             let towards = things.center(*object) - hit.point;
@@ -184,13 +186,14 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame in which light leaves a hit along `d`. This frame is the frame behind a
-/// mirror, which has the reflected axes −X and Y, rotated by the smallest angle until it faces
-/// along `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D)
-/// (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of
-/// incidence, it is the frame of docs/conventions.md.
+/// Returns the frame of the light that leaves a hit along the direction `d`. This frame is the
+/// frame behind a mirror, which has the axes −X and Y after reflection, rotated by the smallest
+/// angle until its D points along `d`. For light that goes straight back at normal incidence, the
+/// frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in
+/// the plane of incidence, the frame is the frame of docs/conventions.md.
 ///
-/// Light that is transmitted keeps the frame in which it arrived, rotated in the same way.
+/// Transmitted light keeps the frame in which it arrived, rotated by the smallest angle until D
+/// points along `d`.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
     let n = hit.normal;
     if through {
@@ -232,8 +235,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// Returns the event of a smooth surface at a hit that ends a leg, its frame as a lens, and its
-    /// normal there on the side it faces.
+    /// Returns the event of a smooth surface at a hit that ends a leg, the frame of the surface
+    /// as a lens, and the surface's normal at the hit on the side that the surface faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,
@@ -253,7 +256,7 @@ impl Things<'_> {
         }
     }
 
-    /// Checks whether light leaves an object in or near the mirror direction.
+    /// Checks whether an object sends light in or near the mirror direction.
     fn mirrors(&self, object: Object) -> bool {
         match object {
             Object::Surface(_) | Object::Mesh(_) => false,
@@ -261,13 +264,13 @@ impl Things<'_> {
         }
     }
 
-    /// Checks whether light that leaves a hit along `d` is transmitted.
+    /// Checks whether light is transmitted if it leaves a hit along `d`.
     fn is_left_behind(&self, hit: &Hit, d: DVec3, leg: &Frame) -> bool {
         self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }
 
-    /// Returns the first hit of the axis of a frame with an object: distance, point and the normal
-    /// on this side.
+    /// Returns the first hit of the axis of a frame with an object: the distance, the point, and
+    /// the normal on the side of the frame's origin.
     fn hit(&self, object: Object, frame: &Frame) -> Option<(f64, DVec3, DVec3)> {
         let found = match object {
             Object::Surface(i) => {
@@ -308,7 +311,8 @@ impl Things<'_> {
         }
     }
 
-    /// Returns the distance along the axis of a frame to the first object, blocker or light.
+    /// Returns the distance along the axis of a frame to the first object, blocker or light that
+    /// the axis meets.
     fn clear(&self, frame: &Frame, light: &Light) -> f64 {
         let objects = self.objects();
         let objects = objects
@@ -335,8 +339,8 @@ impl Things<'_> {
 }
 
 impl MeshObject {
-    /// Returns the first hit of the axis of a frame with the mesh, and the normal there: that of
-    /// the triangle, or interpolated.
+    /// Returns the distance at which the axis of a frame first hits the mesh, and the normal at
+    /// the hit: the triangle's normal, or the interpolated normal.
     pub(crate) fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
         let hits = self
@@ -351,7 +355,8 @@ impl MeshObject {
         Some((t, self.normal(i, frame.origin + t * frame.d)))
     }
 
-    /// Returns the outward normal at a point of a triangle, by its winding.
+    /// Returns the outward normal at a point of a triangle, on the side given by the triangle's
+    /// winding.
     pub(crate) fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let corners = &self.triangles[triangle];
         match &self.smooth {

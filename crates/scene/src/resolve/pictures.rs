@@ -1,4 +1,4 @@
-//! Checks environments, and pictures on surfaces.
+//! Checks environments, and the pictures that vary surfaces.
 
 use super::Resolver;
 use super::faults::{show, vector};
@@ -14,12 +14,13 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The distance from the centre of a lobe, in widths, beyond which its light is negligible.
+/// The distance from the centre of a lobe, in widths of the lobe, beyond which the lobe's light
+/// is negligible.
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
-    /// Returns the light from an environment. The axes are directions of the world; `light` is the
-    /// frame at the light.
+    /// Returns the light from an environment. The axes are directions in the world of the scene
+    /// file; `light` is the frame at the light.
     pub(super) fn environment(
         &mut self,
         [up, front]: [&[f64; 3]; 2],
@@ -28,7 +29,7 @@ impl Resolver<'_> {
         light: &Frame,
     ) -> Light {
         let [y, d] = [up, front].map(|v| light.vector_to_local(DVec3::from(*v)));
-        // `up` fixes the poles, and `front` is made orthogonal to it.
+        // The axis `up` fixes the poles, and `front` is made orthogonal to `up`.
         let across = y.try_normalize().map_or(DVec3::NAN, |y| d - y * d.dot(y));
         let frame = Frame::new(DVec3::ZERO, d, y).and(Frame::new(DVec3::ZERO, across, y.cross(d)));
         if frame.is_none() && y.is_finite() && d.is_finite() {
@@ -81,7 +82,7 @@ impl Resolver<'_> {
         for (i, lobe) in lobes.iter().enumerate() {
             let from = frame.vector_to_world(lobe.from);
             let reach = REACH * lobe.width;
-            // A faulty width has been reported already.
+            // If the width of a lobe is faulty, the fault has been reported already.
             let is_narrow = lobe.width > 0.0 && reach < FRAC_PI_2;
             if is_narrow && from.z > libm::sin(reach) {
                 let allowed = "a direction from which light goes forward, along path.direction: an environment emits no other light";

@@ -1,4 +1,4 @@
-//! Checks virtual planes: their place on the path, their window and their frequencies.
+//! Checks virtual planes: their positions on the path, their windows and their frequencies.
 
 use super::faults::{names, show};
 use super::{PathStop, Resolver, SAME_PLANE};
@@ -14,7 +14,7 @@ use etendue_scenefile::{
 };
 use etendue_scenefile::{number, shown};
 
-/// A place on the path.
+/// A position on the path.
 #[derive(Clone, Copy)]
 struct OnPath {
     distance: f64,
@@ -22,7 +22,7 @@ struct OnPath {
     leg: usize,
 }
 
-/// Bytes of one complex number.
+/// Number of bytes of one complex number.
 const COMPLEX: f64 = 16.0;
 impl Resolver<'_> {
     pub(super) fn planes(
@@ -117,8 +117,8 @@ impl Resolver<'_> {
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;
-                // Transmitted light leaves on the other side; N points to that side, and T is
-                // rotated with N.
+                // Transmitted light leaves on the other side of the surface, so N is reversed and
+                // T is rotated with N.
                 let frame = if d.dot(frame.d) < 0.0 {
                     Frame {
                         x: -frame.x,
@@ -180,7 +180,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the object that the place of a plane names.
+    /// Returns the object to which the position of a plane refers.
     fn stop<'a>(
         &mut self,
         of: &str,
@@ -193,7 +193,7 @@ impl Resolver<'_> {
         let Some(stop) = stops.iter().find(|s| s.name == name) else {
             let surfaces = file.surfaces.iter().map(SurfaceFile::name);
             let mut written = file.blockers.iter().map(BlockersFile::name).chain(surfaces);
-            // A faulty object has been reported already.
+            // If the object is faulty, the fault has been reported already.
             if !written.clone().any(|written| written == name) {
                 let value = show(place) + &did_you_mean(name, written.clone());
                 let allowed = format!("one of {}", names(&mut written));
@@ -212,7 +212,8 @@ impl Resolver<'_> {
         Some(stop)
     }
 
-    /// Checks that a place, by its distance along the first leg, is not behind the light.
+    /// Checks that a position, given by its distance along the first leg, is not behind the
+    /// light.
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(
@@ -224,7 +225,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// Returns the place on the path at this distance, with the leg that contains it.
+    /// Returns the position on the path at a given distance, with the leg that contains it.
     fn at_distance(
         &mut self,
         of: &str,
@@ -260,8 +261,8 @@ impl Resolver<'_> {
             .filter(|stop| stop.is_flat() && is_across(&at))
             .find(beside)
         {
-            // Rounding errors alone would determine whether light that travels back crosses the
-            // plane before or after the object.
+            // If the plane were at the object's distance, only rounding errors would determine
+            // whether light that travels back crosses the plane before or after the object.
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("a distance at which {name} does not lie in the plane");
             self.faults.add_on_path(of, value(), allowed);
@@ -299,7 +300,8 @@ impl Resolver<'_> {
         match *profile {
             Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                // A prediction sums a series whose number of terms grows with the cut.
+                // A prediction sums a series whose number of terms grows with the cut, the
+                // half-width at which a Gaussian profile ends.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed =
                         "at most 10 widths: beyond 3.5 widths the Gaussian is below 1e-16";
@@ -330,7 +332,7 @@ impl Resolver<'_> {
         let natural = 0.5 / half_width;
         let spacing = axis.spacing.unwrap_or(natural);
         if axis.spacing.is_some() {
-            // A window of zero width has been reported already.
+            // If the width of a window is zero, the fault has been reported already.
             if natural > 0.0 && spacing > natural * (1.0 + SAME_PLANE) {
                 let natural = tidy(natural);
                 let allowed = format!("at most 1/(2 · half-width of the window) = {natural}");
@@ -338,7 +340,7 @@ impl Resolver<'_> {
                     .add(format!("{of}.spacing"), number(spacing), allowed);
             }
         }
-        // Rounding must not add a frequency where max is a multiple of the spacing.
+        // If max is a multiple of the spacing, rounding must not add a frequency.
         let half = (axis.max / spacing - 1e-9).ceil();
         if !half.is_finite() || half < 1.0 {
             return None;
@@ -360,13 +362,14 @@ impl Resolver<'_> {
         Some(FrequencyAxis { half, spacing })
     }
 
-    /// Checks the memory for the spectra of all batches, which are kept until the errors are known.
+    /// Checks that the spectra of all batches fit in memory, because all spectra are kept until
+    /// the errors are known.
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
         // Memory holds the spectra of all batches and their residuals. A hundred further copies
-        // suffice for the prediction, its derivatives and errors, and for seven fine grids of the
-        // transform on each of a dozen threads.
+        // of the spectra suffice for the prediction, its derivatives and errors, and for seven
+        // fine grids of the transform on each of a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()

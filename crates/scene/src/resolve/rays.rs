@@ -1,4 +1,4 @@
-//! Checks ray files as lights.
+//! Checks ray files that are used as lights.
 
 use super::Resolver;
 use super::faults::{show, vector};
@@ -8,8 +8,8 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// Returns the rays of a file whose Z and Y axes have these directions in the world; `light` is
-    /// the frame at the light.
+    /// Returns the rays of a file; `front` and `up` are the directions of the file's Z and Y axes
+    /// in the world, and `light` is the frame at the light.
     pub(super) fn rays(
         &mut self,
         name: &str,
@@ -19,7 +19,7 @@ impl Resolver<'_> {
     ) -> Light {
         let axes = self.axes_of_rays(axes, light);
         let rays = self.ray_light(name, &axes, flux);
-        // After a fault, the light is only a placeholder that is never used.
+        // After a fault, this light is a placeholder that is never used.
         let dark = || RayLight::new(vec![of_flux(1.0)], 0.0);
         match rays.or_else(dark) {
             Some(rays) => Light::Rays {
@@ -91,7 +91,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the rays that go forward, at their intersection with the plane of the light.
+/// Returns the rays that go forward, each at its intersection with the plane of the light.
 fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight> {
     let mut rays = Vec::with_capacity(set.len());
     let mut behind = 0.0;
@@ -103,7 +103,8 @@ fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight>
         let [u, v] = [along.x / along.z, along.y / along.z];
         let [x, y] = [point.x - point.z * u, point.y - point.z * v];
         let ray = TwoPlane { x, y, u, v };
-        // Light that travels along the plane is not recorded, because its slopes are infinite.
+        // Light that travels parallel to the plane is not recorded, because its slopes are
+        // infinite.
         if along.z > LEVEL {
             rays.push(FluxRay { ray, flux });
         } else {
@@ -113,7 +114,8 @@ fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight>
     RayLight::new(rays, behind)
 }
 
-/// The cosine to the central ray below which a ray counts as parallel to the plane.
+/// The cosine of the angle to the central ray below which a ray counts as parallel to the plane
+/// of the light.
 const LEVEL: f64 = 1e-6;
 
 fn of_flux(flux: f64) -> FluxRay {

@@ -1,4 +1,4 @@
-//! Checks BRDFs and the factors that vary them over a surface.
+//! Checks BRDFs, and the factors that vary BRDFs over a surface.
 
 use super::Resolver;
 use etendue_field::{
@@ -8,12 +8,12 @@ use etendue_scenefile::{
     BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
 };
 
-/// The largest number of values of a factor that depends on an angle: one value for each tenth of
+/// The maximum number of values of a factor that depends on an angle: one value for each tenth of
 /// a degree.
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// Returns the reflectance of a surface; `None` for a surface that sends each ray in one
+    /// Returns the reflectance of a surface; `None` if the surface sends each ray in one
     /// direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
@@ -59,7 +59,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the sum of BRDFs; `None` if there are no terms, or too many.
+    /// Returns the sum of BRDFs; `None` if there are no terms or too many terms.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {
@@ -141,7 +141,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the grating of a picture or a pattern.
+/// Returns the grating that a file describes.
 pub(super) fn grating_of(file: &GratingFile) -> Grating {
     Grating {
         axis: file.axis.index(),

@@ -8,22 +8,22 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The ratio of a triangle's height to the largest coordinate below which the triangle cannot be
-/// distinguished from a line.
+/// The ratio of a triangle's height to the largest coordinate of the scene; at smaller ratios, a
+/// triangle cannot be distinguished from a line.
 ///
-/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height,
-/// rounding tilts a normal by 4e-4 radians and changes the barycentric coordinates of a point by
-/// as much; rounding dominates below this height.
+/// Rounding changes a coordinate in the frame of a leg by up to 4e-16 of the largest coordinate.
+/// If a triangle has this height, rounding tilts its normal by 4e-4 radians and changes the
+/// barycentric coordinates of a point by as much; below this height, rounding dominates.
 const THIN: f64 = 1e-12;
 /// The smallest allowed height of a triangle in metres: the smallest size in a scene times the
 /// smallest scale. Products of six such lengths are within the range of f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// The largest share of a mesh's area up to which thin triangles are dropped; the missing light is
-/// far below the noise.
+/// The maximum share of a mesh's area for which thin triangles are dropped; the light that these
+/// triangles would meet is far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
-/// The placement of a mesh, and how its faults are reported.
+/// The placement of a mesh in the scene, with the information to report its faults.
 pub(super) struct MeshPlacement<'a> {
-    /// The path of the field of the blocker or the surface in the scene file.
+    /// The path of the blocker's or surface's field in the scene file.
     pub(super) of: String,
     pub(super) source: &'a MeshSource,
     pub(super) center: DVec3,
@@ -33,7 +33,7 @@ pub(super) struct MeshPlacement<'a> {
 }
 
 impl MeshPlacement<'_> {
-    /// Returns a vertex in the world of the scene file.
+    /// Returns the position of a vertex in the world of the scene file.
     pub(super) fn world(&self, vertex: DVec3) -> DVec3 {
         self.center + vertex * self.scale
     }
@@ -64,7 +64,8 @@ impl MeshPlacement<'_> {
 }
 
 impl Resolver<'_> {
-    /// Returns the mesh without triangles too thin for f64, if they are a negligible part of it.
+    /// Returns the mesh without triangles that are too thin for f64, if these triangles are a
+    /// negligible part of the mesh.
     pub(super) fn distinct_triangles(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -102,7 +103,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// Checks that vertices are within the range of coordinates of a scene.
+    /// Checks that the vertices of a mesh are within the range of coordinates of a scene.
     fn inside(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<()> {
         let mut corners: Vec<u32> = mesh.triangles().as_flattened().to_vec();
         corners.sort_unstable();
@@ -131,7 +132,7 @@ fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     [twice / longest, twice]
 }
 
-/// Returns a note for messages that counts the faults after the first.
+/// Returns the part of a message that counts the faults after the first fault.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),

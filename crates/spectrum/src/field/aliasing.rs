@@ -1,47 +1,50 @@
-//! The difference of a 4D spectrum from alias-free slices.
+//! Compares a 4D spectrum with alias-free slices of the same photons.
 
 use super::spectrum::FieldSpectrum;
 use super::spline::mean_square_alias;
 use etendue_field::{Complex, FrequencyAxis, Slices};
 
-/// The difference of a 4D spectrum from the alias-free slices of the same photons, at shared
-/// frequencies.
+/// The difference between a 4D spectrum and the alias-free slices of the same photons, at the
+/// frequencies that both have.
 ///
-/// All values are relative: ‖·‖ over the shared frequencies, divided by that of the slices.
+/// All values are relative norms: ‖·‖ over the shared frequencies, divided by the norm of the
+/// slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aliasing {
-    /// Number of frequencies compared, one of each conjugate pair.
+    /// Number of frequencies compared; only one frequency of each conjugate pair counts.
     pub compared: usize,
-    /// The difference. The difference includes the error of the slices themselves, which is below
-    /// 2·10⁻⁷ Σw at each frequency.
+    /// The difference. The relative difference between spectrum and slices; it includes the error
+    /// of the slices, which is below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
-    /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
-    /// outermost quarter below Nyquist. This value is not a bound: it is correct for white noise,
-    /// too large if the spectrum falls off, and too small if the spectrum rises again.
+    /// The expected difference due to aliasing, if the spectrum beyond Nyquist is as strong as in
+    /// the outermost quarter below Nyquist. The expected difference is not a bound: it is correct
+    /// for white noise, too large if the spectrum falls off, and too small if the spectrum rises
+    /// again.
     pub expected: f64,
-    /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above the
-    /// difference for most.
+    /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above
+    /// the difference for most photons.
     pub bound: f64,
 }
 
-/// A frequency that slices and spectrum share.
+/// A frequency that the slices and the 4D spectrum share.
 struct SharedFrequency {
     harmonics: [isize; 4],
-    /// Cycles per cell along the two axes of the line, 0 to ½.
+    /// The frequency along the two axes of its line, in cycles per cell, 0 to ½.
     f: [f64; 2],
     slice: Complex,
 }
 
 impl FieldSpectrum {
-    /// Compares with the slices of the same photons at all shared frequencies below `share` of
-    /// Nyquist.
+    /// Compares the 4D spectrum with the slices of the same photons, at all shared frequencies
+    /// below `share` of Nyquist.
     ///
-    /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 is azimuth π/2 if the number of azimuths is even;
-    /// if the slices are finer than the natural spacing, only every n-th frequency is shared.
-    /// Returns `None` if no frequency is shared or there is no light.
+    /// Frequencies with Ωy = Ωv = 0 are shared with the slice at azimuth 0, and frequencies with
+    /// Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the number of azimuths is even;
+    /// if the spacing of the slices is finer than the natural spacing, only every n-th frequency
+    /// is shared. Returns `None` if no frequency is shared or if there is no light.
     ///
-    /// On these lines, only the two axes along the line have aliasing; at other frequencies, all
-    /// four axes have aliasing.
+    /// At the shared frequencies, only the two axes along the line have aliasing; at other
+    /// frequencies, all four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
         let all = self.shared(slices);
@@ -109,8 +112,8 @@ impl FieldSpectrum {
         lines.into_iter().map(line).collect()
     }
 
-    /// Returns which multiple of the spacing along `axis` the frequency at `index` of `frequencies`
-    /// is, if it is a multiple up to Nyquist.
+    /// Returns the ratio of the frequency at `index` of `frequencies` to the spacing along
+    /// `axis`, if this ratio is a whole number up to Nyquist.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the multiple is below the number of cells"

@@ -1,4 +1,4 @@
-//! The bins of a full radial spectrum.
+//! Defines the bins of a full radial spectrum.
 
 use super::spectrum::FieldSpectrum;
 use etendue_field::{Complex, FieldGrid};
@@ -7,30 +7,33 @@ use rayon::prelude::*;
 
 /// The bins of a full radial spectrum: rings in |Ωxy| times rings in |Ωuv|, over the frequencies of a 4D grid.
 ///
-/// The width Δ is the natural spacing 1/(2·half-width), the larger one if x and y (or u and v)
-/// differ. Edges are 0, Δ/2, 3Δ/2, …: the first ring contains only zero, ring j is centred at jΔ.
-/// The last edge is the largest one not above the lower of the two Nyquist frequencies, so every
-/// ring is complete and contains no frequency at Nyquist.
+/// The width Δ of the rings is the natural spacing 1/(2·half-width); if the spacings of x and y
+/// (or u and v) differ, Δ is the larger spacing. The edges are 0, Δ/2, 3Δ/2, …: the first ring
+/// contains only zero, and ring j is centred at jΔ. The last edge is the largest edge that does
+/// not exceed the lower of the two Nyquist frequencies, so every ring is complete and contains no
+/// frequency at Nyquist.
 #[derive(Clone, Debug)]
 pub struct RadialBins {
     grid: FieldGrid,
-    /// Edges in |Ωxy|, cycles per metre, and in |Ωuv|, cycles per unit slope: one more than rings.
+    /// Edges of the rings in |Ωxy|, cycles per metre, and in |Ωuv|, cycles per unit slope; their
+    /// number is the number of rings plus one.
     pub edges: [Vec<f64>; 2],
-    /// Number of frequencies, of both halves of the spectrum, in each bin, [|Ωxy|, |Ωuv|].
+    /// Number of frequencies in each bin, [|Ωxy|, |Ωuv|], counted in both halves of the spectrum.
     pub counts: Array2<u64>,
-    /// The ring of each (Ωx, Ωy), [x, y].
+    /// The ring of each frequency (Ωx, Ωy), [x, y].
     xy: Vec<Option<usize>>,
-    /// The frequencies (Ωu, Ωv), Ωv ≥ 0, that are in a ring.
+    /// The frequencies (Ωu, Ωv) with Ωv ≥ 0 that lie in a ring.
     uv: Vec<Angular>,
 }
 
 /// A frequency (Ωu, Ωv).
 #[derive(Clone, Copy, Debug)]
 struct Angular {
-    /// Index of Ωu and Ωv in the spectrum.
+    /// Indices of Ωu and Ωv in the spectrum.
     index: [usize; 2],
     ring: usize,
-    /// Number of frequencies it represents: for Ωv > 0 also its conjugate.
+    /// Number of frequencies that this frequency represents; if Ωv > 0, the conjugate frequency
+    /// counts too.
     weight: u64,
 }
 
@@ -74,7 +77,7 @@ impl RadialBins {
         }
     }
 
-    /// Returns the indices of Ωx and Ωy of a ring.
+    /// Returns the indices of the frequencies Ωx and Ωy in a ring.
     pub(super) fn of_ring(&self, ring: usize) -> impl Iterator<Item = [usize; 2]> {
         let ny = self.grid.cells[1];
         let all = self.xy.iter().enumerate();
@@ -82,18 +85,18 @@ impl RadialBins {
         own.map(move |(i, _)| [i / ny, i % ny])
     }
 
-    /// Returns the indices of Ωu and Ωv ≥ 0 with their rings, and the number of frequencies each
-    /// represents.
+    /// Returns the indices of Ωu and Ωv ≥ 0 with their rings, and the number of frequencies that
+    /// each pair represents.
     pub(super) fn angular(&self) -> impl Iterator<Item = ([usize; 2], usize, f64)> {
         let all = self.uv.iter();
         all.map(|angular| (angular.index, angular.ring, angular.weight as f64))
     }
 
-    /// Returns means over the bins of numbers that are even in Ω, such as powers. `of` is called
-    /// with indices [x, y, u, v] of the spectrum.
+    /// Returns the means, over each bin, of numbers that are even in Ω, such as powers. `of` is
+    /// called with indices [x, y, u, v] of the spectrum.
     ///
-    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
-    /// number of threads.
+    /// The numbers are summed for each Ωx, and these sums are added in order, so the result is
+    /// bitwise identical on any number of threads.
     #[must_use]
     pub fn means<const N: usize>(
         &self,
@@ -142,10 +145,10 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// Returns |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a
-/// measurement on `grid` has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
+/// Returns |F|² of a prediction as a full radial spectrum: in each bin of [`RadialBins`], [|Ωxy|,
+/// |Ωuv|], the mean over the frequencies that a measurement on `grid` has in this bin.
 ///
-/// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv); it is called for Ωv ≥ 0 only.
+/// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv), and is called only for Ωv ≥ 0.
 #[must_use]
 pub fn full_radial_of(grid: &FieldGrid, of: impl Fn([f64; 4]) -> Complex + Sync) -> Array2<f64> {
     let [power] = RadialBins::new(grid).means(|index| [of(grid.frequency(index)).norm_sqr()]);
@@ -168,7 +171,7 @@ mod tests {
         ] {
             let bins = RadialBins::new(&grid);
             let mut counts = Array2::<u64>::zeros(bins.counts.raw_dim());
-            // Computes the mean directly, with far more harmonics than the grid has.
+            // Computes the expected mean directly, with far more harmonics than the grid has.
             let around =
                 |axis: usize| (-20_i32..=20).map(move |m| f64::from(m) * grid.spacing(axis));
             let rings = |a: usize, b: usize| {
@@ -199,8 +202,8 @@ mod tests {
         assert_eq!(bins.counts[[1, 0]], 8); // |(m, n)| = 1 and √2
     }
 
-    /// Means of known numbers: 1, and a number whose mean a wrong weight of conjugates would
-    /// change.
+    /// Tests means of known numbers: of 1, and of a number whose mean would change if conjugates
+    /// had a wrong weight.
     #[test]
     fn means_count_conjugates() {
         let grid = grid([8, 8, 8, 8], [0.5; 4]);
@@ -210,8 +213,8 @@ mod tests {
             [1.0, v * v]
         });
         assert!(one.iter().all(|mean| (mean - 1.0).abs() < 1e-14)); // rounding of sums of ones
-        // By symmetry of u and v, the mean of Ωv² is half of the mean of |Ωuv|². In ring 1, |Ωuv|²
-        // is 1 at four frequencies and 2 at four.
+        // By the symmetry of u and v, the mean of Ωv² is half of the mean of |Ωuv|². In ring 1,
+        // |Ωuv|² is 1 at four frequencies and 2 at four other frequencies.
         assert!((square[[2, 1]] - 0.75).abs() < 1e-14); // rounding
         let by_frequency = full_radial_of(&grid, |[_, _, u, _]| Complex::new(0.0, u));
         assert!((by_frequency[[3, 1]] - 0.75).abs() < 1e-14);

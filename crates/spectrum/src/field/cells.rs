@@ -1,4 +1,4 @@
-//! Sums of weighted rays on a 4D grid.
+//! Sums weighted rays on a 4D grid.
 
 use super::spectrum::FieldSpectrum;
 use super::spline::{taps, transform};
@@ -13,7 +13,7 @@ pub struct FieldTransform {
     grid: FieldGrid,
     assignment: Assignment,
     fft: RealFft4,
-    /// The factors along each axis, at each index of the transform.
+    /// The correction factors along each axis, at each index of the transform.
     factors: [Vec<f64>; 4],
 }
 
@@ -23,8 +23,8 @@ impl FieldTransform {
     pub fn new(grid: FieldGrid, assignment: Assignment) -> Self {
         let factor = |axis: usize, i: usize| {
             let harmonic = grid.harmonic(axis, i);
-            // The origin is cell n/2, half a period from cell 0, which is the phase reference of
-            // the transform.
+            // The origin is at cell n/2, which is half a period from cell 0, the phase reference
+            // of the transform.
             let sign = if harmonic % 2 == 0 { 1.0 } else { -1.0 };
             sign / transform(assignment, harmonic as f64 / grid.cells[axis] as f64)
         };
@@ -48,7 +48,7 @@ impl FieldTransform {
         }
     }
 
-    /// Returns the spectrum of the grid, reusing its memory.
+    /// Returns the spectrum of the cells, and reuses their memory.
     ///
     /// # Panics
     ///
@@ -69,7 +69,8 @@ impl FieldTransform {
         }
     }
 
-    /// Divides by the transform of the spline and moves the origin.
+    /// Divides the spectrum by the transform of the spline, and moves the phase reference to the
+    /// origin.
     fn compensate(&self, data: &mut [Complex]) {
         let [_, ny, nu, _] = self.grid.cells;
         let row = self.fft.row();
@@ -88,8 +89,9 @@ impl FieldTransform {
 
 /// A sum of weighted rays on a 4D grid.
 ///
-/// The caller applies window and radiance weight. Cells contain Σ w · share, f64, added in the
-/// order of the rays.
+/// The caller multiplies each ray by the window and by its weight in radiance space. Each cell
+/// contains Σ w · share in f64, where `share` is the part of a ray that falls on the cell; rays
+/// are added in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCells {
     grid: FieldGrid,
@@ -101,7 +103,7 @@ pub struct FieldCells {
 }
 
 impl FieldCells {
-    /// Adds a ray, which must be inside the box.
+    /// Adds a ray, which must lie inside the box of the grid.
     #[inline]
     pub fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
         match self.assignment {
@@ -133,7 +135,7 @@ impl FieldCells {
         }
     }
 
-    /// Adds another sum, cell by cell.
+    /// Adds another sum of rays, cell by cell.
     pub(crate) fn add(&mut self, other: &Self) {
         self.data
             .par_iter_mut()
@@ -142,8 +144,8 @@ impl FieldCells {
             .for_each(|(a, b)| *a += b);
     }
 
-    /// Returns the light field: Σ w · share / (volume of a cell), [x, y, u, v], all ascending, at
-    /// the cells' centres.
+    /// Returns the light field at the cells' centres: Σ w · share / (volume of a cell), [x, y, u,
+    /// v], all ascending.
     #[must_use]
     pub fn field(&self) -> Array4<f64> {
         let volume = self.grid.cell_volume();

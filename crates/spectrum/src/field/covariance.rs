@@ -1,4 +1,4 @@
-//! The covariance of a power spectrum over all four frequencies at once.
+//! Computes the covariance of a power spectrum over all four frequencies together.
 
 use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;
@@ -9,18 +9,19 @@ use rayon::prelude::*;
 /// A matrix over (ρx, ρy, νu, νv).
 type FrequencyMatrix = [[f64; 4]; 4];
 
-/// Number of entries of a symmetric matrix, plus the power.
+/// Number of distinct entries of a symmetric 4 × 4 matrix, plus one for the power.
 const COUNT: usize = 11;
 
-/// ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
+/// The moments ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
-/// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light
-/// field if the band contains the whole spectrum. If the field has an edge, neither exists: P
-/// falls as Ω⁻² there, and the sum grows with the band. Each result therefore belongs to a band,
-/// and only results over the same band can be compared.
+/// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals
+/// ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of these
+/// two ratios exists: P falls as Ω⁻² along the normal of the edge, and the sum grows with the
+/// band. Each result therefore belongs to a band, and only results over the same band can be
+/// compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
-    /// ∫ P, up to a factor common to all moments.
+    /// ∫ P, up to a factor that all moments share.
     pub power: f64,
     /// ∫ P Ωᵢ Ωⱼ, cycles² per unit of the coordinates, squared.
     pub second: FrequencyMatrix,
@@ -44,14 +45,15 @@ impl PowerMoments {
     }
 }
 
-/// Returns the index pairs (i, j) with i ≤ j, in order.
+/// Returns the index pairs (i, j) with i ≤ j, in ascending order.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies over which moments are taken. The band holds the frequencies of a 4D grid with
-/// |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest frequencies
-/// of a plane's slices. Frequencies at Nyquist are excluded.
+/// The band of frequencies over which moments are taken. The band holds the frequencies of a 4D
+/// grid with
+/// |Ωx| and |Ωy| ≤ ρ_max and |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest
+/// frequencies of the slices of a plane. Frequencies at Nyquist are excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -70,7 +72,7 @@ impl Moments {
         }
     }
 
-    /// Returns the band with half the largest frequencies.
+    /// Returns the band whose largest frequencies are half of those of this band.
     fn halved(&self) -> Self {
         Self {
             grid: self.grid,
@@ -78,11 +80,11 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of a power that is even in Ω, given at indices of a transform, with
-    /// those along v from zero on.
+    /// Returns the moments of a power that is even in Ω; `power` is called with indices of a
+    /// transform, and only for frequencies along v from zero on.
     ///
-    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
-    /// number of threads.
+    /// The power is summed for each Ωx, and these sums are added in order, so the result is
+    /// bitwise identical on any number of threads.
     #[must_use]
     pub fn of(&self, power: impl Fn([usize; 4]) -> f64 + Sync) -> PowerMoments {
         let [xs, ys, us, vs] = [0, 1, 2, 3].map(|axis| self.along(axis));
@@ -91,7 +93,7 @@ impl Moments {
             for y in &ys {
                 for u in &us {
                     for v in vs.iter().filter(|(_, omega)| *omega >= 0.0) {
-                        // For Ωv > 0 the conjugate counts too.
+                        // If Ωv > 0, the conjugate frequency counts too.
                         let weight = if v.0 == 0 { 1.0 } else { 2.0 };
                         let p = weight * power([x.0, y.0, u.0, v.0]);
                         add(&mut sums, p, [x.1, y.1, u.1, v.1]);
@@ -108,16 +110,16 @@ impl Moments {
         PowerMoments::new(all)
     }
 
-    /// Returns the moments of a power given at frequencies.
+    /// Returns the moments of a power that is a function of frequencies.
     #[must_use]
     pub fn at_frequencies(&self, power: impl Fn([f64; 4]) -> f64 + Sync) -> PowerMoments {
         self.of(|index| power(self.grid.frequency(index)))
     }
 
-    /// Returns indices and frequencies of the band along an axis.
+    /// Returns the indices and the frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
-        // The largest frequency may be a multiple of the spacing apart from rounding errors.
+        // Apart from rounding errors, the largest frequency may be a multiple of the spacing.
         let most = self.band[axis] * (1.0 + 1e-9);
         let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
         let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);
@@ -133,13 +135,13 @@ fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
     }
 }
 
-/// The contribution of a group of batches to the moments: Re(G_r conj(G − G_r)), as in
-/// [`GroupPower`](super::cross::GroupPower).
+/// The contribution of a group of batches to the moments of the spectrum: Re(G_r conj(G − G_r)),
+/// as in [`GroupPower`](super::cross::GroupPower).
 #[derive(Clone, Debug)]
 pub(crate) struct GroupMoments {
     share: f64,
     row: PowerMoments,
-    /// The moments over half of the band.
+    /// The moments over half of the band of frequencies.
     half: PowerMoments,
 }
 
@@ -162,28 +164,29 @@ impl GroupMoments {
     }
 }
 
-/// The covariance of a spectrum, measured without bias from noise.
+/// The covariance of a spectrum, measured without bias due to noise.
 ///
-/// Noise is a floor of power at all frequencies, and it dominates second moments. Products of
-/// different groups of batches are therefore used. With Re(G_r conj G_s) over all pairs r ≠ s in
-/// place of |G|², ∫ P and ∫ P Ω Ωᵀ are unbiased for any number of photons (docs/theory.md (13)).
-/// The error of their ratio is of second order in the noise.
+/// Photon noise adds a constant power at all frequencies, and this power would dominate second
+/// moments. Products of different groups of batches are therefore used. If Re(G_r conj G_s) over
+/// all pairs r ≠ s replaces |G|², ∫ P and ∫ P Ω Ωᵀ are unbiased for any number of photons
+/// (docs/theory.md (13)). The error of the ratio of ∫ P Ω Ωᵀ to ∫ P is of second order in the
+/// noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCovariance {
     /// The largest frequency along each axis, cycles per unit.
     pub band: [f64; 4],
     /// The moments.
     pub moments: PowerMoments,
-    /// The moments over half of the band.
+    /// The moments over half of the band of frequencies.
     half: PowerMoments,
-    /// The moments with each of the groups left out, up to a factor.
+    /// The moments with each of the groups left out in turn, up to a common factor.
     without: Vec<PowerMoments>,
 }
 
 /// A matrix with the standard error of each entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixEstimate {
-    /// The matrix over [ρx, ρy, νu, νv], cycles² per unit of the coordinates, squared.
+    /// The matrix over (ρx, ρy, νu, νv), cycles² per unit of the coordinates, squared.
     pub value: FrequencyMatrix,
     /// The standard errors, by the delete-one jackknife over groups of batches.
     pub error: FrequencyMatrix,
@@ -221,16 +224,16 @@ impl FieldCovariance {
         }
     }
 
-    /// Returns the covariance; `None` if there is no light beyond noise.
+    /// Returns the covariance; `None` if the power is not above the noise.
     #[must_use]
     pub fn estimate(&self) -> Option<MatrixEstimate> {
         self.estimate_of(|matrix| Some(*matrix))
     }
 
-    /// Returns the factor by which each variance grows from half of the band to all of it: 1 if the
-    /// band contains the spectrum, about 2 if the field has an edge, and more if replicas lie in
-    /// between. The spectrum of an edge has no second moment. Returns `None` if there is no light
-    /// beyond noise.
+    /// Returns the factor by which each variance grows if half of the band is extended to the
+    /// entire band: 1 if the band contains the spectrum, about 2 if the field has an edge, and
+    /// more if replicas lie between half of the band and its end. The spectrum of a field with an
+    /// edge has no second moment. Returns `None` if the power is not above the noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];
@@ -238,8 +241,8 @@ impl FieldCovariance {
     }
 
     /// Returns the estimate of a matrix that is a function of the covariance, such as its image
-    /// under a map. Returns `None` if this matrix does not exist for all groups together, or with
-    /// one group left out.
+    /// under a map. Returns `None` if this matrix does not exist, either for all groups together
+    /// or if any one group is left out.
     pub fn estimate_of(
         &self,
         of: impl Fn(&FrequencyMatrix) -> Option<FrequencyMatrix>,

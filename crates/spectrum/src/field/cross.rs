@@ -1,4 +1,4 @@
-//! The full radial spectrum from products of independent groups.
+//! Computes the full radial spectrum from products of independent groups of batches.
 
 use super::bins::RadialBins;
 use super::spectrum::FieldSpectrum;
@@ -8,8 +8,9 @@ use ndarray::Array2;
 /// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
 /// independently, over the azimuth of (Ωu, Ωv).
 ///
-/// Arrays are [|Ωxy|, |Ωuv|]; the bins are those of [`RadialBins`]. Unit: that of ℓ̂, squared. The sign of a shear
-/// is lost; the slices keep it.
+/// Arrays are indexed [|Ωxy|, |Ωuv|], and the bins are those of [`RadialBins`]. The unit of the
+/// power is the square of the unit of ℓ̂. A full radial spectrum does not contain the sign of a
+/// shear, but the slices do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullRadial {
     /// Edges of the bins in |Ωxy|, cycles per metre.
@@ -18,28 +19,27 @@ pub struct FullRadial {
     pub nu_edges: Vec<f64>,
     /// Number of frequencies in each bin, including conjugates.
     pub counts: Array2<u64>,
-    /// The power without the noise of the photons: unbiased except for aliasing, and possibly
-    /// negative due to noise.
+    /// The power without the noise of the photons; it is unbiased except for aliasing, and noise
+    /// can make it negative.
     pub power: Array2<f64>,
-    /// The contribution of the photons' noise to the power of the mean spectrum; `power` does not
-    /// include it.
+    /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power` by the delete-one jackknife over groups of batches. It is
-    /// about √2 times too large for frequencies with noise alone.
+    /// The standard error of `power` by the delete-one jackknife over groups of batches. At
+    /// frequencies that contain only noise, this error is about √2 times too large.
     pub sigma: Array2<f64>,
 }
 
-/// The power of a spectrum from products of the independent groups that add up to it
-/// (docs/theory.md (13)), bin by bin.
+/// The power of a spectrum in each bin, from products of the independent groups that add up to
+/// the spectrum (docs/theory.md (13)).
 ///
-/// Group r contains the share a_r of the batches, and its part of the spectrum is G_r, G = Σ G_r. E
-/// G_r = a_r F, so
+/// Group r contains the share a_r of the batches and contributes G_r to the spectrum, so that G =
+/// Σ G_r. E G_r = a_r F, so
 ///
 /// U = Σ_(r≠s) Re(G_r conj G_s)/(1 − Σ a²)
 ///
-/// is an unbiased estimate of |F|². Each group is processed once, with G known: the result is row_r
-/// = Re(G_r conj(G − G_r)), and the sum of these is the numerator T. Without group r the estimate
-/// is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
+/// is an unbiased estimate of |F|². Each group is processed once, after G is known: the result is
+/// row_r = Re(G_r conj(G − G_r)), and the sum of row_r over all groups is the numerator T. If
+/// group r is left out, the estimate is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
 pub(crate) struct GroupPower {
     /// The share a_r.
     pub(crate) share: f64,
@@ -48,7 +48,7 @@ pub(crate) struct GroupPower {
 }
 
 impl GroupPower {
-    /// Computes the contribution of a group.
+    /// Computes the contribution of a group of batches.
     pub(crate) fn new(
         bins: &RadialBins,
         share: f64,
@@ -67,7 +67,7 @@ impl GroupPower {
     }
 }
 
-/// Returns the full radial spectrum of all groups.
+/// Returns the full radial spectrum from the contributions of all groups.
 pub(crate) fn full_radial(bins: &RadialBins, groups: &[&GroupPower]) -> FullRadial {
     let shape = bins.counts.raw_dim();
     let sum = |of: fn(&GroupPower) -> &Array2<f64>| {

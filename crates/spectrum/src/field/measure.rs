@@ -1,4 +1,4 @@
-//! Measuring a light field on a 4D grid.
+//! Measures a light field on a 4D grid.
 
 use super::bins::RadialBins;
 use super::cells::{FieldCells, FieldTransform};
@@ -11,30 +11,32 @@ use ndarray::Array4;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The fewest groups for a jackknife.
+/// The minimum number of groups for a jackknife.
 const MIN_GROUPS: usize = 3;
 
 /// Options for measuring a light field on a 4D grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
-    /// The assignment of a ray to cells.
+    /// The method that assigns a ray to cells.
     pub assignment: Assignment,
-    /// Independent groups of batches for the errors: at least 3, at most as many as there are batches.
+    /// Number of independent groups of batches from which errors are estimated: at least 3, and
+    /// at most the number of batches.
     pub groups: usize,
-    /// Whether to keep the grids of all groups. If not, photons are traced twice: once for the
-    /// sum, and once for the groups. The result is bitwise the same.
+    /// Whether the grids of all groups are kept in memory. If the grids are not kept, photons are
+    /// traced twice: once for the sum of all groups, and once for each group. The result is
+    /// bitwise the same, whether the grids are kept or not.
     pub keep: bool,
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
-    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane.
-    /// The grid then extends to 1.5 times these frequencies, and the alias at the highest of them
-    /// is an eighth of the spectrum at twice that frequency.
+    /// Whether the covariance of the spectrum is computed too, over the frequencies of the plane.
+    /// If it is, the grid extends to 1.5 times these frequencies, and the alias at the highest of
+    /// these frequencies is an eighth of the spectrum at twice the highest frequency.
     pub covariance: bool,
 }
 
 impl Default for FieldOptions {
-    /// Returns the default options: triangular shaped clouds, 16 groups, which are not kept, no
-    /// spectra of groups and no covariance.
+    /// Returns the default options: triangular shaped clouds, 16 groups that are not kept, no
+    /// spectra of groups, and no covariance.
     fn default() -> Self {
         Self {
             assignment: Assignment::Tsc,
@@ -46,11 +48,12 @@ impl Default for FieldOptions {
     }
 }
 
-/// The range of the grid for a covariance, relative to the covariance's largest frequencies.
+/// The largest frequency of the grid for a covariance, divided by the largest frequency of the
+/// covariance.
 const MARGIN: f64 = 1.5;
 
 impl FieldOptions {
-    /// Returns the grid of a plane.
+    /// Returns the grid on which a plane is measured.
     #[must_use]
     pub fn grid(&self, plane: &VirtualPlane) -> FieldGrid {
         let mut slices = plane.grid;
@@ -61,9 +64,9 @@ impl FieldOptions {
         FieldGrid::new(&plane.window, &slices)
     }
 
-    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: the field,
-    /// its spectrum, and a grid for each group at work or kept. The caller should compare it with
-    /// the available memory before measuring.
+    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: for the
+    /// field, for its spectrum, and for the grid of each group that is kept or being measured.
+    /// The caller should compare it with the available memory before measuring.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);
@@ -83,8 +86,9 @@ pub struct FieldMeasurement {
     pub grid: FieldGrid,
     /// Number of photons that crossed the plane.
     pub tally: PlaneTally,
-    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres, smoothed by the assignment's
-    /// spline. Unit: that of L W, W m⁻² sr⁻¹.
+    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres; the field is
+    /// smoothed by the spline of the assignment. The unit of the field is the unit of L W, W m⁻²
+    /// sr⁻¹.
     pub field: Array4<f64>,
     /// The spectrum of the field, divided by the transform of the spline.
     pub spectrum: FieldSpectrum,
@@ -99,26 +103,28 @@ pub struct FieldMeasurement {
 /// The contribution of a group of batches to the spectrum of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldGroup {
-    /// The share of the batches in this group.
+    /// The number of batches in this group, divided by the number of all batches.
     pub share: f64,
-    /// The group's part of the spectrum, whose expectation is `share` times that of the spectrum.
+    /// The contribution of the group to the spectrum; its expectation is `share` times that of
+    /// the spectrum.
     pub spectrum: FieldSpectrum,
 }
 
 /// Measures the light field at plane number `index` of `source` on the grid from
 /// [`FieldOptions::grid`].
 ///
-/// The batches and photons are those of [`measure`](crate::measure): field and spectrum are
+/// The batches and photons are those of [`measure`](crate::measure), and field and spectrum are
 /// unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices). The i-th
-/// non-empty batch belongs to group i mod R. A group is the sequential work of one thread and
-/// groups are summed in order, so the result is bitwise identical on any number of threads.
+/// non-empty batch belongs to group i mod R. One thread measures a group sequentially, and groups
+/// are summed in order, so the result is bitwise identical on any number of threads.
 ///
-/// Measures one plane at a time: see [`FieldOptions::bytes`]. `progress` is called with the number
-/// of photons as they are traced, twice unless groups are kept.
+/// One call measures one plane, because of the memory of its grids: see [`FieldOptions::bytes`].
+/// `progress` is called with the number of photons as they are traced; each photon counts twice
+/// unless the grids of groups are kept.
 ///
 /// # Errors
 ///
-/// Fails with fewer than three non-empty batches.
+/// Fails if fewer than three batches have photons.
 pub fn measure_field(
     source: &dyn PhotonSource,
     index: usize,
@@ -166,11 +172,11 @@ pub fn measure_field(
     })
 }
 
-/// The result of a group.
+/// The result of one group of batches.
 struct OfGroup {
     power: GroupPower,
     moments: Option<GroupMoments>,
-    /// The group's spectrum, if it is kept.
+    /// The spectrum of the group, if spectra of groups are requested.
     spectrum: Option<FieldGroup>,
 }
 
@@ -187,7 +193,7 @@ struct GroupContext<'a> {
 }
 
 impl GroupContext<'_> {
-    /// Returns the sum of all groups, and the groups if they are kept.
+    /// Returns the sum of the grids of all groups, and the grids of the groups if they are kept.
     fn sum(&self, keep: bool) -> (FieldCells, PlaneTally, Vec<FieldCells>) {
         let mut sum = self.transform.cells();
         let mut tally = PlaneTally::default();
@@ -208,8 +214,8 @@ impl GroupContext<'_> {
         (sum, tally, kept)
     }
 
-    /// Returns the contribution of each group to the power, where `all` is the spectrum of their
-    /// sum.
+    /// Returns the contribution of each group to the power, where `all` is the spectrum of the
+    /// sum of all groups.
     fn powers(
         &self,
         bins: &RadialBins,
@@ -236,15 +242,15 @@ impl GroupContext<'_> {
         powers
     }
 
-    /// Returns ranges of groups that are processed at the same time. Each has as many groups as
-    /// there are threads, which limits the number of grids in memory.
+    /// Returns ranges of groups; the groups of one range are processed at the same time. A range
+    /// has as many groups as there are threads, which limits the number of grids in memory.
     fn waves(&self) -> impl Iterator<Item = Range<usize>> {
         let threads = rayon::current_num_threads();
         let starts = (0..self.groups).step_by(threads);
         starts.map(move |start| start..(start + threads).min(self.groups))
     }
 
-    /// Returns the batches of a group.
+    /// Returns the numbers of the batches of a group.
     fn members(&self, group: usize) -> impl ExactSizeIterator<Item = u32> {
         self.batches
             .iter()
@@ -253,7 +259,7 @@ impl GroupContext<'_> {
             .copied()
     }
 
-    /// Traces the photons of a group.
+    /// Traces the photons of a group of batches, and puts them on a grid.
     fn trace(&self, group: usize) -> (FieldCells, PlaneTally) {
         let mut cells = self.transform.cells();
         let mut tally = PlaneTally::default();

@@ -1,4 +1,4 @@
-//! Products of several 4D spectra, averaged over the bins of a full radial spectrum.
+//! Computes products of several 4D spectra, averaged over the bins of a full radial spectrum.
 
 use super::bins::RadialBins;
 use super::spectrum::FieldSpectrum;
@@ -6,14 +6,14 @@ use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
 impl RadialBins {
-    /// Returns the means of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j], with the
-    /// bins of a row-major [|Ωxy|, |Ωuv|].
+    /// Returns the mean of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j]; the bins
+    /// are in the row-major order of [|Ωxy|, |Ωuv|].
     ///
-    /// All pairs are computed together to read each spectrum once. Each ring of (Ωx, Ωy) is summed
-    /// separately, in order, so the result is bitwise identical on any number of threads.
+    /// All pairs of spectra are computed together, so that each spectrum is read only once. Each
+    /// ring of frequencies (Ωx, Ωy) is summed separately and in order, so the result is bitwise
+    /// identical on any number of threads.
     ///
-    /// # Panics
-    /// If a spectrum is on another grid.
+    /// # Panics If a spectrum is on a grid other than that of these bins.
     #[must_use]
     pub fn products(&self, spectra: &[&FieldSpectrum]) -> Array3<f64> {
         let (rings, columns) = self.counts.dim();
@@ -26,7 +26,7 @@ impl RadialBins {
         products.expect("there is a product for each bin and pair")
     }
 
-    /// Returns the products of a ring of (Ωx, Ωy), [|Ωuv|, i, j].
+    /// Returns the products of all frequencies in a ring of (Ωx, Ωy), [|Ωuv|, i, j].
     fn ring_products(&self, ring: usize, spectra: &[&FieldSpectrum]) -> Vec<f64> {
         let n = spectra.len();
         let columns = self.counts.ncols();
@@ -53,7 +53,7 @@ impl RadialBins {
     }
 }
 
-/// Adds the products of all pairs i ≥ j.
+/// Adds the products of all pairs of spectra i ≥ j.
 fn add_products(sum: &mut Array2<f64>, parts: &[[f64; 2]], weight: f64) {
     for (i, (row, [re, im])) in sum.outer_iter_mut().zip(parts).enumerate() {
         let (re, im) = (weight * re, weight * im);
@@ -92,7 +92,8 @@ mod tests {
                 [(a * b.conj()).re]
             });
             for ((r, c), mean) in mean.indexed_iter() {
-                // The limit is the rounding error of sums of about a hundred numbers around 1.
+                // The tolerance is the rounding error of sums of about a hundred numbers around
+                // 1.
                 assert!((products[[r * bins.counts.ncols() + c, i, j]] - mean).abs() < 1e-13);
             }
         }

@@ -1,4 +1,4 @@
-//! The spectrum of a 4D grid.
+//! Defines the spectrum of a windowed light field on a 4D grid.
 
 use super::spline::worst_alias;
 use etendue_field::{Assignment, Complex, FieldGrid};
@@ -7,25 +7,25 @@ use ndarray::Array4;
 /// The spectrum of a windowed light field from its 4D grid: Σ w e^(−2πi Ω·z) over the rays, up to
 /// aliasing.
 ///
-/// Phases refer to the plane's origin and the transform of the spline is divided out, so at each
-/// frequency a ray contributes w e^(−2πi Ω·z) (1 + ε). Unit: that of ∫ L W dx dy du dv, as for
-/// [`Slices`](etendue_field::Slices).
+/// Phases refer to the plane's origin, and the transform of the spline is divided out, so at each
+/// frequency a ray contributes w e^(−2πi Ω·z) (1 + ε). The unit is that of ∫ L W dx dy du dv, as
+/// for [`Slices`](etendue_field::Slices).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldSpectrum {
     /// The grid, which determines the frequencies.
     pub grid: FieldGrid,
-    /// The assignment of rays to its cells.
+    /// The method that assigned rays to the cells of the grid.
     pub assignment: Assignment,
-    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`], those
-    /// along v from zero to Nyquist only, since the field is real.
+    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`]; the
+    /// field is real, so frequencies along v run only from zero to Nyquist.
     pub values: Array4<Complex>,
 }
 
 impl FieldSpectrum {
-    /// Returns the value at the given multiples of the frequency spacings, each up to n/2 in
-    /// modulus.
+    /// Returns the value at the given multiples of the frequency spacings; each multiple is at
+    /// most n/2 in modulus.
     ///
-    /// At a Nyquist frequency ±n/2 both signs have the same value, which is not an estimate of the
+    /// At a Nyquist frequency, +n/2 and −n/2 have the same value, which is not an estimate of the
     /// spectrum.
     ///
     /// # Panics
@@ -55,20 +55,20 @@ impl FieldSpectrum {
         self.values[[0; 4]].re
     }
 
-    /// Returns a bound on the error of [`at`](Self::at) relative to the exact sum over the same
-    /// rays, if no weight is negative: Σw (Π(1 + ε_d) − 1), where ε_d is the largest alias of a ray
-    /// along axis d.
+    /// Returns a bound on the difference between [`at`](Self::at) and the exact sum over the same
+    /// rays, if no weight is negative: Σw (Π(1 + ε_d) − 1), where ε_d is the largest alias of a
+    /// ray along axis d.
     ///
-    /// The bound is rigorous for any field: it is reached (orders 1 and 2) if all light is in one
-    /// ray at the worst position. The bound grows as the frequency to the power p, so it is almost
-    /// useless near Nyquist.
+    /// The bound is rigorous for any field: with assignments of order 1 and 2, it is reached if
+    /// all light is in one ray at the worst position. The bound grows as the frequency to the
+    /// power p, where p is the order of the spline, so it is almost useless near Nyquist.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {
         let worst = |axis: usize| {
             let f = harmonics[axis] as f64 / self.grid.cells[axis] as f64;
             worst_alias(self.assignment, f)
         };
-        // Computes Π(1 + ε) − 1 such that small ε are not lost to rounding.
+        // Computes Π(1 + ε) − 1 in a form that does not lose small ε to rounding.
         let sum = (0..4).fold(0.0, |sum, axis| sum + worst(axis) * (1.0 + sum));
         self.at_zero() * sum
     }

@@ -1,24 +1,25 @@
-//! B-splines: shares, transforms, and the aliasing from sampling them on a grid.
+//! Computes B-splines: the shares of cells, the splines' transforms, and the aliasing due to
+//! sampling on a grid.
 //!
-//! A ray at t (in cells) is distributed over the cells j by B(j − t), where B is the B-spline of
-//! order p with the transform sinc^p. By Poisson's summation the transform of the shares at f
+//! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order
+//! p with the transform sinc^p. By Poisson's summation formula, the transform of the shares at f
 //! cycles per cell, |f| ≤ ½, divided by sinc^p(f), is
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
-//! The first factor is the ray's exact phase, and ε is the sum of the aliases (Hockney and
-//! Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
+//! The factor e^(−2πift) is the exact phase of the ray, and ε is the sum of the aliases (Hockney
+//! and Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
 
 use etendue_field::{Assignment, sinc};
 use std::f64::consts::PI;
 
-/// Returns sinc^p(f): the transform of the spline.
+/// Returns the transform of the spline, sinc^p(f).
 pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
 /// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
-/// axis, with the shares of the ray, which add up to 1.
+/// axis, with the ray's share in each cell; the shares add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -26,7 +27,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     reason = "the index is whole and from 0 to n, because a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
-    // The cell below t or, for odd P, the cell nearest to t.
+    // For even P, this is the cell below t; for odd P, it is the cell nearest to t.
     let cell = (t + (P % 2) as f64 * 0.5).floor();
     let d = t - cell;
     let shares: [f64; 3] = match P {
@@ -43,34 +44,34 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
     (cells, std::array::from_fn(|i| shares[i]))
 }
 
-/// Returns the largest |ε| of a ray at `f`, over all positions of the ray.
+/// Returns the maximum of |ε| at the frequency `f`, over all positions of a ray.
 ///
-/// The value is exact for orders 1 and 2. For order 3 it is the sum of the moduli, which exceeds
-/// the actual maximum by up to a fifth.
+/// The value is exact for orders 1 and 2. For order 3 the value is the sum of the moduli of the
+/// terms, which exceeds the actual maximum by up to a fifth.
 pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     let f = f.abs();
     let one = sinc(f);
     match assignment {
-        // The ray is at most half a cell from the position to which it is assigned, so ε is at
+        // A ray is at most half a cell from the position to which it is assigned, so |ε| is at
         // most |e^(iθ)/sinc f − 1| with |θ| ≤ πf.
         Assignment::Nearest => {
             let square = 1.0 / (one * one) - 2.0 * libm::cos(PI * f) / one + 1.0;
             square.max(0.0).sqrt()
         }
-        // All terms are positive at t = 0, and Σ 1/(f + n)² = π²/sin²(πf).
+        // At t = 0 all terms of ε are positive, and Σ 1/(f + n)² = π²/sin²(πf).
         Assignment::Cic => 1.0 / (one * one) - 1.0,
         Assignment::Tsc => {
             let last = 50;
             let cube = |t: f64| t * t * t;
             let term = |n: u32| cube(f / (f64::from(n) - f)) + cube(f / (f64::from(n) + f));
             let sum: f64 = (1..=last).map(term).sum();
-            // Each remaining term is below the integral of f³/(t − f)³ over a step.
+            // Each omitted term is below the integral of f³/(t − f)³ over one step of t.
             sum + cube(f) / (f64::from(last) - f).powi(2)
         }
     }
 }
 
-/// Returns the mean of |ε|² over the position of the ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of
+/// Returns the mean of |ε|² over all positions of a ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of
 /// Jing (2005), Eq. 20.
 pub(crate) fn mean_square_alias(assignment: Assignment, f: f64) -> f64 {
     let s = libm::sin(PI * f).powi(2);
@@ -136,7 +137,7 @@ mod tests {
         assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // what rounding makes of a ray just inside
     }
 
-    /// ε from its definition, over many positions of a ray.
+    /// Computes ε from its definition, for many positions of a ray.
     #[test]
     fn aliases_are_what_is_said_of_them() {
         for assignment in ALL {
@@ -157,8 +158,8 @@ mod tests {
                     largest <= worst + 1e-14,
                     "{assignment:?} {f}: {largest} {worst}"
                 ); // rounding
-                // The worst position is sampled to half of 1/1000 of a cell; order 3 stays below
-                // its sum of moduli.
+                // Positions of the ray are sampled in steps of 1/1000 of a cell; for order 3, |ε|
+                // stays below the sum of moduli.
                 let tsc = assignment == Assignment::Tsc;
                 let least = if tsc { 0.8 } else { 0.99 };
                 assert!(

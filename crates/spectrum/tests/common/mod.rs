@@ -1,4 +1,4 @@
-//! Random crossings and a source of them, for the tests of this crate.
+//! Generates random crossings, and a source of such crossings, for the tests of this crate.
 #![allow(
     dead_code,
     unreachable_pub,
@@ -12,7 +12,7 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
+/// The random number generator SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Random(pub u64);
 
 impl Random {
@@ -30,8 +30,8 @@ impl Random {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// Returns a crossing up to `reach` half-widths of `window` from its centre, with a weight in
-    /// [0, 2).
+    /// Returns a random crossing, up to `reach` half-widths of `window` from the window's centre,
+    /// with a weight in [0, 2).
     pub fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
         let ray = TwoPlane {
@@ -65,8 +65,8 @@ pub fn boxed() -> Window {
     }
 }
 
-/// Returns `azimuths` slices with `half` values of ρ and of ν on either side of zero, `fineness`
-/// samples to 1/(2 half-width).
+/// Returns a grid of `azimuths` slices with `half` values of ρ and of ν on either side of zero,
+/// and with `fineness` samples per 1/(2 half-width).
 pub fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,
@@ -94,8 +94,8 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
     }
 }
 
-/// Photons that cross every plane at random positions and slopes, a tenth of them outside the
-/// window.
+/// A source of photons that cross every plane at random positions and slopes; a tenth of these
+/// photons are outside the window.
 pub struct Shower {
     pub seed: u64,
     pub photons: u64,
@@ -124,7 +124,8 @@ impl PhotonSource for Shower {
         while left > 0 {
             let count = left.min(100);
             for (index, plane) in self.planes.iter().enumerate() {
-                // 0.9^(-1/4): all four coordinates are inside nine times in ten.
+                // With the factor 0.9^(-1/4) for each coordinate, all four coordinates are inside
+                // the window nine times in ten.
                 let block: Vec<_> = (0..count)
                     .map(|_| random.crossing(&plane.window, 1.0267))
                     .collect();

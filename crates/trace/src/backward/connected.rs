@@ -1,15 +1,17 @@
 //! Connects points to light without extent, which no ray hits by chance: point lights, projectors
 //! and beams.
 //!
-//! The path from a given point to such a light is known, so only this path is traced.
+//! Exactly one path leads from a given point to a light without extent, so only this path is
+//! traced.
 
 use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// Whether rays traced back from a plane find the light. Light without extent is found only if no
-/// mirror, interface or lens deflects it before it reaches the plane or the first surface that
-/// scatters it. A point light is not found from its own position. Rays of a file are never found.
+/// Checks whether rays traced back from a virtual plane find the light. Light without extent is
+/// found only if no mirror, interface or lens deflects it before it reaches the virtual plane or
+/// the first surface that scatters it. Rays traced back from the position of a point light do not
+/// find this light. Rays traced back never find a light that is a list of rays from a file.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
@@ -27,9 +29,10 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// Returns the ray from a light without extent to a point in the frame at the light, given at the
-/// light. Also returns the irradiance that the light causes at the point, on an area across the
-/// ray, divided by the value of the ray per du dv or dx dy.
+/// Returns the ray from a light without extent to `point`; `point` is in the frame at the light,
+/// and the ray is given in the plane of the light. Also returns the irradiance that the light
+/// causes at `point`, on an area perpendicular to the ray, divided by the value of the ray per du
+/// dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {
@@ -42,8 +45,8 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let [u, v] = [x / point.z, y / point.z];
     let (x, y) = (0.0, 0.0);
     let ray = TwoPlane { x, y, u, v };
-    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value that the ray carries
-    // already includes one root of 1 + u² + v².
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value of the ray already
+    // includes one factor √(1 + u² + v²).
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
     Some((ray, 1.0 / spread))

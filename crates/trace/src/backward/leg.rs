@@ -17,17 +17,18 @@ pub(super) struct BackwardLeg {
     pub(super) ends: Option<Object>,
 }
 
-/// The objects that light in one direction along a leg can meet.
+/// The objects that light can meet if it travels along a leg in one of the leg's two directions.
 #[derive(Debug)]
 pub(super) struct BackwardCourse {
-    /// The frame of the heading, in the frame at the light.
+    /// The frame of the heading (the direction of light along the leg), in the frame at the
+    /// light.
     pub(super) frame: Frame,
     pub(super) obstacles: Obstacles,
     /// The surface at the beginning of the leg; `None` for the first leg.
     pub(super) leaves: Option<LeftSurface>,
 }
 
-/// A ray along which light of a leg may come, in the frame of its heading.
+/// A ray along which light of a leg may arrive, in the frame of the ray's heading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingRay {
     pub(super) leg: usize,
@@ -39,7 +40,8 @@ pub(super) struct IncomingRay {
 #[derive(Debug)]
 pub(super) struct LeftSurface {
     pub(super) object: Object,
-    /// The pieces of the surface, in the frame of the light's direction along the leg.
+    /// The geometric primitives of the surface, in the frame of the light's heading along the
+    /// leg.
     pub(super) primitives: PrimitiveSet<()>,
     pub(super) how: Scattering,
     pub(super) rounding: f64,
@@ -48,21 +50,21 @@ pub(super) struct LeftSurface {
 /// How light leaves a surface.
 #[derive(Debug)]
 pub(super) enum Scattering {
-    /// Diffuse reflection, from pieces whose points can be sampled.
+    /// Diffuse reflection, from flat pieces on which points can be sampled.
     Diffuse { albedo: f64, pieces: AreaSampler },
-    /// Reflection by a BRDF that may vary over a patch, in the frame of the light's direction
-    /// along the leg.
+    /// Reflection by a BRDF that may vary over a patch, in the frame of the light's heading along
+    /// the leg.
     Reflects {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// Reflection, refraction or a lens; the frame of the lens is in the frame of the light's
-    /// direction along the leg.
+    /// Reflection, refraction or a lens; the frame of the lens is given in the frame of the
+    /// light's heading along the leg.
     Turned { lens: Frame, event: Specular },
 }
 
 impl IncomingRay {
-    /// A ray on the first leg, given at the light.
+    /// Returns a ray of the first leg, given by its coordinates in the plane of the light.
     pub(super) fn from_light(ray: TwoPlane) -> Self {
         Self {
             leg: 0,

@@ -1,4 +1,4 @@
-//! How rays of one plane are drawn.
+//! Defines how the backward tracer draws rays at one virtual plane.
 
 use super::end::End;
 use super::leg::IncomingRay;
@@ -10,15 +10,15 @@ use crate::proposal::ProfileDensity;
 use etendue_field::{Orientation, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;
 
-/// How rays of one plane are drawn.
+/// A strategy to draw backward rays at one virtual plane.
 #[derive(Debug)]
 pub(super) struct PlaneSampler {
     pub(super) leg: usize,
     pub(super) planes_on_leg: Both<PlaneOnLeg>,
     pub(super) position: [ProfileDensity; 2],
     pub(super) slope: [ProfileDensity; 2],
-    /// Whether slopes are drawn towards points of the light. Slopes are drawn in this way if the
-    /// light restricts slopes more than the window does.
+    /// Whether slopes are drawn towards points of the light. Slopes are drawn towards points of
+    /// the light if the light restricts slopes more than the window does.
     pub(super) to_light: bool,
 }
 
@@ -50,8 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// The ray of the leg that has the coordinates `seen` at the plane, its end point, and dA / dx
-    /// dy there; `None` if there is no such ray.
+    /// Returns the ray of the leg that has the coordinates `seen` at the virtual plane, the end
+    /// point of the ray, and dA / dx dy at the plane; `None` if there is no such ray.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {

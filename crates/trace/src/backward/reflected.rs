@@ -10,6 +10,6 @@ pub(super) struct Reflection<'a> {
     pub(super) point: DVec3,
     /// The frame whose D is the normal of the surface.
     pub(super) frame: Frame,
-    /// The unit direction of the reflected light, in `frame`.
+    /// The unit direction of the reflected light, in the frame of the normal.
     pub(super) to: DVec3,
 }

@@ -12,13 +12,13 @@ pub(super) enum TracedLight {
     Area { light: Light, shape: Shape },
     /// Light from an environment.
     Sky(Sky),
-    /// A point, a projector or a beam, towards which rays are drawn.
+    /// A point light, a projector or a beam, towards which backward rays are drawn.
     Narrow(Light),
 }
 
 impl TracedLight {
-    /// The radiance along an unoccluded ray; for light without extent, the value per du dv or dx
-    /// dy.
+    /// Returns the radiance along an unoccluded ray; for light without extent, returns the value
+    /// of the ray per du dv or dx dy.
     pub(super) fn radiance(&self, ray: &TwoPlane) -> f64 {
         match self {
             Self::Area { light, .. } | Self::Narrow(light) => radiance(light, ray),
@@ -26,7 +26,8 @@ impl TracedLight {
         }
     }
 
-    /// The density per solid angle, at a point, of directions drawn towards the light.
+    /// Returns the density per solid angle of directions that are drawn from a point towards the
+    /// light.
     pub(super) fn density_towards(&self, point: DVec3, towards: DVec3) -> f64 {
         let shape = match self {
             Self::Sky(sky) => return sky.density(-towards),

@@ -19,11 +19,11 @@ use etendue_scene::{Object, Scene};
 use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
-/// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
+/// The backward tracer of a scene, which checks [`Tracer`](crate::Tracer) independently.
 ///
-/// For each plane and each photon separately, the tracer draws a ray in the plane's window, traces
-/// the ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or
-/// absorbed, and there is no ledger.
+/// For each photon and each virtual plane, the tracer draws a ray in the plane's window, traces
+/// this ray back to the light, and finds the radiance that arrives along it. The backward tracer
+/// emits no photons and absorbs none, and has no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -33,8 +33,8 @@ pub struct Backward {
     seed: u64,
 }
 
-/// The error for a plane at which no backward ray finds the light, for example because a mirror
-/// deflects the light of a point source.
+/// The error for a virtual plane at which no backward ray finds the light, for example because a
+/// mirror deflects the light of a point source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no ray traced back from {plane} finds the light: the plane lies at a point light, or a mirror, an interface or a lens deflects the light of a point or a beam; measure this plane with photons"
@@ -44,7 +44,7 @@ pub struct LightNotFound {
 }
 
 impl Backward {
-    /// The backward tracer of a scene.
+    /// Builds the backward tracer of a scene.
     ///
     /// # Errors
     /// When rays from a plane cannot find the light (see [`finds`]).
@@ -109,8 +109,8 @@ impl Backward {
                 [(x - x0) / distance, (y - y0) / distance]
             }
             TracedLight::Sky(sky) if sampler.to_light => {
-                // The slopes of half of the rays are drawn by the environment; directions that do
-                // not go forward are discarded.
+                // Half of the rays draw their slopes in proportion to the environment's radiance;
+                // directions that do not go forward are discarded.
                 let drawn = if r[2] < 0.5 {
                     sky.slopes(words(1))
                 } else {
@@ -141,8 +141,8 @@ impl Backward {
         }
     }
 
-    /// The radiance that arrives at the end of a ray; `block` selects the random numbers of the
-    /// next surface on the way back.
+    /// Returns the radiance that arrives at the end point of a ray; `block` selects the random
+    /// numbers of the next surface on the way back to the light.
     #[expect(
         clippy::too_many_lines,
         reason = "the function has a case for each kind of surface"
@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // The normal is that on the side to which the light travels.
+                // This normal is on the side of the surface to which the light travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -227,8 +227,8 @@ impl Backward {
         }
     }
 
-    /// The radiance that arrives in a direction at a point of the surface that ends a leg;
-    /// direction and point are in the frame at the light.
+    /// Returns the radiance that arrives in a direction at a point of the surface that ends a
+    /// leg; the direction and the point are in the frame at the light.
     fn along(
         &self,
         leg: usize,
@@ -246,7 +246,7 @@ impl Backward {
     }
 
     /// The radiance that arrives along a ray at a point, at distance `end`, of the surface that
-    /// ends its leg. Another part of a concave or solid surface may block this ray.
+    /// ends its leg. If the surface is concave or solid, another part of it may block this ray.
     fn arriving(
         &self,
         incoming: &IncomingRay,
@@ -347,8 +347,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// The irradiance at a point behind a mirror, an interface or a lens, estimated from one
-    /// direction with a density in proportion to the cosine.
+    /// Returns the irradiance at a point behind a mirror, an interface or a lens, estimated from
+    /// one direction that is drawn in proportion to the cosine.
     fn through_turn(
         &self,
         leg: usize,
@@ -363,9 +363,9 @@ impl Backward {
     }
 }
 
-/// The ratio of the radiance after a deflection to the radiance before, for light that arrives
-/// along `came` and leaves along `along`. It is (n'/n)² at an interface; at an ideal lens, it is
-/// the value that conserves flux in two-plane coordinates.
+/// Returns the ratio of the radiance after a deflection to the radiance before it, for light that
+/// arrives along `came` and leaves along `along`. This ratio is (n'/n)² at an interface; at an
+/// ideal lens, the ratio conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
@@ -388,9 +388,9 @@ fn radiance_factor(
 
 impl Backward {
     /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
-    /// drawn by the lobe or, on the first leg, with equal probability towards a point of the
-    /// light. Both choices use the density of their mixture (the balance heuristic of Veach and
-    /// Guibas 1995 for one sample).
+    /// drawn by the lobe of the BRDF; on the first leg, it is drawn with equal probability by the
+    /// lobe or towards a point of the light. The estimate divides by the density of this mixture
+    /// of strategies (the balance heuristic of Veach and Guibas 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,
@@ -442,8 +442,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// The radiance of a light without extent at a plane on the first leg. From a point drawn in
-    /// the plane's window, the direction to the light is known.
+    /// Returns the radiance that a light without extent causes at a virtual plane on the first
+    /// leg. From a point drawn in the plane's window, the direction to the light is known.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,
@@ -463,8 +463,8 @@ impl Backward {
             cosine / (point.z * point.z)
         };
         let nothing = |_| [0.0; 4];
-        // A plane on a surface records all light that arrives at the surface, as it does in the
-        // forward tracer.
+        // A virtual plane on a surface records all light that arrives at the surface, in the
+        // backward tracer as in the forward tracer.
         let end = End::Plane(point.z, plane_on_leg.side);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;

@@ -1,11 +1,11 @@
-//! Weighted sums of BRDFs. A direction is drawn by one of the BRDFs, which is selected with its
-//! share of the albedo as probability.
+//! Weighted sums of BRDFs. Each direction is drawn by one of the BRDFs, and the probability of a
+//! BRDF is its share of the total albedo.
 
 use super::{density, sample, value};
 use etendue_field::Mixture;
 use glam::DVec3;
 
-/// The value of the sum, sr⁻¹.
+/// Returns the value of the sum of BRDFs, sr⁻¹.
 #[inline]
 #[must_use]
 pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
@@ -13,7 +13,8 @@ pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     values.map(|(weight, of)| weight * value(of, wi, wo)).sum()
 }
 
-/// A direction drawn by one of the BRDFs, as by [`sample`]; the first number also selects the BRDF.
+/// Returns a direction drawn by one of the BRDFs as in [`sample`]; the first random number also
+/// selects the BRDF.
 #[inline]
 pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVec3 {
     let total = mixture.albedo();
@@ -22,7 +23,8 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
     for (weight, of) in mixture.weighted() {
         let share = weight * of.albedo / total;
         if share > 0.0 {
-            // Because of rounding errors, the number left for the last BRDF may exceed 1.
+            // Because of rounding errors, the random number that remains for the last BRDF may
+            // exceed 1.
             chosen = Some((of, (left / share).min(BELOW_ONE)));
         }
         if left < share {
@@ -36,7 +38,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
 /// The largest random number from which a direction is drawn.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
-/// The density of [`towards`] per solid angle.
+/// Returns the density of [`towards`] per solid angle.
 #[inline]
 pub(crate) fn densities(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     let each = mixture.weighted();
@@ -72,12 +74,12 @@ mod tests {
         }
     }
 
-    /// Returns, for several functions f, how far the mean of f divided by the density is from ∫ f,
-    /// in standard errors.
+    /// Returns, for each of several functions f, the difference between the sample mean of f
+    /// divided by the density and ∫ f, in standard errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
-        // Integrals over the hemisphere; functions that are non-zero on one side of a plane detect
-        // lobes that lean to that side.
+        // The functions are integrated over the hemisphere; two of them are larger on one side of
+        // the normal, so they detect lobes that lean to one side.
         let functions: [(Weighting, f64); 3] = [
             (|v| v.z.powi(2), 2.0 * PI / 3.0),
             (|v| v.z * (1.0 + v.x), PI),

@@ -1,4 +1,5 @@
-//! The BRDFs of scenes, with the lobes of `etendue_scatter`: light comes from wi and goes to wo.
+//! Evaluates and samples the BRDFs of scenes, with the lobes of `etendue_scatter`: light comes
+//! from the direction wi and goes to the direction wo.
 //!
 //! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`]
 //! defines the lobes.
@@ -31,17 +32,17 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
         * factor(brdf.outgoing.as_ref(), wo)
 }
 
-/// The value of an angular factor's table for a direction, or 1 if there is no table.
+/// Returns the value of an angular factor's table for a direction, or 1 if there is no table.
 #[inline]
 fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// A direction wo for a direction wi in front of the surface, from two random numbers in (0, 1).
-/// The direction may lie below the surface; it then carries no light.
+/// Returns a direction wo, drawn with two random numbers in (0, 1), for a direction wi in front
+/// of the surface. If the direction lies below the surface, it carries no light.
 ///
-/// Backward rays draw wi for a given wo by the same lobes, which are symmetric. The albedo and the
-/// angular factors are applied as weights, and do not affect the density.
+/// Backward rays draw wi for a given wo by the same lobes, because the lobes are symmetric. The
+/// albedo and the angular factors are applied as weights, and do not affect the density.
 #[inline]
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {
@@ -52,8 +53,8 @@ pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     }
 }
 
-/// The density of [`sample`] per solid angle over the whole sphere, directions below the surface
-/// included.
+/// Returns the density of [`sample`] per solid angle over the whole sphere, which includes
+/// directions below the surface.
 #[inline]
 pub(crate) fn density(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
     match brdf.lobe {

@@ -5,31 +5,32 @@ use etendue_field::{Image, RayLight, Shape, TwoPlane, power};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The distribution from which rays are drawn.
+/// The distribution from which plain emission draws rays.
 #[derive(Debug)]
 pub(super) enum Plain {
-    /// Points of an area light of radiance L cosⁿθ, and directions by cosⁿ⁺¹θ. The fields are the
-    /// shape and n.
+    /// Points of an area light of radiance L cosⁿθ, uniform over the light, and directions in
+    /// proportion to cosⁿ⁺¹θ. The fields are the shape of the light and the exponent n.
     Area(Shape, f64),
     /// Directions of a point light, uniform in solid angle over the forward hemisphere.
     Point,
-    /// Slopes of a projector by the envelope of its picture.
+    /// Slopes of a projector, drawn by the Gaussian envelope of the projector's picture.
     Slopes(Image),
-    /// Positions of a beam by the envelope of its picture.
+    /// Positions on a beam, drawn by the Gaussian envelope of the beam's picture.
     Positions(Image),
-    /// Rays of a file by their flux.
+    /// Rays of a file, each drawn in proportion to its flux.
     Rays(Arc<RayLight>),
 }
 
-/// The number of values of a 32-bit word.
+/// The number of different values that a 32-bit word can have.
 const WORD: f64 = 4_294_967_296.0;
 
 impl Plain {
-    /// A ray, from four numbers in (0, 1).
+    /// Returns a ray drawn with four random numbers in (0, 1).
     #[inline(never)]
     pub(super) fn sample(&self, r: [f64; 4]) -> TwoPlane {
         let (sin, cos) = libm::sincos(TAU * r[3]);
-        // The two normal deviates of Box and Muller (1958).
+        // Returns the two normal deviates of Box and Muller (1958), which set a point under the
+        // picture's envelope.
         let normal = |image: &Image| {
             let radius = (-libm::log(r[2]) / PI).sqrt();
             [image.width[0] * radius * cos, image.width[1] * radius * sin]
@@ -54,9 +55,10 @@ impl Plain {
         TwoPlane { x, y, u, v }
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
-    /// projector, to dx dy for a beam. For rays of a file the density is 1, because each ray is
-    /// drawn with its share of the flux as probability, and represents the whole flux.
+    /// Returns the density of [`Self::sample`]: with respect to du dv for a point light or a
+    /// projector, to dx dy for a beam, and to dx dy du dv for an area light. For rays of a file
+    /// the density is 1, because the probability of each ray is its share of the flux, so that
+    /// each drawn ray represents the total flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
@@ -74,7 +76,7 @@ impl Plain {
     }
 }
 
-/// The envelope of a picture, normalised to an integral of 1.
+/// Returns the envelope of a picture at (a, b), normalised to an integral of 1.
 fn envelope(image: &Image, a: f64, b: f64) -> f64 {
     let grating = None;
     Image { grating, ..*image }.value(a, b) / image.area()

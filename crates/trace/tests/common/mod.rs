@@ -1,10 +1,11 @@
-//! Estimates from a source of photons at each plane of a scene.
+//! Computes estimates from a source of photons at each virtual plane of a scene.
 
 use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_scene::Scene;
 use std::f64::consts::TAU;
 
-/// Means and standard errors, at each plane, of the windowed field and of two of its Fourier sums.
+/// Returns the means and standard errors, at each virtual plane, of the windowed light field and
+/// of two of its Fourier sums.
 pub(crate) fn estimates(source: &dyn PhotonSource, scene: &Scene) -> (Vec<[[f64; 2]; 3]>, Ledger) {
     let mut sums = vec![[[0.0; 2]; 3]; scene.planes.len()];
     let mut ledger = Ledger::default();

@@ -7,7 +7,8 @@ use etendue_scenefile::{Fault, fault};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
-/// The position, the texture coordinates and the normal of a corner, by their indices in the file.
+/// The indices of the position, the texture coordinates and the normal of a corner, as in the
+/// file.
 type CornerKey = (u32, Option<u32>, Option<u32>);
 
 pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
@@ -42,7 +43,7 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     })
 }
 
-/// Returns the numbers on each line that begins with a given word. A `vt` line may omit its second
+/// Returns the numbers on each line whose first word is `word`. A `vt` line may omit its second
 /// number.
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();

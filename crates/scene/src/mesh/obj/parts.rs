@@ -6,7 +6,7 @@ use super::{detailed, statements, without_mark};
 use etendue_scenefile::Fault;
 use std::ops::Range;
 
-/// Statements that affect the appearance and are ignored.
+/// Statements of OBJ files that affect the appearance but are ignored.
 const LEFT_OUT: [&str; 10] = [
     "p",
     "l",
@@ -25,23 +25,24 @@ const LEFT_OUT: [&str; 10] = [
 pub struct ObjFile {
     /// All triangles of the file.
     pub mesh: DetailedMesh,
-    /// The parts: all triangles in order, divided at each `usemtl`.
+    /// The parts of the file: all triangles in order, divided at each `usemtl`.
     pub parts: Vec<ObjPart>,
-    /// Lines of `mtllib`, with the files they name.
+    /// The line number of each `mtllib` statement, with the file that it names.
     pub libraries: Vec<(usize, String)>,
-    /// Ignored statements, by their word: the line of the first statement, the word, and the
-    /// number of such statements. The statement `s` is ignored in files without normals.
+    /// The ignored statements: for each kind, the line of its first occurrence, its first word,
+    /// and the number of occurrences. The statement `s` is counted as ignored in files without
+    /// normals.
     pub left_out: Vec<(usize, String, usize)>,
 }
 
-/// Triangles of one material.
+/// Consecutive triangles of an OBJ file with one material.
 #[derive(Clone, Debug)]
 pub struct ObjPart {
-    /// The material that `usemtl` names; `None` before the first.
+    /// The material that `usemtl` names; `None` for triangles before the first `usemtl`.
     pub material: Option<String>,
-    /// The line of `usemtl`.
+    /// The line number of the `usemtl` statement.
     pub line: usize,
-    /// Indices of the triangles.
+    /// The range of indices of the part's triangles.
     pub triangles: Range<usize>,
 }
 

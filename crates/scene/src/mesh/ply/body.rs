@@ -4,8 +4,8 @@ use super::super::text::{LineWords, Lines, number, quoted};
 use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
 use etendue_scenefile::{Fault, fault};
 
-/// The data after the header, read in sequence. ASCII files hold one row per line; blank lines are
-/// ignored.
+/// The data after the header of a PLY file, read in sequence. ASCII files hold one row per line;
+/// blank lines are ignored.
 pub(super) struct Body<'a> {
     data: Data<'a>,
 }
@@ -22,7 +22,7 @@ enum Data<'a> {
     },
 }
 
-/// The position of a row, for messages.
+/// The position of a row in a PLY file, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct PlyRow<'a> {
     element: &'a PlyElement,
@@ -30,7 +30,7 @@ pub(super) struct PlyRow<'a> {
     line: Option<usize>,
 }
 
-/// The text found in place of a value, and what is allowed.
+/// The text found in place of a value, and a description of the values that are allowed.
 type PlyTrouble = (String, String);
 
 impl<'a> Body<'a> {
@@ -102,7 +102,8 @@ impl<'a> Body<'a> {
                 })?
             }
         };
-        // The list grows as it is read, because the stated length cannot be trusted.
+        // The list of values grows as it is read, because the length stated in the file cannot be
+        // trusted.
         for _ in 0..count {
             values.push(self.scalar(row, property.scalar)?);
         }
@@ -145,7 +146,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Checks that the file ends here, because the header announces no further data.
+    /// Checks that the file ends after the announced data.
     pub(super) fn end(self) -> Result<(), Fault> {
         let rest = match self.data {
             Data::Text { lines, .. } => lines.rest,
@@ -169,7 +170,7 @@ impl PlyRow<'_> {
     }
 }
 
-/// Returns the value of a number; f64 represents all eight types exactly.
+/// Returns the value of a PLY number; f64 represents the values of all eight PLY types exactly.
 fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     let mut little = [0; 8];
     little[..raw.len()].copy_from_slice(raw);
@@ -189,7 +190,7 @@ fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     }
 }
 
-/// Returns the number as a count or an index, if it is a whole number in range.
+/// Returns a value as a count or an index, if the value is a whole number in the range of u32.
 pub(super) fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,

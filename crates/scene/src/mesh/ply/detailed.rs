@@ -11,7 +11,8 @@ use glam::{DVec2, DVec3};
 /// Property names of texture coordinates.
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
-/// Reads vertices and faces, and with `has_shading` also normals and texture coordinates.
+/// Reads the vertices and faces of a PLY file; with `has_shading`, also reads normals and texture
+/// coordinates.
 pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<DetailedMesh, Fault> {
     let (header, data) = PlyHeader::read(bytes)?;
     let element = header.element("vertex")?;
@@ -59,8 +60,8 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
     Ok(mesh)
 }
 
-/// Returns the positions of these names among the properties; `None` unless all are present as
-/// single numbers.
+/// Returns the positions of the properties with the given names; `None` unless all of these
+/// properties are present as single numbers.
 fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
     let found = names.map(|name| {
         let mut properties = element.properties.iter();

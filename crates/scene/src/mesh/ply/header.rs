@@ -18,18 +18,18 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A table of the file, such as that of the vertices.
+/// A table of a PLY file, such as the table of vertices.
 pub(super) struct PlyElement {
     pub(super) name: String,
     pub(super) count: usize,
     pub(super) properties: Vec<PlyProperty>,
 }
 
-/// A column of an element.
+/// A column of a table of a PLY file.
 pub(super) struct PlyProperty {
     pub(super) name: String,
     pub(super) scalar: Scalar,
-    /// For a list, the type of its length.
+    /// The type of the list's length; `None` if the property is not a list.
     pub(super) length: Option<Scalar>,
 }
 
@@ -49,13 +49,13 @@ const FORMATS: &str =
     "format ascii 1.0, format binary_little_endian 1.0, format binary_big_endian 1.0";
 const ELEMENT: &str = "element NAME COUNT, a name of at most 100 bytes";
 const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double; a name of at most 100 bytes";
-/// The largest length of a name in bytes, because messages repeat names.
+/// The maximum length of a name in bytes; it is limited because messages repeat names.
 const LONGEST_NAME: usize = 100;
 /// The largest number of PLY elements that a message lists.
 const MOST_LISTED: usize = 4;
 
 impl PlyHeader {
-    /// Returns the header, and the lines after it.
+    /// Returns the header of a PLY file, and the lines after the header.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
         let mut lines = Lines::new(bytes);
         let first = lines.next().map_or(&[][..], |(_, line)| line);
@@ -121,8 +121,9 @@ impl PlyHeader {
         found.ok_or_else(|| fault(place(), "missing", "elements vertex and face"))
     }
 
-    /// Checks that the data are long enough for the announced counts. Each row takes some bytes,
-    /// so the length of the file limits time and memory, however large a count is.
+    /// Checks that the data are long enough for the announced counts. Each row takes at least one
+    /// byte, so the length of the file limits time and memory, even if an announced count is
+    /// huge.
     fn check_length(&self, length: usize) -> Result<(), Fault> {
         let mut least: u128 = 0;
         for element in self.elements.iter().filter(|e| e.count > 0) {
@@ -153,7 +154,7 @@ impl PlyHeader {
 }
 
 impl PlyProperty {
-    /// Returns the smallest number of bytes that the property takes in a row.
+    /// Returns the minimum number of bytes that the property takes in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
             Encoding::Ascii => 2, // a digit and what parts it from the next
