@@ -127,7 +127,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
 /// Returns the prediction that a reference measurement gives for the plane with index `index`.
 ///
 /// # Panics
-/// If it has too few batches.
+/// If the reference measurement has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[index]);
     let reference = Prediction::reference(scene, index, &theory, reference, index);
