@@ -136,8 +136,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
-        // A short suite traces fewer photons, but otherwise a scene must have at least a million
-        // photons.
+        // At least `least` photons must pass each single occluder, or a quarter of all photons if
+        // a short suite traces too few.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);

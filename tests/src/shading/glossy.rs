@@ -213,7 +213,8 @@ impl GlossyBench {
     }
 }
 
-/// A sweep: its name, the swept quantity, and the function that sets this quantity in the bench.
+/// A sweep: its name, the swept quantity, and the function that returns the bench for a value of
+/// this quantity.
 struct GlossySweep {
     name: &'static str,
     quantity: AxisQuantity,
