@@ -170,8 +170,7 @@ impl GlossyBench {
         }
     }
 
-    /// Returns windows wide enough for the lobe, frequency grids, and the bandwidth that the
-    /// window in u adds to a spectrum.
+    /// Returns windows that contain the lobe, grids, and the bandwidth that the window in u adds.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
@@ -191,9 +190,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at azimuth 0 integrates over y and v. If the lobe is not a product of
-        // functions of u and v, a narrow window in v restricts the light to the plane of
-        // incidence.
+        // The slice at azimuth 0 integrates over y and v. If the lobe is no product of functions
+        // of u and v, a narrow window in v selects the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -205,16 +203,14 @@ impl GlossyBench {
         let windows = Windows {
             slope: [u, v],
             most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
-            // The beam is seven times as wide as the part of the surface where the eye sees the
-            // lobe.
+            // The beam is seven times as wide as the lobe that the eye sees on the surface.
             beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
         };
         (windows, floor)
     }
 }
 
-/// A sweep: its name, the swept quantity, and the function that returns the bench for a value of
-/// this quantity.
+/// A sweep: its name, the swept quantity, and the bench for each value of this quantity.
 struct GlossySweep {
     name: &'static str,
     quantity: AxisQuantity,
@@ -374,8 +370,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let [ours, theirs] = [said, printed].map(|b| range(b, floor));
             let holds =
                 |[low, high]: [f64; 2], x: f64, slack: f64| low - slack < x && x < high + slack;
-            // Whether the ranges are so far apart that no measurement with this noise is
-            // compatible with both ranges.
+            // Whether no measurement with this noise can be compatible with both ranges.
             let apart = ours[1] + 2.0 * noise < theirs[0] || theirs[1] + 2.0 * noise < ours[0];
             let rejected = !holds(theirs, found.value, noise);
             told += i32::from(rejected);
@@ -468,8 +463,7 @@ fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// Returns the data of the picture: the measured points, and the curves that the criteria
-/// predict.
+/// Returns the measured points, and the curves that the criteria predict.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
     // Four digits are sufficient for the points of a curve.

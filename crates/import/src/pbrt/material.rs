@@ -150,7 +150,7 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
-            // The note about the medium already covers these parameters, so they are marked as
+            // The note about the approximation covers these parameters, so they are marked as
             // read.
             entity.has(name);
         }
