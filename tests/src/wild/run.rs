@@ -78,7 +78,8 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether backward rays replaced theory at this plane.
+    /// Whether a measurement with the other tracer (photons or backward rays) replaced theory at
+    /// this plane.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }
