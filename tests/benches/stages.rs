@@ -1,4 +1,5 @@
-//! Benchmarks of the stages of a run: photons, their sums on slices, and Fourier transforms.
+//! Benchmarks of the stages of a run: tracing photons, adding them to spectral slices, and
+//! Fourier transforms.
 //!
 //!     cargo bench -p etendue-validation
 //!     cargo bench -p etendue-validation -- photons      # only those with this word in their name
@@ -19,11 +20,11 @@ use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Photons per batch. A batch is one net, and so large that the cost of its first block is
-/// negligible.
+/// Photons per batch. Each batch of photons is one net, so large that the cost of the net's first
+/// block is negligible.
 const PHOTONS: u64 = 1 << 16;
 
-/// Returns a scene of the repository, in batches of [`PHOTONS`].
+/// Returns a scene of the repository whose batches have [`PHOTONS`] photons each.
 fn scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.ron"));
     let text = std::fs::read_to_string(&path).unwrap();
@@ -78,8 +79,8 @@ fn photons(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures how fast a plane's crossings are added to an accumulator, and how fast this is
-/// transformed to slices.
+/// Measures how fast a plane's crossings are added to an accumulator, and how fast the
+/// accumulator is transformed to slices.
 fn slices(criterion: &mut Criterion) {
     let scene = scene("bench_peer");
     let mut rays = Vec::new();
@@ -116,7 +117,7 @@ fn field(criterion: &mut Criterion) {
         group.bench_function(format!("{n}^4"), |bencher| {
             bencher.iter(|| {
                 plan.forward(&mut data);
-                // Rescales the data, to avoid overflow after many transforms.
+                // Rescales the data, so that many transforms in sequence do not overflow.
                 data.iter_mut().for_each(|z| *z /= n.pow(2) as f64);
             });
         });

@@ -5,8 +5,9 @@ use etendue_figures::Style;
 use std::fs;
 use std::process::ExitCode;
 
-/// Measures the bandwidths and prints them. Unless a number of photons is given, this also writes
-/// results/bandwidth.md, its picture and the numbers behind it.
+/// Measures the bandwidths of glossy reflections and prints them. Unless a number of photons is
+/// given, this function also writes results/bandwidth.md, the picture in that page and the
+/// numbers that the picture plots.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -21,12 +21,13 @@ struct CalibratedPlane {
     pulls: Vec<f64>,
 }
 
-/// A way to make batches dependent, although p assumes that they are independent.
+/// A fault that makes batches dependent, although the computation of p assumes independent
+/// batches.
 #[derive(Clone, Copy)]
 enum DependenceFault {
     /// The second half of the batches has the photons of the first.
     SharedPhotons,
-    /// The last batch is the first, counted twice.
+    /// The last batch is a copy of the first batch, which is thus counted twice.
     CountedTwice,
 }
 
@@ -41,10 +42,11 @@ const FAULTS: [(DependenceFault, &str); 2] = [
     ),
 ];
 
-/// Compares `fig9b` at `photons` photons over seeds, and checks the statistics.
+/// Compares the scene `fig9b`, traced with `photons` photons for each seed, with its prediction,
+/// and checks the statistics of the comparisons.
 ///
-/// Then it checks them with planted faults: σ that is 10 % too small or too large, and dependent
-/// batches. All these faults must be detected.
+/// Then the function checks the same statistics with planted faults: σ that is 10 % too small or
+/// too large, and dependent batches. Each of the planted faults must be detected.
 pub(crate) fn calibration(
     seeds: Range<u64>,
     photons: u64,
@@ -75,7 +77,7 @@ pub(crate) fn calibration(
     sections
 }
 
-/// Returns the measurement with its batches made dependent.
+/// Returns a copy of the measurement in which batches are dependent.
 fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let mut planted = Measurement::new(measurement.planes().to_vec());
@@ -154,10 +156,11 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .iter()
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
-    // The binomial standard deviation of the share of p-values below 0.1 at one plane. Planes of a
-    // seed have the same photons, so the share over all planes varies less than that of one plane,
-    // but more than that of as many independent planes. The share of all planes may deviate by two
-    // standard deviations of one plane, and the share of each plane by three.
+    // The binomial standard deviation of the fraction of p-values below 0.1 at one plane. All
+    // planes of a seed have the same photons, so the fraction of small p-values over all planes
+    // varies less than the fraction at one plane, but more than the fraction over as many
+    // independent planes. The fraction of p-values below 0.1 may deviate by two such standard
+    // deviations over all planes, and by three at a single plane.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;

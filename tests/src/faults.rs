@@ -15,8 +15,8 @@ use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
 pub(crate) use smallest::smallest;
 
-/// Returns the section of all faults planted in the main scene, whose first row is without a
-/// fault.
+/// Returns the section on all faults planted in the main scene; its first row is the comparison
+/// without a fault.
 pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let tracer = Tracer::new(&scene);
@@ -59,8 +59,8 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Returns the section of faults that only other scenes can reveal, each planted in the named
-/// scene.
+/// Returns the section on faults that the main scene cannot reveal, each planted in a scene that
+/// reveals it.
 pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
@@ -111,8 +111,8 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
 
-/// Returns a predictor with a modified chain; it predicts `None` if the modification has no
-/// effect.
+/// Returns a predictor that modifies the chain; the predictor returns `None` if the modification
+/// has no effect.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut tampered = chain(scene, plane);
@@ -212,7 +212,7 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
     ]
 }
 
-/// Moves only the layer number `nth` away from the light by `by` metres.
+/// Moves the layer with index `nth`, and no other layer, away from the light by `by` metres.
 fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     let is_layer = |o: &Operator| matches!(o, Operator::Visibility { .. });
     let places: Vec<usize> = (0..chain.operators.len())
@@ -228,7 +228,7 @@ fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     }
 }
 
-/// The name of the row without a fault.
+/// The name of the table row without a planted fault.
 const NONE: &str = "none";
 
 /// A function that predicts the slices of a plane, or `None` if its fault has no effect.
@@ -269,7 +269,7 @@ fn slices(chain: &Chain, plane: &VirtualPlane) -> Slices {
     etendue_theory::slices(chain, &plane.window, &plane.grid)
 }
 
-/// Faults of the prediction.
+/// Faults that are planted in the prediction.
 fn predictions() -> Vec<(&'static str, Box<Predict>)> {
     vec![
         ("first travel + 1 %", chained(|c| scale_travel(c, 0, 1.01))),
@@ -350,7 +350,7 @@ fn scale(chain: &mut Chain, parameter: Parameter, factor: f64) {
     *chain = chain.with(parameter, factor * value).expect("the same");
 }
 
-/// Multiplies the `nth` travel of a chain, if it exists.
+/// Multiplies the distance of the travel step with index `nth`, if the chain has such a step.
 fn scale_travel(chain: &mut Chain, nth: usize, factor: f64) {
     let is_travel = |p: &Parameter| matches!(p, Parameter::Travel(_));
     if let Some(travel) = chain.parameters().into_iter().filter(is_travel).nth(nth) {

@@ -1,4 +1,5 @@
-//! The full radial spectrum: p uniform over many seeds, and planted faults rejected.
+//! Tests of the full radial spectrum: over many seeds p must be uniform, and planted faults must
+//! be rejected.
 
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
@@ -16,7 +17,7 @@ use rayon::prelude::*;
 struct Case {
     scene: &'static str,
     plane: &'static str,
-    /// Fields of the scene file that are replaced, with their values.
+    /// Fields of the scene file that are replaced, each with its new value.
     set: &'static [(&'static str, &'static str)],
     by: &'static str,
 }
@@ -33,7 +34,8 @@ const TEXTS: &[(&str, &str)] = &[
     ("glossy", text!("table1/glossy")),
 ];
 
-/// Fewer frequencies than in the scene files, so that 200 seeds take minutes.
+/// The spectra have fewer frequencies than in the scene files, so that 200 seeds take only
+/// minutes.
 const FEWER: &[(&str, &str)] = &[("frequencies.rho.max", "6"), ("frequencies.nu.max", "8")];
 
 const CASES: &[Case] = &[
@@ -57,7 +59,8 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// Faults of predictions of the first case: a field of the predicted scene, and its value.
+/// Faults planted in predictions of the first case: each changes a field of the predicted scene
+/// to the given value.
 const FAULTS: &[(&str, &str, &str)] = &[
     ("surfaces.0.center", "(0, 0, 2.02)", "a shear 1 % too large"),
     ("blockers.0.pitch", "0.21", "blockers of another pitch"),
@@ -66,7 +69,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// Returns the scene of the case with only the plane of the case.
+    /// Returns the scene of the case, without planes other than that of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
         let (name, text) = found.expect("a scene of these");
@@ -119,7 +122,8 @@ fn compared(
     FullRadialComparison::new(measured, predicted, scene.run.seed).report
 }
 
-/// Calibration over seeds, faults planted in predictions, and one planted in the calibration.
+/// Returns three sections: the calibration over many seeds, faults planted in predictions, and a
+/// fault planted in the calibration.
 pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
     let found: Vec<(String, Vec<FullRadialReport>)> = CASES
         .iter()
@@ -135,7 +139,7 @@ pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Compares photons of each seed with the prediction of a case.
+/// Compares, for each seed, the photons of a case with the prediction of this case.
 fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let prediction = predicted(&case.scene(photons, 1, &[]));
     let title = format!("{} {}: {}", case.scene, case.plane, case.by);
@@ -170,7 +174,7 @@ fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<Ful
     found
 }
 
-/// Returns a row for the p-values of many seeds.
+/// Returns a table row that summarises the p-values of many seeds.
 fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     let p: Vec<f64> = found.iter().filter_map(|report| report.p_value).collect();
     let chi2: Vec<f64> = found
@@ -240,7 +244,7 @@ fn calibrated(
     }
 }
 
-/// Compares predictions that have a fault with photons that have none.
+/// Compares predictions with a planted fault with photons without a fault.
 fn faults(photons: u64) -> ReportSection {
     const LEVEL: f64 = 0.002;
     let case = &CASES[0];
@@ -305,7 +309,7 @@ fn alias_free(scene: &Scene) -> PredictedField {
     }
 }
 
-/// The calibration must fail if groups share photons.
+/// The calibration must fail if groups of batches share photons.
 fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
     let case = &CASES[0];
     let prediction = predicted(&case.scene(photons, 1, &[]));

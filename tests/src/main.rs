@@ -2,12 +2,13 @@
 //!
 //! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
 //! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper,
-//! `shading` the reflection of light at surfaces, `claims` the statements in the paper's text, and
-//! `main` all results of the main scene. Each of `table1`, `shading`, `claims` and `main` writes
-//! its part of `results/validation.md`. `all` writes the whole page, with every row of the paper's
-//! Table 1. `second` compares the code shared by theory and tracers with a second implementation.
-//! `hostile` and `kills` attack the program `etendue` from outside; `wild` searches for scenes on
-//! which it is wrong. `assumptions` disables the checks of a scene that precede a prediction.
+//! `shading` the reflection of light at surfaces, `claims` the statements in the paper's text,
+//! and `main` all results of the main scene. Each of `table1`, `shading`, `claims` and `main`
+//! writes one part of `results/validation.md`. `all` writes the whole of `results/validation.md`,
+//! with every row of the paper's Table 1. `second` compares the code shared by theory and tracers
+//! with a second implementation. `hostile` and `kills` attack the program `etendue` from outside;
+//! `wild` searches for scenes on which it is wrong. `assumptions` disables the checks of a scene
+//! that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -165,7 +166,8 @@ enum ValidationCommand {
     All,
 }
 
-/// The seed of every single run. This seed was fixed in advance, and not chosen by its results.
+/// The seed of every single run. This seed was fixed in advance, and not chosen by the results
+/// that it gives.
 const SEED: u64 = 1;
 
 #[expect(
@@ -245,7 +247,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints sections that no page contains.
+/// Prints sections that are not part of any page in results/.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -321,7 +323,7 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
 /// Returns a page with one of its parts replaced or added; parts begin with their titles.
 fn with_part(page: &str, title: &str, part: &str) -> String {
     let heading = format!("# {title}\n");
-    // A part may contain `##` headings.
+    // A part of a page may itself contain `##` headings.
     let starts = page.match_indices("\n# ").map(|(at, _)| at + 1);
     let mut cuts: Vec<usize> = std::iter::once(0).chain(starts).collect();
     cuts.push(page.len());
@@ -363,7 +365,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             full_radial::full_radial(seeds, photons)
         }
         ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // Each of these commands writes its own report.
+        // Each of the commands in this match writes its own report.
         ValidationCommand::Nets
         | ValidationCommand::Second
         | ValidationCommand::Hostile(_)
@@ -390,7 +392,8 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Returns the sections of the calibration, with nets and with independent random numbers.
+/// Returns the sections on calibration, one for photons from nets and one for photons from
+/// independent random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let kinds = [Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));

@@ -74,8 +74,8 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Returns the ratio of the noise of photons from nets to that of photons from random numbers,
-/// over all frequencies of a plane.
+/// Returns the ratio, over all frequencies of a plane, of the noise of photons from nets to the
+/// noise of photons from random numbers.
 pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);

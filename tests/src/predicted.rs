@@ -1,11 +1,11 @@
-//! Slices predicted by theory, modified or not.
+//! Slices predicted by theory, with or without a planted modification.
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::scattering::{self, ScatteringChain};
 use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
-/// Budget of rays for a prediction, whose error is then a fifth of the photons' noise.
+/// Budget of rays with which the error of a prediction is a fifth of the photons' noise.
 const BUDGET: RayBudget = RayBudget {
     nodes: 5e6,
     error: 5e-4,
@@ -32,7 +32,7 @@ pub(crate) fn linear(
     rays::linear(view, (window, grid, &picture), map, BUDGET).slices
 }
 
-/// Predicts the slices behind a surface with a BRDF, exactly and by a chain.
+/// Predicts the slices behind a surface with a BRDF, both exactly and by a first-order chain.
 pub(crate) fn scattered(
     view: &Observed<scattering::ScatteringSystem>,
     plane: &VirtualPlane,

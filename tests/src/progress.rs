@@ -1,5 +1,5 @@
-//! Progress of long work. A terminal shows a bar; otherwise a line is written after each twentieth
-//! of the work.
+//! Display of the progress of long work. If the output is a terminal, it shows a bar; otherwise a
+//! line is written after each twentieth of the work.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Number of progress lines where there is no terminal.
 const LINES: u64 = 20;
 
-/// Progress of a known number of items.
+/// The progress of work on a known number of items.
 #[derive(Clone)]
 pub(crate) struct CountedProgress {
     bar: ProgressBar,

@@ -1,9 +1,9 @@
 //! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
 //!
-//! A pull is a deviation divided by its stated error, converted from Student's distribution to the
-//! normal one. The deviation is that of a measured value from the scene's value, or of a measured
-//! slope from the predicted one. If the errors are right, pulls have mean 0 and standard deviation
-//! 1, and the tails of a normal distribution.
+//! A pull is a deviation divided by its stated error, converted from Student's distribution to
+//! the normal one. The deviation is that of a measured value from the scene's value, or of a
+//! measured slope from the predicted one. If stated errors are right, pulls have mean 0, standard
+//! deviation 1 and the tails of a normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
@@ -20,7 +20,7 @@ use std::fs;
 use std::io;
 use std::path::PathBuf;
 
-/// Options of the measured scenes and their photons.
+/// Options that select the measured scenes and the number of photons.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PullOptions {
     /// Number of scenes.
@@ -42,19 +42,21 @@ pub(crate) struct PullOptions {
 
 /// Fractions of a normal distribution beyond 2, 3 and 4 standard deviations.
 const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
-/// Permitted deviation of the mean from 0 and of the standard deviation from 1, in addition to
-/// their standard errors.
+/// Permitted deviation of the pulls' mean from 0 and of their standard deviation from 1, in
+/// addition to the standard errors of both.
 const MAX_DEVIATION: f64 = 0.05;
-/// Maximum permitted deviation, in standard errors; one figure in 400 exceeds it by chance.
+/// Maximum permitted deviation of a statistic, in standard errors; one statistic in 400 exceeds
+/// this maximum by chance.
 const MAX_ERRORS: f64 = 3.0;
-/// Maximum noise, relative to the spectrum, of a plane that is judged.
+/// Maximum noise of a plane that is judged, relative to the plane's spectrum.
 const MAX_NOISE: f64 = 0.25;
-/// Minimum number of scenes in a group that is judged; with fewer scenes, the errors of its
-/// figures are uncertain.
+/// Minimum number of scenes in a group that is judged; with fewer scenes, the standard errors of
+/// the group's mean and deviation are uncertain.
 const MIN_SCENES: usize = 10;
-/// Maximum number of rows in the tables of single pulls and scenes.
+/// Maximum number of rows in the table of single pulls and in the table of single scenes.
 const LISTED: usize = 12;
-/// Maximum CPU seconds of a prediction that takes longer than the photons of its scene.
+/// Maximum CPU seconds of a prediction that takes more time than tracing the photons of its
+/// scene.
 const MAX_SECONDS: f64 = 10.0;
 
 /// The pull of one measured number.
@@ -66,7 +68,7 @@ struct Pull {
     value: f64,
 }
 
-/// The CPU seconds of a scene.
+/// The CPU seconds spent on one scene.
 struct Cost {
     scene: u64,
     traced: f64,
@@ -74,7 +76,7 @@ struct Cost {
     slowest: String,
 }
 
-/// Measures and predicts all scenes.
+/// Measures and predicts all scenes, and returns the sections on pulls and cost.
 pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     let bar = progress(options.scenes, "scenes");
     let (mut pulls, mut costs) = (Vec::new(), Vec::new());
@@ -118,7 +120,8 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
         return Ok(None);
     };
     file.run.photons = options.photons;
-    // The seeds differ because photons of one seed, and their noise, are the same in all scenes.
+    // Each scene has its own seed, because photons of the same seed would have the same noise in
+    // all scenes.
     file.run.seed = options.seed + number;
     file.run.resolution = MAX_NOISE;
     if let Some(kept) = &options.keep {
@@ -128,8 +131,9 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     Ok(resolve("scene", file, folder.path(), u64::MAX).ok())
 }
 
-/// Adds the pulls of a scene, and returns its cost. Returns `None` if no theory applies to any
-/// plane, or if the work is refused.
+/// Adds the pulls of a scene to the list, and returns the CPU seconds spent on this scene.
+/// Returns `None` if no theory applies to any plane of the scene, or if the scene takes too much
+/// work.
 fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Option<Cost>> {
     let planes = scene.planes.iter();
     let theories: Vec<Applicability> = planes
@@ -170,7 +174,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             0 => measurement.batches().len(),
             replicates => replicates.min(measurement.batches().len()),
         };
-        // The plane is skipped because its noise exceeds the resolution: with so few photons,
+        // A plane whose noise exceeds the resolution is skipped, because with so few photons
         // errors are not normally distributed.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
@@ -206,10 +210,11 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
     Ok(Some(cost))
 }
 
-/// Returns the normal quantile that corresponds to the quantile `t` of Student's distribution with
-/// this number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more degrees
-/// of freedom (Abramowitz and Stegun 1964, 26.7.8). Stated errors follow this distribution because
-/// they come from the spread of a few dozen batches.
+/// Returns the normal quantile that corresponds to the quantile `t` of Student's distribution
+/// with this number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more
+/// degrees of freedom (Abramowitz and Stegun 1964, 26.7.8). Deviations in units of stated errors
+/// follow Student's distribution, because stated errors come from the spread of a few dozen
+/// batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
@@ -230,12 +235,12 @@ fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     }
 }
 
-/// User and system time of this process.
+/// Returns the sum of user and system time of this process.
 fn cpu_seconds() -> io::Result<f64> {
     /// Linux reports times in hundredths of a second, whatever its clock rate.
     const TICK: f64 = 0.01;
     let stat = fs::read_to_string("/proc/self/stat")?;
-    // The program name, in parentheses, may contain spaces.
+    // In this line of /proc, the program name in parentheses may contain spaces.
     let fields = stat.rsplit(')').next().unwrap_or_default();
     let ticks = fields.split_whitespace().skip(11).take(2);
     Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
@@ -287,7 +292,8 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
     let count = pulls.len() as f64;
     let total = |of: &dyn Fn(f64) -> f64| pulls.iter().map(|p| of(p.value)).sum::<f64>() / count;
-    // The pulls of a scene are dependent, so errors are computed from the scatter between scenes.
+    // The pulls of one scene are dependent, so standard errors are computed from the scatter
+    // between scenes.
     let error = |of: &dyn Fn(f64) -> f64| {
         let all = total(of);
         let apart = scenes
@@ -325,7 +331,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// Returns the largest pulls.
+/// Returns the section that lists the largest pulls.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
@@ -348,7 +354,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     }
 }
 
-/// Returns the cost of predictions, compared with that of photons.
+/// Returns the section that compares the cost of predictions with the cost of tracing photons.
 fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();

@@ -1,9 +1,9 @@
-//! Validation results: figures checked against bounds, in tables, and their formatting.
+//! Validation results: numbers that are checked against bounds, and the tables that show them.
 
 use crate::rows::Line;
 use etendue_compare::{PlaneReport, Verdict};
 
-/// The requirement on a figure; NaN meets no requirement.
+/// The requirement that a number must meet; NaN meets no requirement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Bound {
     Below(f64),
@@ -12,7 +12,7 @@ pub(crate) enum Bound {
     Above(f64),
 }
 
-/// A figure, the requirement on it, and the reason for the requirement.
+/// A number, the requirement that it must meet, and the reason for the requirement.
 #[derive(Clone, Debug)]
 pub(crate) struct Check {
     pub(crate) id: &'static str,
@@ -34,12 +34,12 @@ impl Check {
         }
     }
 
-    /// Returns a check of a fact: the figure is 1 or 0.
+    /// Returns a check that a fact is true; the checked number is 1 if it is, else 0.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }
 
-    /// Creates a check that p is at least a level; a missing p counts as 0.
+    /// Creates a check that a p-value is at least `level`; a missing p-value counts as 0.
     pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
         let bound = Bound::AtLeast(level);
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
@@ -60,7 +60,7 @@ impl Check {
         }
     }
 
-    /// Returns a check that something never occurs.
+    /// Returns a check that a number of occurrences is zero.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
     }
@@ -69,7 +69,7 @@ impl Check {
         self.held().2
     }
 
-    /// Returns the requirement in words, the bound, and whether the figure meets it.
+    /// Returns the requirement in words, the bound, and whether the number meets the requirement.
     fn held(&self) -> (&'static str, f64, bool) {
         let figure = self.figure;
         match self.bound {
@@ -91,12 +91,12 @@ fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
     checks.iter().filter(|check| !check.passes())
 }
 
-/// Returns the larger of two figures; NaN counts as the largest.
+/// Returns the larger of two numbers, where NaN counts as the largest.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// A row of a table, with its checks.
+/// A row of a results table, with the checks of this row.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
@@ -135,17 +135,18 @@ impl Row {
     }
 }
 
-/// One validation: a table in Markdown, and the checks of its rows and of the whole.
+/// One validation: a Markdown table, the checks of its rows, and the checks of the table as a
+/// whole.
 #[derive(Debug)]
 pub(crate) struct ReportSection {
     pub(crate) title: String,
-    /// A description of the procedure and the requirements.
+    /// A description of the procedure and of the requirements that the rows must meet.
     pub(crate) text: String,
-    /// The column headings. If each row has one cell less than there are headings, the last column
-    /// shows the verdict on the row.
+    /// The column headings. If each row has one cell less than the table has headings, the last
+    /// column shows the verdict on the row.
     pub(crate) header: Vec<&'static str>,
     pub(crate) rows: Vec<Row>,
-    /// Checks in addition to those of the rows.
+    /// Checks of the table, in addition to the checks of its rows.
     pub(crate) checks: Vec<Check>,
 }
 
@@ -154,8 +155,8 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// Returns the section on a planted fault. It passes if at least one check of `self` fails,
-    /// although all of them pass without the fault.
+    /// Returns the section on a planted fault. The section passes if at least one check of `self`
+    /// fails, although without the fault all checks of `self` pass.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();
         self.rows.iter_mut().for_each(|row| row.checks.clear());
@@ -171,7 +172,7 @@ impl ReportSection {
     }
 
     pub(crate) fn markdown(&self) -> String {
-        // A vertical bar would end a cell.
+        // A vertical bar inside a text would end the table cell.
         let line = |cells: &[String]| {
             let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
             format!("| {} |\n", cells.join(" | "))

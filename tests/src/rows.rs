@@ -1,4 +1,4 @@
-//! Every row of the paper's Table 1, with the results of a whole validation for it.
+//! Every row of the paper's Table 1, with the results that a complete validation gives for it.
 
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};
@@ -37,7 +37,8 @@ impl Line {
         Self::Environment,
     ];
 
-    /// Returns the name of the row, and its operator in ray space and in Fourier space.
+    /// Returns the name of the row, and the operator of the row in ray space and in Fourier
+    /// space.
     fn words(self) -> [&'static str; 3] {
         let [shear, scale, turn] = ["shear", "scale, spatial", "reflection of angles"];
         let [times, spread] = ["multiplication", "convolution"];
@@ -70,7 +71,8 @@ impl Line {
     }
 }
 
-/// Returns the results for every row, from the sections of all parts.
+/// Returns the results for every row of Table 1, collected from the sections of all parts of the
+/// validation.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection {
         title: "Every row".to_owned(),
@@ -96,7 +98,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
 fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
-    // A row with a check of p is one that photons check.
+    // A row of a section with a check of p is a row that photons test.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
     let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();
@@ -111,7 +113,7 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
     Row::new(cells, checks)
 }
 
-/// Returns the check of p against the exact prediction, if the row has one.
+/// Returns the check of p against the exact prediction, if the row has such a check.
 fn exact(row: &Row) -> Option<f64> {
     let check = row.checks.iter().find(|check| check.id == EXACT);
     check.map(|check| check.figure)
@@ -162,7 +164,7 @@ mod tests {
     #[test]
     fn words_do_not_make_a_failing_check_pass() {
         let p = || section(&["texture", "pass"], vec![Check::p(EXACT, Some(0.3), 0.01)]);
-        // The figure is too large, is NaN, or has no check.
+        // The checked number of the row is too large or NaN, or the row has no check.
         for checks in [off(1e-6), off(f64::NAN), Vec::new()] {
             let planted = section(&["texture", "pass"], checks);
             let shown = planted.markdown();

@@ -1,4 +1,4 @@
-//! The scenes used for validation, and their measurement.
+//! The scenes used for validation, and functions that measure and predict them.
 
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
@@ -12,8 +12,8 @@ macro_rules! scene {
     };
 }
 
-/// Every scene of the repository that has its own verdict and belongs neither to shading nor to
-/// `table1`, with its text.
+/// Every scene of the repository that `suite` judges, with its text; the scenes of `shading` and
+/// of `table1` are not among them.
 pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("travel"),
     scene!("fig1"),
@@ -40,7 +40,8 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_glossy"),
 ];
 
-/// Returns a scene of the suite, with the photons and the seed of its file by default.
+/// Returns a scene of the suite; by default, it keeps the number of photons and the seed of its
+/// file.
 ///
 /// # Panics
 /// If there is no such scene, or it is invalid.
@@ -53,19 +54,19 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the suite is sound")
 }
 
-/// `fig9b` with a number of photons and a seed.
+/// Returns the scene `fig9b` with the given number of photons and seed.
 pub(crate) fn fig9b(photons: u64, seed: u64) -> Scene {
     named("fig9b", Some(photons), Some(seed))
 }
 
-/// `fig9b` with only the receiver plane: all photons are aimed at its window.
+/// Returns the scene `fig9b` with only the receiver plane: all photons are aimed at its window.
 pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     let mut scene = fig9b(photons, seed);
     scene.planes.retain(|plane| plane.name == "receiver");
     scene
 }
 
-/// Returns a scene whose photons use this kind of random numbers.
+/// Returns the scene with photons that use the given kind of random numbers.
 pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
     scene.run.sampling = sampling;
     scene
@@ -79,8 +80,8 @@ pub(crate) fn words(sampling: Sampling) -> &'static str {
     }
 }
 
-/// Changes the number of photons of a run. The resolution is scaled, as noise is, by the inverse
-/// square root of this number.
+/// Changes the number of photons of a run. The resolution is scaled by the inverse square root of
+/// the number of photons, as noise is.
 pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
     let Some(photons) = photons else { return };
     let more_noise = (run.photons as f64 / photons as f64).sqrt();
@@ -93,12 +94,13 @@ pub(crate) fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement 
     measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
-/// Measures a scene with its own tracer.
+/// Measures a scene with the photon tracer.
 pub(crate) fn traced(scene: &Scene) -> Measurement {
     measured(scene, &Tracer::new(scene))
 }
 
-/// Measures a scene backwards; `None` if there is no backward tracer for it.
+/// Measures a scene with backward rays; returns `None` if no backward tracer exists for the
+/// scene.
 pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
     let backward = Backward::new(scene).ok()?;
     Some(measured(scene, &backward))
@@ -122,10 +124,10 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .collect()
 }
 
-/// Returns the prediction of plane `index` that a reference measurement gives.
+/// Returns the prediction that a reference measurement gives for the plane with index `index`.
 ///
 /// # Panics
-/// If it has too few batches.
+/// If the reference measurement has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[index]);
     let reference = Prediction::reference(scene, index, &theory, reference, index);

@@ -1,4 +1,4 @@
-//! The statistics used by the calibration.
+//! Statistical functions that the calibration uses.
 
 /// Returns the probability that the maximum deviation of the empirical distribution of `count`
 /// uniform numbers is at least `distance` (Kolmogorov's series, with Stephens' 1970 correction for
@@ -27,7 +27,7 @@ pub(crate) fn uniformity(values: &[f64]) -> f64 {
     kolmogorov(distance, sorted.len())
 }
 
-/// Mean and its standard error.
+/// Returns the mean of values and the standard error of this mean.
 pub(crate) fn mean(values: &[f64]) -> [f64; 2] {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -41,7 +41,8 @@ mod tests {
 
     #[test]
     fn kolmogorov_has_its_tabulated_quantiles() {
-        // Asymptotic 5 % and 1 % points, 1.3581 and 1.6276 (Smirnov 1948).
+        // The asymptotic 5 % and 1 % points of the distribution are 1.3581 and 1.6276 (Smirnov
+        // 1948).
         for (t, p) in [(1.3581, 0.05), (1.6276, 0.01)] {
             let n = 1_000_000;
             assert!((kolmogorov(t / 1e3, n) - p).abs() < 1e-4); // four digits of the table, and 0.12/√n

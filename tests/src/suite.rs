@@ -1,4 +1,5 @@
-//! Every scene of the repository: its prediction, and the two tracers compared with each other.
+//! Comparison, for every scene of the repository, of photons with the prediction and with
+//! backward rays.
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -11,14 +12,16 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 struct SuiteRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
-    /// For each plane, p of photons against backward rays; `None` without backward rays.
+    /// For each plane, the p-value of the comparison of photons with backward rays; `None` if no
+    /// backward rays are traced.
     backward: Vec<Option<f64>>,
 }
 
 /// False rejection rate over all planes of the suite.
 const ALPHA: f64 = 0.01;
 
-/// Runs the whole suite, with the photons of the files or with `photons` for each scene.
+/// Runs all scenes of the suite, each with `photons` photons if given, else with the number in
+/// its file.
 pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     let scenes: Vec<Scene> = SUITE
         .iter()
@@ -117,8 +120,8 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Checks two occluders that together block all light, but of which each alone blocks little
-/// (Durand et al. 2005, Fig. 7).
+/// Checks two occluders that block all light together, but little light alone (Durand et al.
+/// 2005, Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
@@ -133,7 +136,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
-        // A short suite traces fewer photons than the million that is otherwise required.
+        // At least `least` photons must pass each single occluder, or a quarter of all photons if
+        // a short suite traces too few.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
@@ -151,8 +155,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         outcome(outcomes, "fig7_two"),
     ) {
         (Some(one), Some(other), Some(both)) => {
-            // The unblocked light minus the light that each occluder blocks: F − (F − F₁) − (F −
-            // F₂) = F₁ + F₂ − F.
+            // The light without occluders minus the light that each of the two occluders blocks:
+            // F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
             let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),
@@ -286,8 +290,8 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
                 known += factor * hann(x) * hann(y);
             }
         }
-        // The integral is the sum over cells times the integral of the window over slopes,
-        // (half-width)².
+        // The integral over the window is the sum over cells of the position window times the
+        // integral of the slope window, (half-width)².
         known *= (2.0 * half / f64::from(nodes)).powi(2) * plane.window.u.half_width().powi(2);
         let zero = [0, 0, plane.grid.nu.half];
         let (measured, error) = (compared.measured.half[zero].re, compared.sigma[zero]);

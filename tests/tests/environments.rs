@@ -1,5 +1,5 @@
-//! Light of environments on a leg and on surfaces: photons distinguish predictions with and without
-//! a fault.
+//! Tests of environment light on a leg and on surfaces: photons must accept correct predictions
+//! and reject predictions with a fault.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -26,7 +26,7 @@ const ALPHA: f64 = 0.01;
 /// A fault planted in a system.
 type Fault<S = SpecularSystem> = (&'static str, fn(&mut Observed<S>));
 
-/// Returns a scene file of the repository, with fewer photons.
+/// Returns a scene of the repository, with fewer photons than its file states.
 fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();
@@ -73,7 +73,7 @@ fn tells_in<S: Clone>(
     }
 }
 
-/// The axes of a surface rotated about its normal by half a turn.
+/// Rotates the axes of a surface by half a turn about the normal of this surface.
 fn turned_round(view: &mut Observed<SpecularSystem>) {
     let frame = &mut view.plane.frame;
     (frame.x, frame.y) = (-frame.x, -frame.y);
@@ -99,7 +99,7 @@ fn mirrored(view: &mut Observed<SpecularSystem>) {
     view.plane.orientation = Orientation::Mirrored;
 }
 
-/// The environment rotated by a degree.
+/// Rotates the environment by one degree.
 fn turned_light(view: &mut Observed<SpecularSystem>) {
     turn(&mut view.system.light, 1.0);
 }
@@ -122,8 +122,8 @@ fn traced(scene: &Scene) -> Measurement {
     measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
-/// Checks Fig. 3, five suns behind a grating, in slopes and in angles. The suns are symmetric
-/// under half a turn.
+/// Checks Fig. 3, five suns behind a grating, in slopes and in angles. The arrangement of the
+/// five suns is symmetric under a rotation by half a turn.
 #[test]
 fn two_parameterisations() {
     let scene = scene("fig3");
@@ -134,7 +134,8 @@ fn two_parameterisations() {
     }
 }
 
-/// Checks Fig. 14: light on a sphere, before the lobes of its surface act.
+/// Checks Fig. 14: the light on a sphere, before the lobes of the sphere's BRDF act on this
+/// light.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {
@@ -155,7 +156,7 @@ fn the_steps_of_shading() {
     tells(&scene, &photons, "cosine", &faults);
 }
 
-/// An environment in front of a diffuse wall and a glossy floor.
+/// A scene with an environment in front of a diffuse wall and a glossy floor.
 #[test]
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");

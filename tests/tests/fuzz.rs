@@ -1,4 +1,5 @@
-//! Mutated scene files. Any file gives a scene or an error, never a panic.
+//! Mutated scene files. Test that reading any file as a scene gives a scene or an error, never a
+//! panic.
 
 use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;
@@ -8,8 +9,8 @@ use etendue_trace::Tracer;
 use etendue_transform::random::{self, Stream};
 use rayon::prelude::*;
 
-/// Scenes that together contain each kind of light, blockers and planes; the first one is mutated
-/// most often.
+/// Scenes that together contain every kind of light, blocker and plane; the first scene is
+/// mutated most often.
 const SCENES: [&str; 6] = [
     include_str!("../../scenes/fig9b.ron"),
     include_str!("../../scenes/disc_light.ron"),
@@ -113,11 +114,11 @@ fn no_mutated_scene_file_panics() {
     let found: Vec<[bool; 2]> = (0..8_000).into_par_iter().map(tried).collect();
     let count = |k: usize| found.iter().filter(|found| found[k]).count();
     let [sound, run] = [count(0), count(1)];
-    // The mutations are useful: not all of them are refused, and not all are harmless.
+    // The mutations are useful: some mutated files are refused, and others are valid scenes.
     assert!(sound > 400 && run > 24, "{sound} sound scenes, {run} run");
 }
 
-/// Whether a mutated file is a valid scene, and whether it was run.
+/// Returns whether a mutated file is a valid scene, and whether this scene was run.
 fn tried(index: u64) -> [bool; 2] {
     let text = mutated(index);
     let resolved =
@@ -141,8 +142,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// Photons, frequencies and blockers are few, because the test is about values of fields and not
-/// about the number of items.
+/// The scenes have few photons, frequencies and blockers, because the test concerns values of
+/// fields, not numbers of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;
@@ -175,7 +176,7 @@ fn whole_run(scene: &Scene) {
             prediction.slices.half.iter().all(|s| s.is_finite()),
             "{plane:?}"
         );
-        // Too many batches without a photon are an error, not a panic.
+        // If too many batches contain no photon, the result is an error, not a panic.
         if let Ok(comparison) = compare(&measurement, i, &prediction, &test) {
             assert!(
                 comparison.radial.power.iter().all(|p| p.is_finite()),

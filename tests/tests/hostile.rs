@@ -1,4 +1,5 @@
-//! The short form of the attacks from outside: mutated input of every kind, and kills.
+//! Short forms of the attacks on the program from outside: mutated input of every kind, and
+//! kills.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -23,16 +24,16 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// Returns the path of `etendue` in the folder of the validation. The program belongs to another
-/// package, which is not built if only this package is tested.
+/// Returns the path of the program `etendue` in the folder of the program `etendue-validation`.
+/// The program belongs to another package, which is not built if only this package is tested.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     if built.is_err() || built.unwrap() < changed(&crates) {
         let folder = path.parent().and_then(Path::file_name).unwrap();
-        // The folder of a build profile has the name of the profile, except that of `dev`, which
-        // is `debug`.
+        // The folder of a build profile has the name of the profile, except that the folder of
+        // `dev` is `debug`.
         let profile = match folder.to_str().unwrap() {
             "debug" => "dev",
             profile => profile,

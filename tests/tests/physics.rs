@@ -14,7 +14,7 @@ const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
 /// Photons per run: noise is 2 to 4 % of each spectrum.
 const PHOTONS: u64 = 400_000;
 
-/// fig9b with parts of its text replaced.
+/// Returns the scene `fig9b` with parts of its text replaced.
 fn scene(edits: &[(&str, &str)]) -> Scene {
     let mut text = FIG9B.to_owned();
     for (from, to) in edits {
@@ -23,12 +23,13 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    // Photons that are not aimed have noise of 16 %, which is low enough here.
+    // Photons that are not aimed have noise of 16 %, which is low enough for this test.
     file.run.resolution = 0.5;
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
-/// Returns the verdicts of all planes of `traced` on the predictions of `predicted`.
+/// Returns, for all planes, the verdict of comparing photons of the scene `traced` with
+/// predictions for the scene `predicted`.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -52,8 +53,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Variants of fig9b must pass as fig9b does: with objects beside or behind the light, and with
-/// scenes that are large or small, distant, rotated or dark.
+/// Variants of fig9b must pass as fig9b does: variants with objects beside or behind the light,
+/// and large, small, distant, rotated or dark variants.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -168,7 +169,7 @@ fn the_edge_of_the_receiver_is_left_to_paths() {
     assert!(small[..4].iter().all(|c| *c == Class::Exact));
 }
 
-/// A black receiver reflects nothing, as predicted.
+/// A black receiver reflects no light, as theory predicts.
 #[test]
 fn a_black_receiver_is_dark() {
     let black = scene(&[("albedo: 0.5", "albedo: 0")]);
@@ -197,8 +198,8 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// A first-order chain fails if a step is omitted or doubled, unless this does not change the
-/// chain.
+/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the
+/// omission or doubling leaves it unchanged.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);
@@ -207,7 +208,7 @@ fn every_step_of_a_chain_counts() {
             let Theory::Specular(view) = &theory.theory else {
                 continue;
             };
-            // A plane at the light has no maps.
+            // The chain to a plane at the light has no affine maps.
             let chain = theory.affine_chain(&scene);
             let Some(chain) = chain.filter(|chain| !chain.maps.is_empty()) else {
                 continue;

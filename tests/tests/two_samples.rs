@@ -1,5 +1,5 @@
-//! The test of `etendue diff` over many seeds: two results of one scene, both measured with
-//! photons.
+//! Tests, over many seeds, of the comparison `etendue diff` makes of two measured results of one
+//! scene.
 
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
@@ -8,7 +8,7 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{estimate, measure};
 use etendue_trace::{Backward, Tracer};
 
-/// fig9b with few photons, on few frequencies.
+/// Returns the scene `fig9b` with few photons and few frequencies.
 fn scene(seed: u64) -> Scene {
     let text = include_str!("../../scenes/fig9b.ron");
     let mut file = SceneFile::parse(text).expect("a scene of the repository");
@@ -23,7 +23,7 @@ fn scene(seed: u64) -> Scene {
     scene
 }
 
-/// Returns, for each plane, the data of a result of `scene`.
+/// Returns, for each plane, the measured data in a result of `scene`.
 fn samples(scene: &Scene, source: &dyn PhotonSource) -> Vec<Sample> {
     let batches = scene.run.batches;
     let measurement = measure(source, &scene.planes, 0..batches, &|_| ());
@@ -62,13 +62,13 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
     for seed in 1..=200 {
         let a = photons(2 * seed);
         let b = photons(2 * seed + 1);
-        // The noise of the two tracers differs in size and correlation.
+        // The noise of photons and that of backward rays differ in size and correlation.
         let c = backward(2 * seed + 1);
         for (i, plane) in planes.iter().enumerate() {
             let test = |other: &Sample| TwoSamples::new(&plane.grid, &a[i], other).p_value;
             p[i].extend(test(&b[i]));
             across[i].extend(test(&c[i]));
-            // A planted fault: σ of one of the two is 15 % too small.
+            // A planted fault: σ of one of the two results is 15 % too small.
             let mut small = b[i].clone();
             small.sigma *= 0.85;
             planted[i].extend(test(&small));

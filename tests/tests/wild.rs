@@ -1,4 +1,4 @@
-//! Scenes on which theory was once wrong, stated too small an error, or gave no prediction
+//! Scenes for which theory once was wrong, stated too small an error, or gave no prediction
 //! (results/wild.md).
 
 #![allow(
@@ -40,8 +40,8 @@ fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// The number of photons in a scene file and its replacement, with which many rays of each batch
-/// hit a bright pixel through the lobe.
+/// The number of photons in a scene file, and its replacement, which is so large that many rays
+/// of each batch hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
@@ -92,7 +92,7 @@ fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     }
 }
 
-/// The printed row of results/wild.md for a plane.
+/// Returns the row of results/wild.md that describes a plane.
 fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport) {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     println!(
@@ -107,8 +107,9 @@ fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport
     );
 }
 
-/// Checks that every plane of a scene has its class, and that no verdict is a failure. The photons
-/// decide at each plane; if they are undecided and a backward tracer exists, backward rays decide.
+/// Checks that every plane of a scene has the expected class of theory, and that no verdict is a
+/// failure. Photons decide the verdict on each plane; if they are undecided and a backward tracer
+/// exists, backward rays decide.
 fn holds(name: &str, planes: &[(&str, Class)]) {
     holds_in(&scene(name), planes);
 }
@@ -164,8 +165,8 @@ fn scenes_that_took_long_have_an_answer() {
 }
 
 /// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
-/// stated error of the prediction includes the deviation of mesh from patch; before it did, this
-/// scene failed.
+/// stated error of the prediction includes the deviation of the mesh from the patch; without this
+/// deviation, the scene fails.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -243,7 +244,7 @@ fn scenes_that_were_wrong_do_not_fail() {
 }
 
 /// The first-order chain is computed as the exact prediction plus a difference, and so has the
-/// same noise.
+/// noise of the exact prediction.
 #[test]
 fn the_chain_of_a_small_map_does_not_fail() {
     use Class::FirstOrder;
@@ -252,7 +253,7 @@ fn the_chain_of_a_small_map_does_not_fail() {
 }
 
 /// Nets of rays resolve a grating that the quadrature nodes on a receiver do not resolve. A
-/// prediction with these quadrature nodes is still wrong.
+/// prediction with the quadrature nodes on the receiver is still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -271,8 +272,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// The light is an environment map with few pixels, reflected by a narrow lobe, at planes on the
-/// surface and after it. Photons reject a lobe that is a fifth wider.
+/// The light is an environment map with few pixels, reflected by a narrow lobe; the planes are on
+/// the surface and after the surface. Photons reject a lobe that is a fifth wider.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -317,7 +318,7 @@ fn a_wide_glow_is_decided() {
     assert_eq!(verdict(&scene, &rays, &cut), Verdict::Fail);
 }
 
-/// Rays are tested against occluders after the mirror.
+/// A prediction tests whether occluders behind the mirror block its rays.
 #[test]
 fn a_blocker_in_a_later_leg_is_decided() {
     is_followed_past("blocker_in_later_leg", &["edge"]);
@@ -329,7 +330,8 @@ fn a_small_disc_in_a_later_leg_is_decided() {
     is_followed_past("corner_disc", &["disc"]);
 }
 
-/// Theory's rays meet a surface once, so the other tracer is used for light that meets it twice.
+/// Theory's rays meet a surface only once, so backward rays replace theory for light that meets
+/// the surface twice.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
@@ -340,7 +342,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// The other tracer is also used for light that the surface itself blocks with its other side.
+/// Backward rays also replace theory for light that a surface itself blocks with its other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -352,8 +354,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Checks that both tracers agree, and that they disagree with a prediction by `theory`, which
-/// does not apply.
+/// Checks that both tracers agree with each other and disagree with a prediction by `theory`,
+/// which does not apply.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,
@@ -371,7 +373,7 @@ fn decided_by_reference(
 }
 
 /// Two half-planes are reported as the cause of a dark plane if there is no gap between them, but
-/// not if there is one.
+/// not if there is a gap.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -430,7 +432,7 @@ fn by_scattering(
     replaced(like, found.slices, found.replicates)
 }
 
-/// Returns a prediction whose slices are replaced.
+/// Returns a prediction with its slices replaced by others.
 fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Prediction {
     Prediction {
         quadrature_error: None,
@@ -441,8 +443,8 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window across the path leave some light for a window of the same size on a
-/// surface.
+/// Squares that cover a window perpendicular to the path do not block all light for a window of
+/// the same size on a surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
     let scene = scene("squares_before_the_glass");
@@ -451,18 +453,19 @@ fn what_goes_by_squares_is_decided() {
     assert!(photons(&scene).tally(0).inside > 1000);
 }
 
-/// Light from above is sampled even if most light of a sky arrives at low elevation.
+/// Rays sample the light from above even if most light of the sky arrives at low elevation.
 #[test]
 fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let declined = Applicability::new(&scene, &scene.planes[0]).declined;
     assert_eq!(declined, ["light that meets glass out of order"]);
-    // A path of the prediction ends where it meets the glass out of order.
+    // A ray of the prediction ends where it meets the glass in an order other than that of the
+    // path.
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
-/// In these scenes rays that leave the triangles of a mesh continue differently from rays that
-/// leave its osculating patch: they meet the mesh again, or another direction results.
+/// In these scenes, rays that leave the triangles of a mesh meet the mesh again, or take another
+/// direction, unlike rays that leave its osculating patch.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -484,8 +487,8 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// In these scenes only few rays of the window meet the blockers, or a mesh that light visits
-/// later.
+/// In these scenes, only a few rays of the window meet the blockers, or meet a mesh that the path
+/// visits later.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {
@@ -498,8 +501,8 @@ fn what_stands_in_the_way_of_a_brdf_is_decided() {
     });
 }
 
-/// Checks that the prediction includes obstacles that only some rays meet, and that it would be
-/// wrong without them.
+/// Checks that the prediction includes obstacles that only some rays meet, and that a prediction
+/// without these obstacles is wrong.
 fn is_followed_past(name: &str, obstacles: &[&str]) {
     let scene = scene(name);
     let plane = scene.planes.len() - 1;
@@ -541,8 +544,8 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// A part of a mirror is nearer to the light than the mask in front of it, and the window is so
-/// narrow that no ray sampled from the light hits it.
+/// Part of a mirror is nearer to the light than the mask, and the window is so narrow that no ray
+/// sampled from the light hits this part.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
     is_followed_past("sliver_of_slopes", &["slit"]);
@@ -562,8 +565,9 @@ fn a_wall_that_reaches_behind_the_light_is_decided() {
     holds("beside_the_light", &[("p", Class::FirstOrder)]);
 }
 
-/// A surface that light visits later is in a corner of a window before the first surface. Of the
-/// projector rays that are sampled over a whole wide wall, few reach this corner.
+/// A surface that the path visits later stands before the first surface, in a corner of the
+/// window. Few of the projector's rays, which are sampled over all of a wide wall, reach the
+/// corner of the window.
 #[test]
 fn a_later_surface_beside_the_first_leg_is_decided() {
     let scene = scene("beside_the_beam");
@@ -572,7 +576,8 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Angles beyond a right angle hold no light, although the same angles less a full turn do.
+/// No light has an angle beyond a right angle, although light exists at the same angle minus a
+/// full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");
@@ -582,14 +587,15 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror is so close to the light that a part of it is before the mask. Rays sampled from the
-/// light to the mirror are unlikely to hit that part.
+/// A mirror is so close to the light that a part of the mirror is before the mask. Rays sampled
+/// from the light to the mirror are unlikely to hit the part of the mirror before the mask.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
 }
 
-/// Light of a sky that enters the window is sampled, however faint compared with light from behind.
+/// The rays sample the sky's light that enters the window, even if light from behind is much
+/// brighter.
 #[test]
 fn a_sky_from_behind_is_decided() {
     let scene = scene("sky_from_behind");
@@ -599,8 +605,8 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
-/// If a surface curves by more than a right angle, photons are recorded where they first meet it,
-/// with the coordinates that backward rays have there.
+/// If a surface curves by more than a right angle, photons are recorded where they first meet the
+/// surface, with the coordinates of backward rays at this point.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
     let scene = scene("ridge_under_a_sky");
@@ -608,8 +614,8 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A discontinuous window cuts the light of a projector. For such light two quadratures with few
-/// rays may agree by chance.
+/// A discontinuous window cuts the light of a projector. For light cut by a discontinuous window,
+/// two quadratures with few rays may agree by chance.
 #[test]
 fn a_box_before_a_projector_is_decided() {
     let scene = scene("box_before_a_projector");
@@ -627,7 +633,7 @@ fn irradiance_after_a_floor_is_decided() {
     holds("irradiance_after_floor", &[("p", Class::FirstOrder)]);
 }
 
-/// A wall that light visits later is beside the first leg of the path.
+/// A wall that the path visits later stands beside the first leg of the path.
 #[test]
 fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
@@ -640,7 +646,8 @@ fn a_plane_on_the_next_wall_is_decided() {
     decided_against_chain("on_the_next_wall", Class::FirstOrder);
 }
 
-/// Checks that the only plane has its class, and that the chain between parallel planes is wrong.
+/// Checks that the only plane has the expected class of theory, and that the chain between
+/// parallel planes is wrong.
 fn decided_against_chain(name: &str, class: Class) {
     let scene = scene(name);
     holds_in(&scene, &[("p", class)]);
@@ -651,8 +658,9 @@ fn decided_against_chain(name: &str, class: Class) {
     });
 }
 
-/// Light whose line meets a hollow surface again does not count, even if a blocker stops it first.
-/// Light that a floor inside the hollow surface stops continues from the floor.
+/// Light whose line meets a hollow surface again is not counted, even if a blocker stops this
+/// light before the surface. Light that meets a floor inside the hollow surface continues from
+/// the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
     for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
@@ -663,8 +671,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// The window is so narrow that it receives hardly any ray aimed by the affine chain, but exact
-/// rays traced back from it have almost no noise.
+/// The window is so narrow that hardly any ray aimed by the affine chain enters it, but exact
+/// rays traced back from the window have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {
@@ -677,9 +685,9 @@ fn a_narrow_window_is_decided() {
     }
 }
 
-/// Photons sampled in proportion to the sky rarely come from the direction of a lobe, so some are
-/// sampled by the cosine. If only a few of the photons sampled by the cosine carry the light, they
-/// do not contradict the other tracer.
+/// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe,
+/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled
+/// in proportion to the cosine carry the light, they do not contradict backward rays.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");
@@ -691,20 +699,20 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // With samples by the cosine the noise of photons is 15 %; without them photons find 10⁻⁹ of
-    // the light.
+    // If some photons are sampled in proportion to the cosine, noise is 15 %; without such
+    // samples photons find 10⁻⁹ of the light.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
-/// A plane on the second surface of a path, after one with a BRDF, has the coordinates of the
-/// second surface.
+/// A plane on the second surface of a path, after a surface with a BRDF, uses the coordinates of
+/// the second surface.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
     let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];
     holds("before_second_after_brdf", &planes);
 }
 
-/// A mesh that light meets from behind has the ratio of its indices of refraction inverted.
+/// If light meets a mesh from behind, the ratio of the mesh's indices of refraction is inverted.
 #[test]
 fn a_mesh_met_from_behind_is_decided() {
     let turned = edited(
@@ -723,8 +731,7 @@ fn a_mesh_met_from_behind_is_decided() {
     );
 }
 
-/// Light of an environment begins in a plane, and for both tracers everything behind this plane is
-/// dark.
+/// Light of an environment starts in a plane, and both tracers find no light behind this plane.
 #[test]
 fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     let scene = scene("behind_the_sky_plane");
@@ -745,8 +752,8 @@ fn a_coarse_mesh_is_decided() {
     );
 }
 
-/// On a thin lens there is no affine chain; beyond the lens there is one. Exact rays are correct
-/// in both cases.
+/// For a plane on a thin lens no affine chain exists; for a plane beyond the lens an affine chain
+/// exists. Exact rays are correct both on a thin lens and beyond the lens.
 #[test]
 fn a_plane_on_a_lens_is_decided() {
     let scene = scene("on_a_lens");

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// Maximum number of bytes that one import reads or unpacks, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// The files that a scene may refer to. After links are followed, all of them must lie within one
-/// folder.
+/// The files that a scene may refer to. After links are followed, all files of a scene must lie
+/// within one folder.
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
@@ -17,7 +17,7 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// Allows files below `root`.
+    /// Creates access to the files below the folder `root`.
     pub(crate) fn below(root: &Path) -> io::Result<Self> {
         let root = match root.as_os_str() {
             empty if empty.is_empty() => Path::new("."),
@@ -29,8 +29,8 @@ impl Files {
         })
     }
 
-    /// Returns the path of the file or folder `name`, which is searched for in these folders in
-    /// order.
+    /// Returns the path of the file or folder `name`, which is searched for in the given folders
+    /// in order.
     ///
     /// The name may contain `..`, because only the path to which it resolves must lie below the
     /// root.

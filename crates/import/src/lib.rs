@@ -1,8 +1,9 @@
 //! Reads scenes of other programs into a [`World`](etendue_world::World).
 //!
-//! Supported are Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with MTL; PLY.
-//! Content that a world cannot represent is a *cause of refusal*; a scene is refused with all
-//! causes at once. Minor omissions and approximations are *notes*. Nothing is dropped silently.
+//! Supported formats are Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with
+//! MTL; PLY. Content that a world cannot represent is a *cause of refusal*; a scene is refused
+//! with all causes at once. Minor omissions and approximations are *notes*. No content of a scene
+//! is dropped without a message.
 
 mod cie;
 mod files;

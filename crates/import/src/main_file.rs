@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 pub(crate) struct MainFile<'a> {
     /// The files that the scene may refer to.
     pub(crate) files: Files,
-    /// The path, with links resolved.
+    /// The path of the file, with links resolved.
     pub(crate) path: PathBuf,
-    /// The name used in messages.
+    /// The name of the file in messages.
     pub(crate) name: String,
-    /// The path that the user gave.
+    /// The path of the file as the user gave it.
     given: &'a Path,
 }
 
@@ -27,7 +27,7 @@ impl<'a> MainFile<'a> {
         Self::new(path, folder, &name, options)
     }
 
-    /// Creates a main file from a text that replaces the file of this name in `folder`.
+    /// Creates a main file from a text, which replaces the file with the given name in `folder`.
     pub(crate) fn of_text(
         folder: &'a Path,
         name: &str,
@@ -65,7 +65,7 @@ impl<'a> MainFile<'a> {
         SourcePlace::whole(&self.name)
     }
 
-    /// Refuses the scene for one cause.
+    /// Returns the refusal of a scene for a single cause.
     pub(crate) fn refused(&self, message: impl Into<String>) -> Refused {
         Refused::because(self.given, message)
     }

@@ -1,4 +1,4 @@
-//! Meshes of any scene format, for worlds.
+//! Conversion of meshes of any scene format to meshes of a world.
 
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
@@ -42,7 +42,8 @@ impl MeshParts {
     /// Computes vertex normals as sums of the normals of adjacent triangles, weighted by the angles
     /// of the triangles at the vertex (Thürmer and Wüthrich 1998).
     ///
-    /// Angles are measured after applying `linear`, the placement of the mesh.
+    /// Angles are measured after the map `linear`, the linear part of the mesh's placement, is
+    /// applied.
     pub(crate) fn smooth(&mut self, linear: DMat3) {
         let placed: Vec<DVec3> = self.vertices.iter().map(|v| linear * *v).collect();
         let mut sums = vec![DVec3::ZERO; placed.len()];
@@ -53,8 +54,8 @@ impl MeshParts {
                 sums[corners[k] as usize] += normal * angle(b - a, c - a);
             }
         }
-        // This transpose maps normals of the world to local coordinates. The sign undoes the flip
-        // of triangle normals by a mirror.
+        // The transpose of the placement maps normals of the world to local coordinates. The sign
+        // compensates the flip of triangle normals by a mirroring placement.
         let sign = 1.0_f64.copysign(linear.determinant());
         let back = linear.transpose() * sign;
         let normals = sums
@@ -76,8 +77,8 @@ impl MeshParts {
         }
     }
 
-    /// Gives vertices without a normal the normal of a triangle; returns whether there was such a
-    /// vertex.
+    /// Gives each vertex without a normal the normal of a triangle; returns whether any vertex
+    /// had no normal.
     pub(crate) fn mend_normals(&mut self) -> bool {
         let Some(normals) = &mut self.normals else {
             return false;
@@ -99,8 +100,8 @@ impl MeshParts {
         mended
     }
 
-    /// Flips normals that point away from the front of the triangles around them; returns their
-    /// number.
+    /// Flips vertex normals that point away from the front of the adjacent triangles; returns the
+    /// number of flipped normals.
     pub(crate) fn turn_normals(&mut self) -> usize {
         let Some(normals) = &mut self.normals else {
             return 0;
@@ -121,7 +122,8 @@ impl MeshParts {
         turned
     }
 
-    /// Returns the triangles; `None` if there are none, or the arrays do not fit together.
+    /// Returns the triangles of the mesh, or `None` if it has no triangles or its arrays do not
+    /// match in size.
     pub(crate) fn finish(self) -> Option<Triangles> {
         if self.corners.is_empty() {
             return None;
@@ -130,7 +132,7 @@ impl MeshParts {
     }
 }
 
-/// Returns the normal of a triangle, whose length is twice the area.
+/// Returns a normal of a triangle; the length of this normal is twice the triangle's area.
 fn across(vertices: &[DVec3], corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a)

@@ -4,14 +4,14 @@ use etendue_world::World;
 use std::fmt;
 use std::path::Path;
 
-/// A message about a place in a file.
+/// A message about a position in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// The file, as the scene names it.
     pub file: String,
-    /// Line number, from 1; 0 for the file as a whole.
+    /// Line number, counted from 1; 0 if the message concerns the file as a whole.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, counted from 1.
     pub column: usize,
     /// The message.
     pub message: String,
@@ -37,8 +37,8 @@ impl fmt::Display for Note {
 pub struct Imported {
     /// The world.
     pub world: World,
-    /// Notes on omissions and approximations, in the order of reading; if there are too many, the
-    /// last one states how many more there are.
+    /// Notes on omissions and approximations, in the order of reading; if notes are too many, the
+    /// last note states the number of further notes.
     pub notes: Vec<Note>,
 }
 
@@ -50,7 +50,7 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// One cause for a file as a whole.
+    /// Creates a refusal with one cause that concerns a file as a whole.
     pub(crate) fn because(file: &Path, message: impl Into<String>) -> Self {
         let cause = Note {
             file: file.display().to_string(),

@@ -10,7 +10,7 @@ pub struct Options {
     pub root: Option<PathBuf>,
     /// The conversion of colours to numbers.
     pub color: Color,
-    /// Values of Mitsuba's `$parameters`, which override those of the file.
+    /// Values of Mitsuba's `$parameters`, which override the values in the file.
     pub set: Vec<(String, String)>,
 }
 
@@ -21,11 +21,12 @@ pub struct Options {
 /// its `rgb` variants.
 ///
 /// A sampled spectrum becomes a colour as in Mitsuba. The spectrum is interpolated linearly at
-/// 1000 wavelengths from 360 to 830 nm, and is zero beyond its ends. These values are weighted
-/// with the CIE 1931 matching functions and converted to linear sRGB. Reflectances are also
-/// weighted with D65 and clamped to 0 to 1; radiances and indices of refraction are clamped to at
-/// least 0. A spectrum that is given by one number becomes this number, except that each channel
-/// of a light is multiplied by that of the equal-energy white, (1.2048, 0.9483, 0.9089).
+/// 1000 wavelengths from 360 to 830 nm, and is zero beyond its ends. The 1000 interpolated values
+/// are weighted with the CIE 1931 matching functions and converted to linear sRGB. Reflectances
+/// are also weighted with D65 and clamped to 0 to 1; radiances and indices of refraction are
+/// clamped to at least 0. A spectrum that is given by one number becomes this number, except that
+/// each channel of a light is multiplied by the same channel of the equal-energy white, (1.2048,
+/// 0.9483, 0.9089).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Color {
     /// The luminance of linear sRGB.

@@ -26,12 +26,13 @@ pub(crate) enum TransferCurve {
     Srgb,
     /// Levels are proportional to light.
     Linear,
-    /// The amount of light is the level raised to this power.
+    /// The amount of light is the level raised to the given power.
     Gamma(f64),
 }
 
 impl Pictures {
-    /// Reads the picture at a path. Levels are sRGB and are linearised, unless they are `raw`.
+    /// Reads the picture at a path. The levels of the picture are sRGB and are linearised, unless
+    /// `raw` is set.
     pub(crate) fn read(
         &mut self,
         files: &Files,
@@ -90,8 +91,8 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         _ => v,
     };
     let grey = channels.count == 1;
-    // Three equal numbers are used as they are, because rounding would make their luminance differ
-    // from them.
+    // If all three numbers are equal, their value is used as it is, because rounding would change
+    // it in a computed luminance.
     let number = |rgb: [f64; 3]| match grey {
         true => linear(rgb[0]),
         false => color.of(rgb.map(linear)),

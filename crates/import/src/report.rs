@@ -5,21 +5,21 @@ use etendue_world::World;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Maximum number of causes that are kept, and of notes. The limit is needed because each element
-/// of a file could give a message.
+/// Maximum number of causes that a report keeps, and maximum number of notes. The limit on
+/// messages is needed because each element of a file could give a message.
 const MAX_MESSAGES: usize = 100;
 
 /// Maximum number of bytes of a value in a message.
 const LONGEST: usize = 60;
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Debug)]
 pub(crate) struct SourcePlace {
     /// The file, as the scene names it.
     pub(crate) file: Rc<str>,
-    /// Line number, from 1; 0 for the file as a whole.
+    /// Line number, counted from 1; 0 for the file as a whole.
     pub(crate) line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, counted from 1.
     pub(crate) column: usize,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Report {
     notes: RefCell<Messages>,
 }
 
-/// The messages of one kind: the first ones, and the number of further ones.
+/// The messages of one kind: the first messages, and the number of further messages.
 #[derive(Debug, Default)]
 struct Messages {
     kept: Vec<Note>,
@@ -66,7 +66,8 @@ impl Messages {
         }
     }
 
-    /// Returns the kept messages; the last one gives the number of further messages of this kind.
+    /// Returns the kept messages, of which the last message gives the number of further messages
+    /// of this kind.
     fn finish(mut self, kind: &str) -> Vec<Note> {
         if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
             let more = SourcePlace::whole(&last.file).note(format!("and {more} more {kind}"));

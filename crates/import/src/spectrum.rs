@@ -14,7 +14,7 @@ const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
 pub(crate) enum Role {
     /// A reflectance or transmittance, 0 to 1.
     Reflectance,
-    /// Any number, such as an index of refraction.
+    /// A quantity without an upper limit, such as an index of refraction.
     Number,
     /// Emitted light.
     Emission,
@@ -60,12 +60,13 @@ pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Returns the value at a wavelength before sample `next`, or `None` beyond the ends.
+/// Returns the value at a wavelength before sample `next`, or `None` beyond the ends of the
+/// spectrum.
 fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
     match samples.get(next) {
         Some([w1, v1]) => Some(v0 + (wavelength - w0) / (w1 - w0) * (v1 - v0)),
-        // The last wavelength itself is inside the range.
+        // The last wavelength of a spectrum is inside the spectrum's range.
         None => (wavelength <= w0).then_some(v0),
     }
 }

@@ -221,7 +221,7 @@ fn bmp_pictures_are_read() {
         }
         bytes
     };
-    // Each row is filled up to four bytes.
+    // Each row of a BMP file is padded to a multiple of four bytes.
     let lower = [50, 100, 200, 90, 60, 30, 0, 0];
     let upper = [0, 0, 255, 255, 0, 0, 0, 0];
     let colors = [header(54, 24, 0), lower.to_vec(), upper.to_vec()].concat();

@@ -24,8 +24,8 @@ fn includes_bring_their_objects_and_see_defaults() {
         .unwrap()
         .world;
     let radii = world.shapes.iter().map(|s| s.to_world.matrix3.x_axis.x);
-    // The first default of a name counts, over all files. Defaults of an included file remain in
-    // effect after the include.
+    // Over all files, the first default that is given for a name counts. Defaults of an included
+    // file remain in effect after the include.
     common::assert_close(&radii.collect::<Vec<f64>>(), &[2.0, 1.0, 7.0], 0.0);
 }
 
@@ -65,7 +65,7 @@ fn no_file_leads_out_of_the_root() {
     };
     let at = |name: &str| files.path().join("in/deep").join(name);
     assert_eq!(import(&at("s.xml"), &root).unwrap().world.shapes.len(), 1);
-    // Without a root, nothing above the scene's folder is read.
+    // Without a root folder in the options, no file outside the scene's folder is read.
     let refused = import(&at("s.xml"), &Options::default()).unwrap_err();
     assert!(
         refused.to_string().contains("is outside of the folder"),

@@ -40,7 +40,7 @@ fn checkerboards_are_turned_where_they_are_numbers() {
     };
     let alpha = &metal.roughness.as_ref().unwrap().alpha[0];
     for (texture, expected) in [(reflectance, 0.1), (alpha, 0.3), (opacity, 0.3)] {
-        // The texture has the number itself, without conversion.
+        // The value of the texture is the number in the file, without conversion.
         assert!((first(texture) - expected).abs() < 1e-12, "{texture:?}");
     }
 }

@@ -72,8 +72,8 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
     );
 }
 
-/// Damages one of the files in each round, the first one in every second round, and imports the
-/// scene.
+/// In each round, damages one of the files (in every second round the first file), and imports
+/// the scene.
 fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);

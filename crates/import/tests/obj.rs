@@ -42,7 +42,7 @@ fn material(mtl: &str) -> Material {
     read.world.materials.into_iter().next().unwrap()
 }
 
-/// Returns the material that both sides have.
+/// Returns the material that both sides of a shape have.
 fn side(mtl: &str) -> Material {
     match material(mtl) {
         Material::TwoSided(sides) => sides[0].clone(),

@@ -57,7 +57,7 @@ fn spectra_have_colours() {
         }
     };
     let [r, g, b] = [Color::Red, Color::Green, Color::Blue].map(channel);
-    // The colour is reddish, with luminance 1.
+    // The colour of the light is reddish, with luminance 1.
     assert!(r > 1.5 && g < 0.9 && b < 0.3, "{r} {g} {b}");
     assert_close(
         &[0.212_671 * r + 0.715_160 * g + 0.072_169 * b],
@@ -199,7 +199,7 @@ fn skies_are_squares_of_equal_area() {
     let Light::Sky(map) = &read_sky.world.lights[0] else {
         panic!("{:?}", read_sky.world.lights);
     };
-    // The sums are the total light of the map and its mean direction.
+    // The sums are the total light of the map and the mean direction of this light.
     let raster = map.radiance.raster();
     let (w, h) = (raster.width(), raster.height());
     let (mut sum, mut toward) = (0.0, DVec3::ZERO);

@@ -98,7 +98,7 @@ fn fronts_are_where_normals_point() {
         assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");
         assert_eq!(of("Scale 1 -1 1 ReverseOrientation"), -mirrored, "{plugin}");
     }
-    // Vertex normals determine the front.
+    // Vertex normals determine the front of a mesh.
     let down =
         "\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1]";
     assert_eq!(front(&shape(&format!("Shape {down}")), own), DVec3::NEG_Z);

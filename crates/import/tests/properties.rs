@@ -1,4 +1,4 @@
-//! Properties: read, left out and refused.
+//! Tests of properties that are read, left out or refused.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

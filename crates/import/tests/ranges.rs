@@ -6,7 +6,7 @@ use crate::common::{causes, folder, world};
 use etendue_import::{Options, import, import_pbrt};
 use std::fs;
 
-/// Checks that there is one cause, which names its line and the allowed values.
+/// Checks that a scene has one cause of refusal, which names the line and the allowed values.
 fn assert_refused(causes: &[String], line: &str, words: &str) {
     assert_eq!(causes.len(), 1, "{causes:?}");
     assert!(
@@ -21,7 +21,7 @@ fn pbrt_causes(text: &str) -> Vec<String> {
     refused.causes.iter().map(ToString::to_string).collect()
 }
 
-/// Returns the causes to refuse a scene of these files.
+/// Returns the causes for refusing a scene that consists of the given files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
     let folder = folder(files);
     let refused = import(&folder.path().join(files[0].0), &Options::default()).unwrap_err();

@@ -72,7 +72,7 @@ fn fronts_of_simple_shapes() {
         ),
         ("disk", MIRROR, DVec3::Z, DVec3::Z),
         ("sphere", "", DVec3::Z, DVec3::Z),
-        // A mirror turns only spheres inside out.
+        // A mirroring placement turns only spheres inside out.
         ("sphere", MIRROR, DVec3::Z, DVec3::NEG_Z),
         ("cylinder", MIRROR, DVec3::Y, DVec3::Y),
         ("cube", MIRROR, DVec3::Z, DVec3::Z),

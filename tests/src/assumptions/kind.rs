@@ -1,5 +1,5 @@
-//! The assumptions of theory, identified by phrases in the reasons that `check` gives for
-//! violations.
+//! The assumptions of the theory that predicts spectra, identified by phrases in the reasons that
+//! `check` gives for violations.
 
 /// Each assumption, with a phrase from the reasons for its violation. A reason is assigned to the
 /// first phrase that it contains.
@@ -38,8 +38,8 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A phrase from one more reason that `check` gives: a violation of this assumption makes
-/// predictions slow, but not wrong.
+/// A phrase from the reason that `check` gives for a slow prediction; a violation of this
+/// assumption makes predictions slow, but not wrong.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.

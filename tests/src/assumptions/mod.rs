@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use tally::section;
 use trial::{Trial, trials};
 
-/// Options of the tested scenes.
+/// Options that select the tested scenes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct AssumptionOptions {
     /// Number of random scenes.
@@ -36,8 +36,8 @@ pub(crate) struct AssumptionOptions {
     photons: u64,
 }
 
-/// The name of a scene, and the trials of its planes; `None` if the scene could not be generated
-/// or is invalid.
+/// The name of a scene and the trials of its planes; the trials are `None` if the scene could not
+/// be generated or is invalid.
 type TriedScene = (String, Option<Vec<Trial>>);
 
 /// Runs the trials of all random scenes, and of the scenes in the repository.
@@ -149,8 +149,8 @@ mod tests {
         }
     }
 
-    /// A fine mesh beside a mirror violates an assumption, but only a mesh that blocks light makes
-    /// a difference.
+    /// A fine mesh beside a mirror violates an assumption, but the prediction is wrong only if
+    /// the mesh blocks light.
     #[test]
     fn photons_accept_theory_where_nothing_comes_of_it() {
         for (x, verdict) in [(3.0, Verdict::Pass), (0.55, Verdict::Fail)] {

@@ -14,7 +14,7 @@ const NAMED: usize = 4;
 #[derive(Default)]
 struct AssumptionRow {
     planes: usize,
-    /// Number of planes that violate this assumption and no other.
+    /// Number of planes that violate the assumption of this row and no other.
     alone: usize,
     speechless: usize,
     skipped: usize,
@@ -62,7 +62,8 @@ impl AssumptionRow {
         self.fails.len() + self.undecided + self.passes
     }
 
-    /// Returns, as text, how many of the judged planes failed, and the first of their scenes.
+    /// Returns, as text, how many of the judged planes failed, and the names of the first scenes
+    /// with failed planes.
     fn caught(&self) -> String {
         let mut named = self.fails.clone();
         named.dedup();

@@ -18,8 +18,8 @@ pub(super) struct Trial {
     pub(super) plane: String,
     /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// The outcome of the unchecked prediction. A plane that violates more than one assumption has
-    /// `None`, because its outcome would be inconclusive.
+    /// The outcome of the unchecked prediction. The outcome is `None` for a plane that violates
+    /// more than one assumption, where it would be inconclusive.
     pub(super) ending: Option<TrialEnding>,
 }
 
@@ -36,18 +36,18 @@ pub(super) enum TrialEnding {
     Panicked(#[expect(dead_code, reason = "the message is only printed")] String),
 }
 
-/// Seeds that must both find a fault, because one correct plane in a hundred fails with a single
-/// seed.
+/// Two seeds; a plane counts as failed only if it fails with both, because with a single seed one
+/// correct plane in a hundred fails.
 const SEEDS: [u64; 2] = [1, 2];
-/// Maximum seconds of one core for a prediction with its derivatives.
+/// Maximum time for a prediction and its derivatives, in seconds of one core.
 const LONGEST: f64 = 60.0;
-/// The budget that a run with 2·10⁵ photons gives to a prediction.
+/// The budget of rays that a run with 2·10⁵ photons gives to a prediction.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };
 
-/// Tries each plane of a scene that has a reported violation, one plane at a time.
+/// Tries, one at a time, each plane of a scene for which `check` reports a violation.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
     let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()
@@ -83,7 +83,7 @@ fn trial(scene: &Scene) -> Option<Trial> {
 
 /// Returns the result of `work`, or its panic message.
 fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    // After a panic, nothing that the work modified is used.
+    // After `work` panics, nothing that `work` modified is used.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let text = panic.downcast_ref::<&str>().map(ToString::to_string);
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -91,7 +91,7 @@ fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Predicts without the check, and compares with photons.
+/// Predicts a plane without the check of assumptions, and compares the prediction with photons.
 fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> TrialEnding {
     let theory = Theory::of(scene, plane);
     if !has_words(scene, plane, &theory) {
@@ -109,7 +109,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
         return TrialEnding::Skipped;
     }
     let found = predicted(plane, &regardless[0].theory);
-    // The affine chain is left out, because it has its own verdict.
+    // The affine chain is not compared, because a run judges the chain by a verdict of its own.
     let prediction = Prediction {
         slices: found.slices,
         replicates: found.replicates,
@@ -127,7 +127,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
 }
 
 /// Whether a theory can describe the surfaces on the central ray. The theory of parallel planes
-/// describes at most one surface, Lambertian and lit by a lamp.
+/// describes at most one surface, which must be Lambertian and lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;
@@ -155,7 +155,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     }
 }
 
-/// Compares the prediction of the only plane with photons of this seed.
+/// Compares the prediction of a scene's only plane with photons drawn with the given seed.
 fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> TrialEnding {
     let mut scene = scene.clone();
     scene.run.seed = seed;

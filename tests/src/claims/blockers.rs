@@ -80,7 +80,8 @@ fn replicas(photons: u64) -> Claim {
     let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
         let blockers = squares([count; 2], pitch, "fill: 0.5");
         let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
-        // The frequency at the vertex of a parabola through the highest values, times the pitch.
+        // The number is the pitch times the frequency of the spectral peak, the vertex of a
+        // parabola through the highest values.
         seen.number(0, |slices| {
             let along = line(slices, 0);
             let step = slices.grid.rho.spacing;
@@ -149,9 +150,8 @@ fn jitter(photons: u64) -> Claim {
     }
 }
 
-/// Pitches of arrays of squares with fill one half, and the number of squares along each axis.
-/// Ripples are largest at these pitches, for which the light's image covers an odd number of half
-/// periods.
+/// Pitches of arrays of squares with fill one half, and the number of squares along each axis. At
+/// these pitches the light's image covers an odd number of half periods, and ripples are largest.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
 fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
@@ -262,8 +262,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// The maximum frequency, per metre, at which bounds are compared with spectra, and the maximum
-/// frequency in the sums of the bounds.
+/// Two maximum frequencies, per metre: that at which bounds are compared with spectra, and that
+/// up to which the sum in a bound runs.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
@@ -376,8 +376,9 @@ fn soft_shadows(photons: u64) -> Claim {
             bench.seen(photons)
         };
         let [plus, minus] = [0.0, PI].map(seen);
-        // The two gratings are half a period apart. The difference of the light behind them is the
-        // shadow, and the sum is the light without a shadow.
+        // The two gratings are shifted against each other by half a period. The light behind one
+        // grating minus the light behind the other is the shadow, and the sum of both lights is
+        // the light without a shadow.
         let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
             let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
             let all = slices[0].at_zero() + slices[1].at_zero();

@@ -12,7 +12,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     vec![criteria(photons), larger_curvature(photons)]
 }
 
-/// Compares the criterion, which assumes light of all frequencies, with lights of increasing size.
+/// Compares the sampling criterion, which assumes light of all frequencies, with measurements for
+/// lights of increasing size.
 fn criteria(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {
@@ -68,8 +69,8 @@ fn criteria(photons: u64) -> Claim {
     }
 }
 
-/// Measures a cylinder that is curved in the plane of incidence, one that is curved across it, and
-/// a sphere.
+/// Measures light reflected by three surfaces: a cylinder curved in the plane of incidence, a
+/// cylinder curved across this plane, and a sphere.
 fn larger_curvature(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {

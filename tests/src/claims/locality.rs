@@ -14,8 +14,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// Measures light with and without a small square in its way, in a window that contains the whole
-/// shadow.
+/// Measures light with and without a small opaque square in the beam, in a window that contains
+/// the whole shadow of the square.
 fn shadow(
     light: &str,
     floor: f64,
@@ -45,7 +45,8 @@ fn shadow(
 
 /// Exponents of the tails of shadows whose profiles have a discontinuous n-th derivative.
 fn tails(photons: u64) -> Claim {
-    // 1/√2, since along its diagonal a square is a convolution of two boxes of this width.
+    // 1/√2, because the profile of a unit square along its diagonal is the convolution of two
+    // boxes of width 1/√2.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
     // Each case has a light, a plane, the half-width of the window, an azimuth, the width of the
@@ -59,7 +60,7 @@ fn tails(photons: u64) -> Claim {
         let most = [f64::from(count) / width, 0.0625 / width];
         let seen = shadow(light, 2.0, place, half, most, photons);
         number(&[(&seen[0], 0), (&seen[1], 0)], &|slices| {
-            // Half-way between its zeros, |sin π w Ω| is one.
+            // Half-way between its zeros, the factor |sin π w Ω| equals one.
             let points: Vec<[f64; 2]> = (0..count)
                 .map(|m| {
                     let rho = (f64::from(m) + 0.5) / width;
@@ -149,8 +150,8 @@ fn narrowed(photons: u64) -> [Claim; 2] {
     ]
 }
 
-/// Measures the share of the power between 15 and 25 /m behind an array that extends 2 m to either
-/// side of its centre, which is `offset` from the central ray.
+/// Measures the fraction of the power between 15 and 25 /m behind an array that extends 2 m to
+/// either side of its centre, which is `offset` from the central ray.
 fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
     let blockers = squares([80, 80], 0.05, "fill: 0.5")
         .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));

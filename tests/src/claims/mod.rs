@@ -17,15 +17,15 @@ const PHOTONS: u64 = 1 << 20;
 const PULL: f64 = 4.0;
 const CHANCE: &str = "1 in 16,000 by chance, of some 60 numbers";
 
-/// A statement, with the result from photons.
+/// A statement of the paper, with the result that photons give for it.
 struct Claim {
     said: &'static str,
-    /// A text that describes the numbers.
+    /// A text that describes the measured numbers.
     shown: String,
     numbers: Vec<ClaimNumber>,
-    /// Checks in addition to agreement of each number with its prediction.
+    /// Checks other than that each number agrees with its prediction.
     checks: Vec<Check>,
-    /// The conclusion: "holds", or which part of the statement holds.
+    /// The conclusion about the statement: "holds", or the part of it that holds.
     holds: &'static str,
 }
 

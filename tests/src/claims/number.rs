@@ -1,4 +1,5 @@
-//! Numbers derived from measured spectra, with errors and predictions by the same estimator.
+//! Numbers derived from measured spectra, each with its standard error and with a prediction by
+//! the same estimator.
 
 use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};
 
@@ -8,7 +9,7 @@ pub(super) struct ClaimNumber {
     pub(super) value: f64,
     /// Standard error of measured minus predicted.
     pub(super) error: f64,
-    /// The prediction by the same estimator.
+    /// The number that the same estimator gives for the predicted spectra.
     pub(super) predicted: f64,
 }
 
@@ -23,7 +24,7 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
-    /// Returns the number in units of `unit`.
+    /// Returns the number and its error divided by `unit`.
     pub(super) fn per(&self, unit: f64) -> Self {
         Self {
             value: self.value / unit,
@@ -44,11 +45,12 @@ impl ClaimNumber {
     }
 }
 
-/// The slices of independent batches: one list for each plane from which a number is computed.
+/// The slices of independent batches, as one list for each plane from which a number is computed.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
 /// Returns a number computed from the mean slices, and its standard error, by the delete-one
-/// jackknife. The bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
+/// jackknife. The jackknife also removes the bias of |S|², which is of the order of the noise
+/// power (Quenouille 1956).
 pub(super) fn jackknife(batches: &Batches, of: &dyn Fn(&[Slices]) -> f64) -> [f64; 2] {
     let count = batches[0].len();
     let sums: Vec<Slices> = batches.iter().map(|each| sum(each)).collect();
@@ -90,7 +92,8 @@ pub(super) fn at(slices: &Slices, k: usize, [rho, nu]: [f64; 2]) -> Complex {
     slices.half[[k, m, n]]
 }
 
-/// Frequencies ρ ≥ 0 and the values on the line ν = 0 of slice `k`.
+/// Returns the frequencies ρ ≥ 0 on the line ν = 0 of slice `k`, each with the value of the
+/// slice.
 pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
     let middle = slices.grid.nu.half;
     let spacing = slices.grid.rho.spacing;
@@ -130,8 +133,8 @@ mod tests {
         let values = [1.0, 3.0, 2.0, 6.0];
         let batches = vec![values.map(batch).to_vec()];
         let [power, _] = jackknife(&batches, &|s| s[0].half[[0, 0, 0]].norm_sqr());
-        // The mean of the products over pairs of different batches: (Σ² − Σ of squares)/(R(R −
-        // 1)).
+        // The expected power is the mean of the products of two different batches: (Σ² − Σ of
+        // squares)/(R(R − 1)).
         assert!((power - (144.0 - 50.0) / 12.0).abs() < 1e-12); // rounding
         let [mean, error] = jackknife(&batches, &|s| s[0].at_zero());
         assert!((mean - 3.0).abs() < 1e-12 && (error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12); // rounding

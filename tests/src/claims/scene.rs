@@ -1,4 +1,4 @@
-//! Small scenes for the statements, traced and predicted.
+//! Small scenes that test the paper's statements, traced and predicted.
 
 use super::number::{Batches, ClaimNumber, jackknife};
 use crate::scenes::{predicted, traced};
@@ -39,8 +39,8 @@ impl ClaimBench<'_> {
     }
 }
 
-/// Returns the text of an array of squares 1 m from the light, without jitter unless `rest`
-/// specifies it.
+/// Returns the scene-file text of an array of squares 1 m from the light; the squares are
+/// jittered only if `rest` specifies a jitter.
 pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     let [x, y] = count;
     format!(
@@ -48,14 +48,14 @@ pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     )
 }
 
-/// Returns a plane with its own window and frequencies.
+/// Returns the scene-file text of a plane with a window and frequencies of its own.
 pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
     format!(
         "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
     )
 }
 
-/// Returns the scene of a text, with a window and settings of the run added.
+/// Reads a scene from a text, to which a window and settings of the run are added.
 ///
 /// # Panics
 /// If the scene is invalid.
@@ -95,7 +95,7 @@ impl SeenScene {
     }
 }
 
-/// Computes a number from several planes, which may belong to different scenes, batch by batch.
+/// Computes a number, batch by batch, from several planes, which may belong to different scenes.
 pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f64) -> ClaimNumber {
     let each = planes.iter();
     let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();

@@ -1,4 +1,5 @@
-//! Statements about surfaces: reciprocity, mirror spheres, curvature, the cosine, lobes, environments.
+//! Statements of the paper about surfaces: reciprocity, mirror spheres, curvature, the cosine,
+//! lobes, environments.
 
 use super::number::{ClaimNumber, at};
 use super::scene::{SeenScene, number, scene};
@@ -55,7 +56,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
 }
 
 /// Measures the light that a glossy plane reflects from one angle to another, divided by the
-/// irradiance, and the same with the angles exchanged. The number is the ratio of the two.
+/// irradiance, for these two angles and for exchanged angles. The number is the ratio of the
+/// reflectance from one angle to another to the reflectance with the angles exchanged.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -161,8 +163,8 @@ fn mirror_sphere(photons: u64) -> Claim {
     }
 }
 
-/// Returns two angles from the direction towards the beam's source: that of the normal where a
-/// photon leaves a sphere of 0.5 m, and that of the photon's direction.
+/// Returns two angles: between the direction towards the beam's source and the normal where a
+/// photon leaves a sphere of 0.5 m, and between that direction and the photon's own.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ray = crossing.ray;
     let (s, t) = (2.0 * ray.x, 2.0 * ray.y);
@@ -257,7 +259,7 @@ fn cosine(photons: u64) -> Claim {
         );
         let scene = scene(&format!("{text}, {planes}"), photons);
         let whole = SeenScene::of(scene.clone());
-        // Replaces cos θ cos φ by cos θ.
+        // Replaces the factor cos θ cos φ of a weight by cos θ.
         let tampered = |mut crossing: Crossing| {
             crossing.weight /= crossing.ray.v.cos();
             crossing
@@ -271,8 +273,8 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // The two spectra are from the same photons with different weights, and their difference has
-    // no prediction.
+    // The two spectra are from the same photons with different weights; no prediction exists for
+    // the difference of these spectra.
     let numbers: Vec<ClaimNumber> = apart
         .iter()
         .map(|n| ClaimNumber {
@@ -346,7 +348,8 @@ fn lobe(photons: u64) -> Claim {
     }
 }
 
-/// Measures a diffuse sphere of curvature k, with a window and frequencies that match its size.
+/// Measures a diffuse sphere of curvature k, with a window and frequencies that match the size of
+/// the sphere.
 fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
     let text = surface(
         light,

@@ -11,7 +11,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
 use etendue_trace::Tracer;
 
-/// The largest size of a fault, and how many times this size is halved.
+/// The largest tried size of a fault, and how many times this size is halved.
 const LARGEST: f64 = 0.01;
 const HALVES: i32 = 10;
 
@@ -64,7 +64,7 @@ const FAULTS: [(&str, SizedFault); 7] = [
     ),
 ];
 
-/// Returns a predictor whose windows are wider by these fractions.
+/// Returns a predictor whose windows are wider than those of the scene by the given fractions.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut wide = plane.clone();
@@ -78,8 +78,8 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
     })
 }
 
-/// Tries faults of 1 %, halved repeatedly, and finds the smallest size that is rejected together
-/// with all larger ones.
+/// Tries a fault of 1 % and repeatedly half its size, and finds the smallest size that is
+/// rejected and whose larger sizes are all rejected too.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
@@ -116,7 +116,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Returns the smallest rejected size.
+/// Returns the smallest size of a fault that the comparison rejects.
 fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes
@@ -133,7 +133,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
         .last()
 }
 
-/// Whether any plane disagrees.
+/// Whether photons and prediction disagree at any plane.
 fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let p_value = |(i, plane): (usize, &VirtualPlane)| {

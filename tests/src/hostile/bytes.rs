@@ -34,7 +34,7 @@ const FLOATS: [f64; 8] = [
 /// Maximum number of bytes added by one mutation.
 const LONGEST: usize = 1 << 16;
 
-/// Applies one to three mutations anywhere.
+/// Applies one to three mutations anywhere in the bytes.
 pub(crate) fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
     for _ in 0..*dice.pick(&[1, 1, 2, 3]) {
         let all = 0..bytes.len();
@@ -42,7 +42,7 @@ pub(crate) fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
     }
 }
 
-/// Applies one to three mutations that begin within `range`.
+/// Applies one to three mutations, each of which begins at a byte within `range`.
 pub(crate) fn mutate_within(bytes: &mut Vec<u8>, range: &Range<usize>, dice: &mut Dice) {
     for _ in 0..*dice.pick(&[1, 1, 2, 3]) {
         let range = range.start.min(bytes.len())..range.end.min(bytes.len());

@@ -1,4 +1,5 @@
-//! One case: its input, the commands that are run on it, and the faults of their outcome.
+//! One case of an attack: its input, the commands that are run on this input, and the faults in
+//! their outcome.
 
 use super::child::{self, Ended, LARGEST, LONGEST};
 use super::folder::{self, Folder};
@@ -25,7 +26,7 @@ impl InputKind {
         Self::Prediction,
     ];
 
-    /// Returns the kind of a case: half of them are scenes.
+    /// Returns the kind of input of a case; half of all cases have scene files as input.
     pub(crate) fn of(case: u64) -> Self {
         match case % 20 {
             0..10 => Self::Scene,
@@ -40,13 +41,13 @@ impl InputKind {
 /// An attack: the input, and the commands run on it.
 #[derive(Debug)]
 pub(crate) struct Attack {
-    /// The input files, as they are before the run.
+    /// The input files, with the content that they have before the command runs.
     pub(crate) files: Folder,
     pub(crate) arguments: Vec<String>,
-    /// A second command, run on the input if the first accepts it.
+    /// A second command, which is run on the input if the first command accepts it.
     pub(crate) then: Option<Vec<String>>,
-    /// The files before the mutation, if a run of these may also be slow; slowness is then not a
-    /// fault.
+    /// The files before the mutation, if a run on these files may also be slow; a slow run on
+    /// mutated files is then not a fault.
     pub(crate) sound: Option<Folder>,
     /// The summary that is expected if the input is accepted; `None` if the summary may differ.
     pub(crate) summary: Option<Vec<u8>>,
@@ -61,12 +62,13 @@ pub(crate) enum HostileFault {
     Abort,
     Slow,
     Large,
-    /// The process wrote something outside the results, or wrote anything although its exit code is
-    /// 2.
+    /// The process wrote a file outside the folder of results, or wrote any file although its
+    /// exit code is 2.
     Wrote,
-    /// The process wrote no message, or one that is long or has control characters.
+    /// The process wrote no error message, or a message that is long or has control characters.
     Message,
-    /// The process accepted a damaged input, and its result is different.
+    /// The process accepted a damaged input, and its result differs from that for the valid
+    /// input.
     Changed,
 }
 
@@ -86,16 +88,16 @@ pub(crate) struct CaseOutcome {
     pub(crate) faults: Vec<HostileFault>,
     pub(crate) seconds: f64,
     pub(crate) peak: u64,
-    /// The command lines and their outcomes, for inspection.
+    /// The command lines of a case and their outcomes, for inspection.
     pub(crate) log: String,
 }
 
-/// The folder of the input, inside the folder of the case.
+/// Name of the input folder, which is inside the folder of the case.
 const WORK: &str = "work";
-/// The only folder for results, inside the folder of the input.
+/// Name of the only folder for results, which is inside the input folder.
 pub(crate) const OUT: &str = "out";
 
-/// Runs a case in a fresh folder within `at`, which is then removed.
+/// Runs a case in a fresh folder within `at`, and then removes the fresh folder.
 pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<CaseOutcome> {
     let place = at.join("case");
     let work = place.join(WORK);
@@ -131,7 +133,7 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Case
     Ok(outcome)
 }
 
-/// Runs one command and records its faults.
+/// Runs one command of a case and records the faults in its outcome.
 fn step(
     program: &Path,
     attack: &Attack,
@@ -165,7 +167,7 @@ fn step(
     Ok(ended)
 }
 
-/// Whether the input before its mutation also takes much of the time limit.
+/// Whether a run on the unmutated input also takes a large part of the time limit.
 fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
     let Some(sound) = &attack.sound else {
         return Ok(false);
@@ -177,13 +179,13 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
     Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
-/// Returns the faults of the process itself.
+/// Returns the faults that the exit code, message, time and memory of the process show.
 fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
     let large = ended.peak > LARGEST;
     let panicked = message.contains("panicked");
-    // A process that this test killed does not count as aborted.
+    // If this test killed the process, the process does not count as aborted.
     let aborted = ended.signal.is_some() && !slow && !large;
     let aborted = aborted || message.contains("memory allocation of");
     let known = matches!(ended.code, None | Some(0..=4));
@@ -236,11 +238,12 @@ fn is_syntax(stderr: &[u8]) -> bool {
     message.contains(": line ") && message.contains(", column ")
 }
 
-/// Maximum number of frequencies of a scene that is run. A scene that is slow because of its size
-/// is not a fault.
+/// Maximum number of frequencies of a scene that is run. If a scene is slow only because of its
+/// size, slowness is not a fault.
 const MOST_FREQUENCIES: u64 = 200_000;
 
-/// Whether `check` reports few enough frequencies, as azimuths x rho x nu at each plane.
+/// Whether the output of `check`, which states azimuths x rho x nu for each plane, shows that the
+/// scene has few enough frequencies to be run.
 fn is_small(checked: &[u8]) -> bool {
     let text = String::from_utf8_lossy(checked);
     let planes = text.lines().filter(|line| line.contains("  measured at "));

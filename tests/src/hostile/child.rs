@@ -16,7 +16,7 @@ pub(crate) const LARGEST: u64 = 1 << 30;
 /// Memory at which a child is killed to protect the machine, bytes.
 const DANGEROUS: u64 = 4 << 30;
 
-/// The time limits of a child.
+/// The limits of processor time and wall-clock time for a child process.
 #[derive(Clone, Copy)]
 pub(crate) struct Limit {
     /// Wall-clock time.
@@ -40,8 +40,8 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// Returns the path of the program to attack: the given one, or `etendue` in the folder of this
-/// program.
+/// Returns the path of the program to attack: the given path, or else that of `etendue` in the
+/// folder of this program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),
@@ -71,7 +71,7 @@ pub(crate) fn call(
     call_within(limit, program, folder, arguments, scratch)
 }
 
-/// Runs a child as [`call`] does, but with this time limit.
+/// Runs a child process as [`call`] does, but with the given time limit.
 pub(crate) fn call_within(
     limit: Limit,
     program: &Path,
@@ -102,8 +102,8 @@ pub(crate) fn call_within(
     })
 }
 
-/// Waits for the child to end, or kills it; returns the peak of its memory, and whether it took too
-/// long.
+/// Waits until the child process ends, or kills it at a limit; returns the peak memory of the
+/// process, and whether it took too long.
 fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bool)> {
     let status = format!("/proc/{}/status", child.id());
     let stat = format!("/proc/{}/stat", child.id());
@@ -134,12 +134,12 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// Returns the processor time in user and kernel mode.
+/// Returns the processor time of a process, in user and kernel mode together.
 fn work_of(stat: &str) -> Option<Duration> {
-    // The program name, in parentheses, may contain spaces.
+    // In this line of /proc, the program name in parentheses may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(11).take(2);
     let ticks: u64 = ticks.filter_map(|field| field.parse::<u64>().ok()).sum();
-    // On any machine, Linux states these times in hundredths of a second.
+    // On any machine, Linux states processor times in hundredths of a second.
     Some(Duration::from_millis(10 * ticks))
 }

@@ -1,9 +1,9 @@
-//! Random choices of one case. Each choice is a function of the seed, the case and the number of
-//! previous choices.
+//! Random choices that define one case of an attack. Each random choice is a function of the
+//! seed, the number of the case, and the number of previous choices.
 
 use etendue_transform::random::{self, Stream};
 
-/// The random numbers of one case.
+/// The random numbers for one case of an attack.
 #[derive(Debug)]
 pub(crate) struct Dice {
     seed: u64,
@@ -35,12 +35,13 @@ impl Dice {
         self.below(n) == 0
     }
 
-    /// Returns a random element; the list must not be empty.
+    /// Returns a random element of a list, which must not be empty.
     pub(crate) fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len())]
     }
 
-    /// Returns a length up to `most`; all orders of magnitude are about equally likely.
+    /// Returns a random length up to `most`, of which all orders of magnitude are about equally
+    /// likely.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
         let reach = 1_usize << self.below(doublings as usize + 1).min(62);

@@ -5,11 +5,11 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// The bytes of each file by its path relative to the folder, with `/`; a folder has an entry
-/// without bytes.
+/// A map from paths to the bytes of files, where paths are relative to the folder and use `/`;
+/// the entry of a subfolder has no bytes.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
-/// Writes files and their folders.
+/// Writes files, and creates the folders that contain them.
 pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
     fs::create_dir_all(at)?;
     for (name, bytes) in files {
@@ -57,7 +57,7 @@ pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str
     names.filter(differs).map(String::as_str).collect()
 }
 
-/// Returns the files with all their parent folders.
+/// Returns the map of files with entries added for all parent folders.
 pub(crate) fn with_parents(files: &Folder) -> Folder {
     let mut all = files.clone();
     for name in files.keys() {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// The text that precedes the hash of an index; the hash covers all bytes before this text.
 pub(crate) const TAIL: &str = ",\n  \"index_hash\": \"";
 
-/// Tokens of JSON, and of the indices.
+/// Tokens of JSON in general, and of the indices of results folders.
 const WORDS: [&str; 16] = [
     "null",
     "true",
@@ -27,23 +27,24 @@ const WORDS: [&str; 16] = [
     "0.1.1",
 ];
 
-/// Returns the text of an index, mutated.
+/// Returns a mutated text of an index.
 pub(crate) fn mutated(index: &str, dice: &mut Dice) -> Vec<u8> {
     text::mutated(index, &WORDS, dice)
 }
 
-/// Returns the index with one value changed, and a matching hash.
+/// Returns the index after a change of one value, with a hash that matches the changed text.
 pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     change(&mut tree, dice);
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// Returns the index with another scene file, and matching hashes.
+/// Returns the index after its scene file is replaced, with hashes that match.
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
-    // If the program could have written this scene, its hash is computed as the program does.
+    // If the program could have written this scene, the hash of the scene is computed as the
+    // program computes it.
     if let Ok(file) = serde_json::from_value::<etendue_scene::SceneFile>(scene.clone()) {
         let text = serde_json::to_vec(&file).ok()?;
         tree["scene_hash"] = json!(blake3::hash(&text).to_hex().as_str());
@@ -51,7 +52,7 @@ pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// Returns the scene file in an index, with one value changed.
+/// Returns the scene file that an index contains, after a change of one value in the scene.
 pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     let tree: Value = serde_json::from_str(index).ok()?;
     let mut scene = tree["scene_file"].clone();
@@ -59,14 +60,14 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// Returns the index with the hash of the bytes `old` replaced by that of the bytes `new`. The
-/// index's own hash is updated to match.
+/// Returns the index after the hash of the bytes `old` is replaced by the hash of the bytes
+/// `new`. The index's own hash is updated to match.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))
 }
 
-/// Returns the index with its hash corrected, if it has a hash.
+/// Returns the index with a correct hash of its own, if the index has such a hash.
 fn sealed(index: &str) -> String {
     match index.find(TAIL) {
         Some(at) => with_own_hash(&index[..at]),
@@ -91,7 +92,7 @@ fn printed(tree: &Value, seal: bool) -> String {
     }
 }
 
-/// Changes a random value in the tree below this one.
+/// Changes a random value in the JSON tree below the given value.
 fn change(value: &mut Value, dice: &mut Dice) {
     let here = dice.one_in(8);
     match value {

@@ -1,5 +1,5 @@
-//! Mutated meshes: Mutated meshes, as a blocker and as a curved mirror: OBJ, and PLY as text and in
-//! both byte orders.
+//! Mutated meshes: Mutated mesh files, used as a blocker and as a curved mirror: The formats are
+//! OBJ, and PLY as text and as binary in both byte orders.
 
 use super::case::Attack;
 use super::dice::Dice;
@@ -8,7 +8,7 @@ use super::scenes::{SCENE, on_scene};
 use super::{bytes, text};
 use etendue_scene::{Fault, Mesh};
 
-/// Tokens of both formats.
+/// Tokens of the formats OBJ and PLY.
 const WORDS: [&str; 26] = [
     "v",
     "f",
@@ -38,7 +38,7 @@ const WORDS: [&str; 26] = [
     "end_header",
 ];
 
-/// A blocker, away from the centre of the light.
+/// A mesh as blocker, away from the centre of the light.
 const BLOCKER: &str = r#"(
     light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
     blockers: [Mesh(name: "mesh", center: (0.05, 0, 1), mesh: File("NAME"), scale: 0.2)],
@@ -49,7 +49,8 @@ const BLOCKER: &str = r#"(
     frequencies: (azimuths: 2, rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// A mirror, whose curvatures are fitted to the vertices around the hit.
+/// A mesh as mirror, whose curvatures are fitted to the vertices around the hit of the central
+/// ray.
 const MIRROR: &str = r#"(
     light: Projector(center: (-0.644217687, 0, 0.764842187), image: (width: (0.12, 0.12))),
     surfaces: [Mesh(name: "mesh", center: (0, 0, 0), mesh: File("NAME"), event: Mirror)],
@@ -59,7 +60,7 @@ const MIRROR: &str = r#"(
     frequencies: (azimuths: 2, rho: (max: 10), nu: (max: 10)),
 )"#;
 
-/// A hand-written file that uses most of the format.
+/// A hand-written OBJ file that uses most features of the format.
 const OBJ: &str = "# made by hand\nmtllib none.mtl\no tetra\nv 1 1 1 0.5 0.5 0.5\nv -1. -1 1\n\
     v -1 1 -1 \nv +1 -1e0 -1\nvn 0 0 1\nvt 0.5 .5\ng one two\nusemtl red\ns 1\nf 1/1/1 2/1/1 3//1\n\
     f 1 4 \\\n 2\ng\nf -4 -2 -1\nf 2 4 3\nl 1 2 3\np 1\nv 2 2 2\nv 2 3 2\nv 3 3 2\nv 3 2 2\n\
@@ -72,7 +73,7 @@ const PLY: &str = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info n
     255 1 1 1\r\n0 -1 -1 1\r\n0 -1 1 -1\r\n7 1 -1 -1\r\n2 0.5 .5\r\n0\r\n\
     3 0 1 2 0\r\n3 0 3 1 -1\r\n3 0 2 3 5\r\n3 1 3 2 0\r\n";
 
-/// Names and contents of valid meshes.
+/// File names and contents of valid meshes.
 pub(crate) type Meshes = Vec<(&'static str, Vec<u8>)>;
 
 /// Returns the meshes for a blocker and for a mirror.
@@ -85,7 +86,7 @@ pub(crate) fn seeds() -> Result<[Meshes; 2], Fault> {
     Ok([blockers, forms(&bowl)])
 }
 
-/// Returns a mesh in every format.
+/// Returns files that contain the same mesh, one for each format.
 fn forms(mesh: &Mesh) -> Meshes {
     let vertices = mesh.vertices().iter().map(|v| v.to_array());
     let mut obj = String::new();

@@ -1,7 +1,8 @@
 //! Attacks on the program from outside: it runs as a child process and is given mutated input of
 //! every kind.
 //!
-//! A case is a function of the seed and its number, so that it can be repeated alone.
+//! A case is a function of the seed and the number of the case, so that each case can be repeated
+//! alone.
 
 mod bytes;
 mod case;
@@ -28,7 +29,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use table::Tallies;
 
-/// Options of the attack.
+/// Options of the attack on the program.
 #[derive(Debug, clap::Args)]
 pub(crate) struct HostileOptions {
     /// Number of cases.
@@ -40,13 +41,13 @@ pub(crate) struct HostileOptions {
     /// Run only this case, and keep it whatever its outcome.
     #[arg(long)]
     case: Option<u64>,
-    /// Only check scenes, and run none.
+    /// Only run `check` on scenes, without tracing them.
     #[arg(long)]
     quick: bool,
-    /// Number of parallel cases [default: one for each core].
+    /// Number of cases that run in parallel [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
-    /// Folder for the inputs and command lines of bad cases.
+    /// Folder for the inputs and command lines of cases with a fault.
     #[arg(long, default_value = "target/hostile")]
     keep: PathBuf,
     /// Program to attack [default: etendue in the same folder].

@@ -1,4 +1,4 @@
-//! Mutated NPZ files: their arrays, array headers, and the structure of the archive.
+//! Mutated NPZ files: mutations of arrays, of array headers, and of the archive's structure.
 
 use super::bytes;
 use super::dice::Dice;
@@ -25,7 +25,7 @@ const WORDS: [&str; 14] = [
     "'shape'",
 ];
 
-/// Returns the file with a mutated array or archive.
+/// Returns the NPZ file after a mutation of one of its arrays or of the archive.
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
     if dice.one_in(4) {
         let mut new = npz.to_vec();
@@ -74,7 +74,7 @@ fn archive(entries: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     Ok(writer.finish()?.into_inner())
 }
 
-/// Returns the offset of an array's numbers.
+/// Returns the byte offset at which the numbers of an array begin.
 fn data(npy: &[u8]) -> usize {
     let length = npy
         .get(8..10)
@@ -82,7 +82,7 @@ fn data(npy: &[u8]) -> usize {
     (10 + usize::from(length)).min(npy.len())
 }
 
-/// Replaces the header, with the right or a wrong length.
+/// Replaces the header of an array; the stated length of the new header may be right or wrong.
 fn change_header(npy: &mut Vec<u8>, dice: &mut Dice) {
     let end = data(npy);
     let old = String::from_utf8_lossy(npy.get(10..end).unwrap_or_default()).into_owned();

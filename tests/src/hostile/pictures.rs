@@ -1,4 +1,4 @@
-//! Mutated pictures: variants of OpenEXR and PNG, as an environment and as a texture.
+//! Mutated pictures in variants of OpenEXR and PNG, used as an environment and as a texture.
 
 use super::bytes;
 use super::case::Attack;
@@ -21,7 +21,7 @@ const SKY: &str = r#"(
     frequencies: (azimuths: 2, rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// A picture on a glossy sphere.
+/// A scene with a picture as texture of a glossy sphere.
 const TEXTURE: &str = r#"(
     light: Projector(center: (0, 0, 0), image: (width: (0.15, 0.15))),
     surfaces: [Smooth(name: "sphere", center: (0, 0, 1), facing: (0, 0, -1), form: Sphere(0.5),
@@ -136,7 +136,8 @@ fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
 pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     let format = dice.below(2);
     let mut picture = dice.pick(&seeds[format]).clone();
-    // Half of the mutations stay in the metadata at the start, a better target than the pixels.
+    // Half of the mutations stay within the metadata at the start of the file, where faults are
+    // more likely than among pixels.
     let head = 0..picture.len().min(if format == 0 { 400 } else { 60 });
     if dice.one_in(2) {
         bytes::mutate(&mut picture, dice);

@@ -1,4 +1,4 @@
-//! Mutated scene files, and the scenes of the repository they come from.
+//! Mutated scene files, and the scenes of the repository from which they are derived.
 
 use super::case::Attack;
 use super::dice::Dice;
@@ -77,8 +77,8 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// Returns an attack on the scene file among these files. The scene is always checked; in one of
-/// eight cases it is also run, swept or drawn as a figure.
+/// Returns an attack on the scene file in the given folder. The program always checks the scene,
+/// and in one of eight cases also runs, sweeps or draws it.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[
@@ -87,7 +87,7 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
-    // Two azimuths suffice to test the values of fields.
+    // Spectra along two azimuths suffice to test how the program treats values of fields.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,

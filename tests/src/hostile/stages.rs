@@ -1,8 +1,9 @@
-//! Mutated stage folders: parts of a measurement and predictions, for `compare`.
+//! Mutated folders of stages (parts of a measurement, and predictions) that the command `compare`
+//! reads.
 //!
-//! The program must refuse a change whose hashes do not match, or the change must have no effect.
-//! The program cannot detect a change whose hashes match, but such a change tests the readers that
-//! follow the check of hashes.
+//! If a change makes a hash wrong, the program must refuse the folder, or the change must have no
+//! effect on the result. If all hashes match after a change, the program cannot detect the
+//! change, but the test reaches the code that reads files after the check of hashes.
 
 use super::case::{Attack, OUT};
 use super::child;
@@ -26,8 +27,9 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// Returns the text of a second scene, which has a mesh from a file besides. For this scene
-/// another tracer replaces theory, and the folders of its stages contain copies of the mesh.
+/// Returns the text of a second scene, which also contains a mesh from a file. For the scene with
+/// a mesh, backward rays replace theory, and the folders of stages contain copies of the mesh
+/// file.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
@@ -40,14 +42,14 @@ pub(crate) const TETRA: &str =
 
 const COMPARE: &str = "compare --measured a b --predicted p --out out --quiet --threads 1";
 
-/// Valid folders of both stages, and the resulting summary.
+/// Valid folders of the measurement and of the prediction, and the summary of their comparison.
 #[derive(Debug)]
 pub(crate) struct Seed {
     files: Folder,
     summary: Vec<u8>,
 }
 
-/// Measures and predicts both scenes in `at`.
+/// Measures and predicts both scenes, in subfolders of `at`.
 pub(crate) fn seeds(program: &Path, at: &Path) -> io::Result<Vec<Seed>> {
     let scenes = [SMALL.to_owned(), with_mesh()];
     scenes
@@ -105,7 +107,8 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // If the hashes match, the summary may differ, unless the mutation has changed nothing.
+    // If all hashes match, the summary may differ from that of valid folders, unless the mutation
+    // has changed nothing.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,
@@ -116,7 +119,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
     })
 }
 
-/// Changes an index; returns whether its own hash matches.
+/// Changes an index, and returns whether the index's own hash matches its text.
 fn change_index(files: &mut Folder, index: &str, dice: &mut Dice) -> bool {
     let old = text(files, index);
     if dice.one_in(3)
@@ -130,7 +133,7 @@ fn change_index(files: &mut Folder, index: &str, dice: &mut Dice) -> bool {
     false
 }
 
-/// Makes the same change to the scene in all indices, with matching hashes.
+/// Makes the same change to the scene in all indices, and updates their hashes to match.
 fn change_scene(files: &mut Folder, dice: &mut Dice) -> bool {
     let indices = [
         "a/measurement.json",
@@ -148,7 +151,8 @@ fn change_scene(files: &mut Folder, dice: &mut Dice) -> bool {
     true
 }
 
-/// Changes or removes a file other than the index; returns whether its hash matches.
+/// Changes or removes a file other than the index, and returns whether the hash in the index
+/// matches this file.
 fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) -> io::Result<bool> {
     let own = |(name, bytes): &(&String, &Option<Vec<u8>>)| {
         bytes.is_some() && name.starts_with(stage) && *name != index
@@ -163,7 +167,7 @@ fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) ->
             return Ok(false);
         }
         2 => Vec::new(),
-        // The content of another file.
+        // The replacement for a file is the content of another file.
         3 => files
             .get(dice.pick(&names))
             .cloned()

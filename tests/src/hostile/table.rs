@@ -1,10 +1,10 @@
-//! The outcomes of all cases: one row for each kind of input.
+//! The outcomes of all cases, as a table with one row for each kind of input.
 
 use super::case::{CaseOutcome, HostileFault, InputKind, Reached};
 use crate::report::{Check, ReportSection, Row};
 use std::collections::BTreeMap;
 
-/// The cases of one kind.
+/// The numbers of cases with one kind of input, by outcome.
 #[derive(Clone, Debug, Default)]
 struct CaseTally {
     cases: u64,
@@ -14,11 +14,11 @@ struct CaseTally {
     peak: u64,
 }
 
-/// The cases of every kind.
+/// The numbers of cases, by kind of input.
 #[derive(Debug, Default)]
 pub(crate) struct Tallies {
     kinds: [CaseTally; InputKind::ALL.len()],
-    /// Descriptions of the cases with faults, by number.
+    /// Descriptions of the cases with faults, by the number of the case.
     bad: BTreeMap<u64, String>,
 }
 
@@ -90,7 +90,7 @@ fn row(kind: InputKind, tally: &CaseTally) -> Row {
         tally.cases.to_string(),
         share(reached(Reached::Syntax)),
         share(reached(Reached::Values)),
-        // The program also accepted the cases that it ran.
+        // A case that the program ran also counts as accepted.
         share(reached(Reached::Sound) + reached(Reached::Ran)),
         share(reached(Reached::Ran)),
     ];

@@ -47,8 +47,8 @@ const NAMES: [&str; 14] = [
     "ä€𝄞",
 ];
 
-/// Returns the text with one to three mutations: tokens are replaced, removed, doubled or swapped,
-/// blocks are repeated, or larger changes are made. `words` are tokens of the format.
+/// Returns the text after one to three mutations, which replace, remove, double or swap tokens,
+/// repeat blocks, or make larger changes. The tokens `words` belong to the format of the text.
 pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     let mut tokens = split(text);
     let mut raw = false;
@@ -103,7 +103,7 @@ fn replace_number(tokens: &mut [String], dice: &mut Dice, new: fn(&str, &mut Dic
     }
 }
 
-/// Replaces a quoted name.
+/// Replaces a name in quotes by another name.
 fn replace_name(tokens: &mut Vec<String>, dice: &mut Dice) {
     let quotes: Vec<usize> = (0..tokens.len()).filter(|i| tokens[*i] == "\"").collect();
     if let [.., _] = quotes[..] {
@@ -127,7 +127,7 @@ fn repeat_block(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     tokens.splice(at..at, copies);
 }
 
-/// Inserts opening brackets, with or without closing ones.
+/// Inserts opening brackets, with or without the matching closing brackets.
 fn nest(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     let depth = dice.length(100_000);
     let [open, close] = *dice.pick(&[["(", ")"], ["[", "]"], ["{", "}"], ["Some(", ")"]]);

@@ -7,10 +7,10 @@ use serde_json::Value;
 /// The state of a folder according to its index.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum IndexState {
-    /// The folder has no index, so it does not claim to hold a result.
+    /// The folder has no index, and so does not claim to contain a result.
     Absent,
     Whole,
-    /// The folder claims to hold a result, but is broken.
+    /// The folder has an index, and so claims to contain a result, but a file or hash is wrong.
     Broken(String),
 }
 
@@ -51,7 +51,7 @@ pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>>
     pairs.map(pair).collect()
 }
 
-/// The fault of an index without a hash of its own; this fault is counted separately.
+/// The fault that an index lacks a hash of its own; this fault is counted separately.
 pub(super) const NO_HASH: &str = "has no hash of its own";
 
 /// The last field of an index is the hash of all bytes before it.

@@ -1,4 +1,4 @@
-//! A nearly full disk: a small tmpfs, or a limit on file sizes.
+//! A simulated full disk: a small tmpfs, or a limit on file sizes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,8 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// Returns the mount of a tmpfs if this machine allows it, else the limit of the shell.
+    /// Returns the mount of a tmpfs if this machine allows mounts, else the shell's limit on file
+    /// sizes.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);
@@ -26,12 +27,12 @@ impl FullDisk {
     }
 }
 
-/// A small disk, unmounted when dropped.
+/// A mounted small tmpfs, which is unmounted when the value is dropped.
 #[derive(Debug)]
 pub(super) struct Mount(PathBuf);
 
 impl Mount {
-    /// Mounts a disk of this many bytes.
+    /// Mounts a tmpfs with the given number of bytes.
     pub(super) fn new(at: &Path, size: u64) -> io::Result<Self> {
         let options = format!("size={size}");
         let mut command = Command::new("mount");
@@ -51,7 +52,7 @@ impl Mount {
 
 impl Drop for Mount {
     fn drop(&mut self) {
-        // `drop` cannot report an error.
+        // The function `drop` cannot report an error, so a failure to unmount is ignored.
         let _ = succeeds(Command::new("umount").arg("-l").arg(&self.0));
     }
 }

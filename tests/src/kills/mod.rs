@@ -1,5 +1,5 @@
-//! Kills at random moments, two writers at once, and full disks. Every disturbance must leave a
-//! complete result or no result.
+//! Attacks on commands that write results: kills at random moments, two writers at once, and full
+//! disks. After every such disturbance, a folder must contain a complete result or no result.
 
 mod check;
 mod disk;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use task::Verb;
 use trial::{Finding, KillTrouble, TrialBench};
 
-/// Options of the trials.
+/// Options of the trials with disturbed commands.
 #[derive(Debug, clap::Args)]
 pub(crate) struct KillOptions {
     /// Number of trials.

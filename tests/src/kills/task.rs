@@ -1,5 +1,5 @@
-//! The commands to kill, and the folder of each, which contains an earlier result and files of the
-//! user.
+//! The commands that are killed; each writes into a folder that contains an earlier result and
+//! files of the user.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
@@ -41,7 +41,7 @@ impl Verb {
         }
     }
 
-    /// Returns the command line for a seed; another seed gives another result.
+    /// Returns the command line for a seed; commands with different seeds give different results.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -60,23 +60,23 @@ impl Verb {
     }
 }
 
-/// The seed of the earlier result.
+/// The seed of the result that a folder contains before the trial.
 pub(super) const EARLIER: u64 = 1;
 
-/// A command, the previous content of its folder, and its duration.
+/// A command, the content of its folder before the trial, and the duration of an undisturbed run.
 #[derive(Debug)]
 pub(super) struct KillTask {
     pub(super) verb: Verb,
-    /// The earlier result and the user's files, in `out`.
+    /// The files in `out` before the trial: the earlier result and the user's files.
     pub(super) before: Folder,
     /// The user's files in `out`.
     pub(super) foreign: Folder,
-    /// The inputs of `compare`.
+    /// The input files of the command `compare`.
     pub(super) inputs: Folder,
     pub(super) takes: Duration,
 }
 
-/// Makes all tasks, with earlier results of this program.
+/// Makes all tasks; the tested program writes their earlier results.
 pub(super) fn tasks(program: &Path, at: &Path) -> io::Result<Vec<KillTask>> {
     let place = at.join("tasks");
     folder::write(&place.join("out"), &users())?;
@@ -135,7 +135,8 @@ fn task(
     })
 }
 
-/// Returns the scene, in the folder of its results, and its mesh.
+/// Returns the scene file, as placed in the folder of its results, and the mesh that the scene
+/// uses.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
     let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];

@@ -1,4 +1,4 @@
-//! One trial: a command starts in a folder and is disturbed, and then the folder is checked.
+//! One trial: it starts a command in a folder, disturbs the command, and then checks the folder.
 
 use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
@@ -25,14 +25,15 @@ pub(super) enum KillTrouble {
 pub(super) enum Finding {
     TwoWriters,
     FullDisk,
-    /// The index is still the earlier one (`Before`), missing (`Between`) or new (`After`).
+    /// The index of the folder is that of the earlier result (`Before`), missing (`Between`) or
+    /// new (`After`).
     Before,
     Between,
     After,
     Whole,
     /// A writer was refused because the other one was writing.
     Refused,
-    // `Broken` and all later findings are faults.
+    // The finding `Broken` and all findings listed after `Broken` are faults.
     Broken,
     NoHash,
     Lost,
@@ -55,7 +56,7 @@ impl Finding {
 /// The findings of a trial, each with a text that describes it if it is a fault.
 pub(super) type Findings = Vec<(Finding, String)>;
 
-/// A folder for trials, and the tested program.
+/// The folder in which trials run, and the path of the tested program.
 #[derive(Debug)]
 pub(super) struct TrialBench<'a> {
     pub(super) program: &'a Path,
@@ -63,7 +64,7 @@ pub(super) struct TrialBench<'a> {
 }
 
 impl TrialBench<'_> {
-    /// Runs a trial in a fresh folder, which is then removed.
+    /// Runs a trial in a fresh folder, and then removes this folder.
     pub(super) fn trial(
         &self,
         task: &KillTask,
@@ -99,7 +100,8 @@ impl TrialBench<'_> {
         Ok(findings)
     }
 
-    /// Starts one or two writers, and kills the first at some moment or leaves them alone.
+    /// Starts one or two writers, and either kills the first writer at a random moment or
+    /// disturbs none.
     fn disturbed(
         &self,
         task: &KillTask,
@@ -157,7 +159,8 @@ impl TrialBench<'_> {
             .spawn()
     }
 
-    /// An ordinary run must succeed, and leave nothing but its result and the user's files.
+    /// An undisturbed run must succeed, and afterwards the folder must contain only the result
+    /// and the user's files.
     fn next(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let ended = child::call(self.program, &place, &task.verb.arguments(5), self.at)?;
@@ -176,8 +179,8 @@ impl TrialBench<'_> {
         let own = [task.verb.index(), "timing.json"];
         let belongs = |name: &str| {
             own.contains(&name)
-                // Finished points of a killed sweep remain for the next sweep, each as a separate
-                // result.
+                // The finished points of a killed sweep remain in the folder as separate results,
+                // which the next sweep uses.
                 || (task.verb == Verb::Sweep && name.starts_with("points/"))
                 || task.foreign.contains_key(name)
                 || listed.iter().any(|(known, _)| known == name)
@@ -191,7 +194,8 @@ impl TrialBench<'_> {
         Ok(())
     }
 
-    /// A result that the user has edited is protected: the command is refused and changes nothing.
+    /// If the user has edited a result, the result is protected: the command is refused and
+    /// changes nothing.
     fn edited(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let out = place.join("out");
@@ -215,14 +219,15 @@ impl TrialBench<'_> {
     }
 }
 
-/// Whether this file is a remnant of a killed writer. Remnants in a point of a sweep are allowed:
-/// they are removed when the point is run again.
+/// Whether this file is a remnant of a killed writer. Remnants of a killed writer may stay in the
+/// folder of a sweep's point, because they are removed when the point is run again.
 fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point
 }
 
-/// Size of a disk that holds the existing files and a random part of the new files.
+/// Returns the size of a disk with room for the existing files and for a random part of the new
+/// files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);
@@ -231,7 +236,7 @@ fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     4096 * (there + room) as u64
 }
 
-/// Kills a child, unless it has ended.
+/// Kills a child process, unless the process has ended.
 fn end(child: &mut Child, signal: &str) -> io::Result<()> {
     if signal == "KILL" {
         return child.kill();
@@ -241,7 +246,8 @@ fn end(child: &mut Child, signal: &str) -> io::Result<()> {
     kill.stderr(Stdio::null()).status().map(drop)
 }
 
-/// Waits for a child; returns its exit code, or `None` if it was killed or has hung.
+/// Waits for a child process, and returns its exit code, or `None` if the process was killed or
+/// has hung.
 fn ended(child: &mut Child) -> io::Result<Option<i32>> {
     let start = Instant::now();
     loop {
@@ -255,7 +261,7 @@ fn ended(child: &mut Child) -> io::Result<Option<i32>> {
     }
 }
 
-/// Checks the index, its files and the user's files.
+/// Checks the index of a folder, the files that the index lists, and the user's files.
 fn judge(task: &KillTask, files: &Folder, when: &str, findings: &mut Findings) {
     match check::state(files, task.verb.index()) {
         IndexState::Absent => (),

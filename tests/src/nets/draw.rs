@@ -1,18 +1,18 @@
-//! Generator of random scenes from the features of scene files, as text.
+//! Generator of random scenes, as the texts of scene files that use all features.
 //!
-//! A scene is a function of its number. Sizes are in metres and slopes are tangents, as in any
-//! scene file.
+//! Each scene is a function of the number of the scene. Sizes are in metres and slopes are
+//! tangents, as in any scene file.
 
 use etendue_transform::random::{self, Stream};
 
-/// The elements between light and plane.
+/// The kind of a scene: the elements between its light and its plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockerKind {
     /// A plane perpendicular to the central ray, behind masks.
     Across,
-    /// A plane as in `Across`, with a point light.
+    /// A plane as in `Across`, but lit by a point light.
     PointAcross,
-    /// Irradiance at a receiver, with its cosine.
+    /// Irradiance at a receiver, including the cosine of incidence.
     Cosine,
     /// Light that a diffuse receiver reflects.
     Diffuse,
@@ -24,7 +24,7 @@ pub(super) enum BlockerKind {
     Refraction,
     /// A plane behind a thin lens.
     Lens,
-    /// A projector or a beam in place of the light in a scene of another kind.
+    /// A scene of another kind whose light is replaced by a projector or a beam.
     Picture,
     /// Light that a BRDF reflects.
     Brdf,
@@ -33,7 +33,8 @@ pub(super) enum BlockerKind {
 }
 
 impl BlockerKind {
-    /// The number of scenes of each kind: 130 with a closed form, 70 without.
+    /// The number of scenes of each kind: 130 for kinds with a closed form, and 70 for kinds
+    /// without.
     pub(super) const ALL: [(Self, usize); 11] = [
         (Self::Across, 40),
         (Self::PointAcross, 20),
@@ -64,7 +65,7 @@ impl BlockerKind {
         }
     }
 
-    /// Whether a closed form exists with which the prediction by nets is compared.
+    /// Whether a closed form exists with which the nets' prediction is compared.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,
@@ -73,13 +74,14 @@ impl BlockerKind {
     }
 }
 
-/// Random numbers of one scene, in order of use.
+/// The random numbers for one scene, in the order in which they are used.
 pub(super) struct SceneDice {
     index: u64,
     next: u32,
 }
 
-/// The seed of all scenes. This seed was fixed in advance, and not chosen by its results.
+/// The seed of all scenes. This seed was fixed in advance, and not chosen by the results that it
+/// gives.
 const SEED: u64 = 1;
 
 impl SceneDice {
@@ -109,7 +111,7 @@ pub(super) fn scene(kind: BlockerKind, dice: &mut SceneDice) -> String {
         1 => format!("(x: Gaussian(width: {x}, cut: {x}), u: Hann({u}))"),
         _ => format!("(x: Hann({x}), u: Hann({u}))"),
     };
-    // Five steps of each frequency.
+    // The frequencies of a plane are five steps along each axis.
     let [rho, nu] = [x, u].map(|half| 2.4 / half);
     let frequencies = format!("(azimuths: 2, rho: (max: {rho}), nu: (max: {nu}))");
     let light = light(kind, dice);
@@ -161,8 +163,9 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
     }
 }
 
-/// Up to three masks before z = 0.9. Scenes of the kinds `Picture` and `PointAcross` have at least
-/// one opaque mask, because otherwise a quadrature rule predicts them in place of nets.
+/// Draws up to three masks between the light and z = 0.9. Scenes of the kinds `Picture` and
+/// `PointAcross` have at least one opaque mask, because otherwise a quadrature rule predicts them
+/// in place of nets.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();
@@ -193,7 +196,7 @@ fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     layers.join(", ")
 }
 
-/// One to four rectangles or discs, in the cells of a board of two by two.
+/// Draws one to four rectangles or discs, each in its own cell of a two-by-two grid.
 fn shapes(dice: &mut SceneDice, square: bool) -> String {
     let pitch = dice.between(0.1, 0.35);
     let count = 1 + dice.of(4);
@@ -210,7 +213,7 @@ fn shapes(dice: &mut SceneDice, square: bool) -> String {
     shapes.join(", ")
 }
 
-/// Returns a floor, its name, and a plane at it.
+/// Returns a floor, the name of the floor, and a plane at the floor.
 fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let z = dice.between(1.1, 2.0);
     let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
@@ -227,7 +230,7 @@ fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, S
     (floor, "floor", format!("(name: \"plane\", {plane})"))
 }
 
-/// Returns a smooth surface, its name, and a plane behind it.
+/// Returns a smooth surface, the name of the surface, and a plane behind the surface.
 fn smooth(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let angle = dice.between(0.05, 0.7);
     let event = match kind {

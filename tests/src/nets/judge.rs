@@ -1,4 +1,5 @@
-//! Tables of the deviations of random scenes in units of their stated errors.
+//! Tables of the deviations of predictions from the truth over random scenes, in units of the
+//! stated errors.
 
 use super::draw::BlockerKind;
 use super::scene::{Measured, SceneOutcome};
@@ -8,17 +9,18 @@ use crate::statistics::{mean, uniformity};
 
 /// Permitted deviation of fractions and means, in standard errors.
 const BORNE: f64 = 3.0;
-/// Maximum permitted L2 ratio. If a prediction were a single real number, 3·10⁻⁵ of all scenes
-/// would exceed it.
+/// Maximum permitted L2 ratio. If a prediction were a single real number, a fraction 3·10⁻⁵ of
+/// all scenes would exceed this maximum.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
 /// The fractions of Student's t with 31 degrees of freedom whose magnitude is above 1, 2 and 3.
 const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
-/// Number of scenes listed by largest ratio.
+/// Number of scenes with the largest ratios that are listed.
 const WORST: usize = 12;
 
-/// Returns the expected fraction of complex numbers whose magnitude is above a distance.
+/// Returns the expected fraction of complex deviations whose magnitude, in stated errors, exceeds
+/// `distance`.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
@@ -45,10 +47,11 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
     sections
 }
 
-/// Whether a kind of scene belongs to a group.
+/// A function that returns whether a kind of scene belongs to a group.
 type Belongs = fn(BlockerKind) -> bool;
 
-/// Returns the fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
+/// Returns the section on the fractions of deviations beyond 1, 2 and 3 stated errors, after the
+/// errors are multiplied by `scale`.
 fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
@@ -98,7 +101,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     }
 }
 
-/// Returns the fractions for a group of scenes.
+/// Returns the table row with the fractions for one group of scenes.
 fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let cells = vec![name.to_owned(), of_group.len().to_string()];
     let mut row = Row::new(cells, Vec::new());
@@ -137,8 +140,9 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// Returns the standard error of a mean square over scenes. This error is estimated from the
-/// scatter over pairs of nets, because all scenes use the same nets.
+/// Returns the standard error of the mean, over scenes, of squared deviations. The standard error
+/// of the mean square is estimated from the scatter over pairs of nets, because all scenes use
+/// the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {
@@ -149,10 +153,11 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
     error * (count as f64).sqrt()
 }
 
-/// Adds a fraction to a row, with a check against the expectation for this many numbers.
+/// Adds a fraction to a table row, with a check that it agrees with the fraction expected for
+/// `count` numbers.
 fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
-    // If few values are beyond this distance, the error estimated from their scatter is
+    // If few deviations exceed the distance, the error estimated from their scatter is
     // inaccurate.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
     let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
@@ -162,7 +167,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
         .push(Check::new("share", off, Below(BORNE), "standard errors"));
 }
 
-/// Fractions and ratios for each kind of scene.
+/// Returns the section with fractions and ratios for each kind of scene.
 fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     let row = |(kind, _): (BlockerKind, usize)| {
         let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
@@ -219,7 +224,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     }
 }
 
-/// Returns the scenes with the largest ratios.
+/// Returns the section that lists the scenes with the largest ratios.
 fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
     let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));

@@ -8,14 +8,15 @@ mod scene;
 use std::fs;
 use std::process::ExitCode;
 
-/// Returns the text of the scene with this number; the kinds alternate.
+/// Returns the text of the scene with the given number; the kinds of scenes alternate with the
+/// number.
 pub(crate) fn scene(number: u64) -> String {
     let kinds = draw::BlockerKind::ALL;
     let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
     draw::scene(kind, &mut draw::SceneDice::new(number))
 }
 
-/// Draws the scenes, prints the results, and writes results/nets.md.
+/// Draws and predicts the random scenes, prints the results, and writes results/nets.md.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -1,5 +1,5 @@
-//! One random scene: the deviation of a prediction by nets from the truth, in units of the stated
-//! error of the prediction.
+//! One random scene, and how far its prediction by nets deviates from the truth, in units of the
+//! prediction's stated error.
 
 use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
@@ -8,34 +8,35 @@ use etendue_field::{ProjectionGrid, Window};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::{Model, REPLICATES, RayBudget};
 
-/// The results for the light field of a scene.
+/// The results for the light field at the plane of one scene.
 pub(super) struct SceneOutcome {
     pub(super) kind: BlockerKind,
     /// The number of the scene, from which [`super::draw`] reproduces it.
     pub(super) number: u64,
     /// The stated ‖error‖/‖F‖.
     pub(super) stated: f64,
-    /// Error of the truth with which the prediction is compared, divided by the stated error of
-    /// the prediction.
+    /// Error of the reference solution (the truth), divided by the stated error of the prediction
+    /// that is compared with it.
     pub(super) of_truth: f64,
     /// The prediction compared with the truth.
     pub(super) sound: Measured,
-    /// The comparison with a planted fault: the density of rays is 2 % too large, so weights are
-    /// too small.
+    /// The comparison after a planted fault: a density of rays that is 2 % too large, and so
+    /// makes weights too small.
     pub(super) planted: Measured,
 }
 
 /// The deviation of a prediction from the truth.
 pub(super) struct Measured {
-    /// ‖F − truth‖/‖truth‖, divided by the stated error.
+    /// ‖F − truth‖/‖truth‖ for the predicted spectrum F, divided by the stated relative error of
+    /// F.
     pub(super) ratio: f64,
-    /// The squared ratios for the means of adjacent pairs of nets; the error of such a mean is
-    /// four times that of the mean of all nets.
+    /// The squared ratios for the means of two adjacent nets; the mean of two nets has four times
+    /// the error of the mean of all nets.
     pub(super) pairs: Vec<f64>,
     /// The deviation at zero frequency: (F − truth)/(standard error).
     pub(super) zero: f64,
-    /// The deviations at other frequencies: Hotelling's T of real and imaginary part, divided by
-    /// √2.
+    /// The deviations at frequencies other than zero: Hotelling's T of real and imaginary part,
+    /// divided by √2.
     pub(super) apart: Vec<f64>,
 }
 
@@ -61,27 +62,28 @@ pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usiz
     (outcomes, left_out)
 }
 
-/// The error value for a scene whose truth is not known accurately enough.
+/// The error of a scene for which no sufficiently accurate truth can be computed.
 struct Untold;
 
-/// The result of a prediction.
+/// The result of predicting one plane of a scene.
 struct PredictionFound {
     slices: Slices,
     replicates: Vec<Slices>,
     error: f64,
 }
 
-/// Permitted error of the truth relative to the stated error.
+/// Maximum permitted error of the truth, relative to the stated error of the prediction.
 const OF_STATED: f64 = 0.1;
 /// Factor by which the number of nodes is increased for the truth, if there is no closed form.
 const HUNDREDFOLD: f64 = 128.0;
-/// The factor of the planted fault in a density.
+/// The factor by which the planted fault multiplies a density of rays.
 const PLANTED: f64 = 1.02;
-/// Maximum relative error of a prediction. A larger error means that hardly any light arrives and
-/// that the prediction depends on a few rays.
+/// Maximum relative error of a prediction that is judged. If the relative error of a prediction
+/// is larger, hardly any light arrives, and the prediction depends on a few rays.
 const DARK: f64 = 0.3;
 
-/// Returns the outcome, or `None` if no theory applies or no light arrives.
+/// Returns the outcome of a scene, or `None` if no theory applies or no light arrives at the
+/// plane.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
@@ -129,7 +131,7 @@ fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     }
 }
 
-/// Returns the squared L2 ratio for the mean of two nets.
+/// Returns the squared ratio of L2 error to stated error for the mean of two nets.
 fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     let mut mean = pair[0].clone();
     mean.half += &pair[1].half;
@@ -153,8 +155,8 @@ impl PredictionFound {
     }
 }
 
-/// The frequencies that are judged one by one, as indices [azimuth, ρ ≥ 0, ν]; index 4 of ν is ν =
-/// 0.
+/// Indices [azimuth, ρ ≥ 0, ν] of the frequencies that are judged one by one; ν = 0 has the index
+/// 4.
 const SINGLE: [[usize; 3]; 4] = [[0, 1, 4], [1, 2, 6], [0, 3, 3], [1, 5, 8]];
 
 fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
@@ -162,7 +164,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
     applicability.dark.is_none().then_some(applicability.theory)
 }
 
-/// Returns a prediction by nets.
+/// Returns the prediction by nets of rays for the plane of a scene.
 fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -180,8 +182,8 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     })
 }
 
-/// Returns the truth and its error: a closed form, or a prediction with enough rays to make the
-/// error small.
+/// Returns the true spectrum, from a closed form or from a prediction with many rays, and the
+/// error of this spectrum.
 fn truth(
     theory: &Theory,
     plane: &VirtualPlane,
@@ -191,7 +193,8 @@ fn truth(
     let enough = OF_STATED * stated;
     if let Theory::Parallel(chain) = theory {
         let window: &Window = &plane.window;
-        // A quadrature over the receiver uses more nodes if the frequencies are higher.
+        // The quadrature over the receiver uses more nodes for higher frequencies, so raising the
+        // frequencies makes it more accurate.
         for more in [1, 2, 4] {
             let mut grid = plane.grid;
             grid.rho.half *= more;
@@ -212,7 +215,7 @@ fn truth(
     Ok((found.slices, found.error))
 }
 
-/// Slices restricted to the frequencies of the plane.
+/// Returns the slices restricted to the frequencies of the plane.
 fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     let mut lower = Slices::zeros(plane.grid);
     for (at, value) in lower.half.indexed_iter_mut() {
@@ -221,7 +224,7 @@ fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     lower
 }
 
-/// Residuals of the replicates at one frequency.
+/// The residuals of all replicates (single nets) at one frequency.
 fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
     let replicates = found.replicates.iter();
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
@@ -235,7 +238,7 @@ fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     mean / error
 }
 
-/// Hotelling's T over √2: for circular noise it is |d|/σ.
+/// Hotelling's T divided by √2, which for circular noise equals |d|/σ.
 fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;

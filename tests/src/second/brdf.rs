@@ -1,5 +1,5 @@
-//! BRDFs from their definitions: Fresnel's equations with complex indices, microfacets described by
-//! their slopes, and Smith's masking as an integral.
+//! BRDFs computed from their definitions: Fresnel's equations with complex indices, microfacets
+//! described by their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
@@ -28,8 +28,7 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     factors * lobe(brdf, incidence, [from, to], fault)
 }
 
-/// Returns the value at an angle, interpolated linearly between two values of a list over 0 to
-/// 90°.
+/// Returns the value at an angle, by linear interpolation in a list of values over 0 to 90°.
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
@@ -45,7 +44,7 @@ fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     })
 }
 
-/// Returns the value of a BRDF without the factors given by its lists.
+/// Returns the value of a BRDF without the angular factors that the BRDF's lists tabulate.
 fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let reflected = |angle: f64| brdf.albedo * reflected(&brdf.fresnel, angle, fault);
     match brdf.lobe {
@@ -105,8 +104,9 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Each slope of the microfacets is normally distributed with variance α²/2. The density per solid
-/// angle has a further factor of 1/cos⁴ (Beckmann and Spizzichino 1963).
+/// Each slope of the microfacets is normally distributed with variance α²/2. The density of
+/// normals per solid angle is the density of slopes times 1/cos⁴ and a constant (Beckmann and
+/// Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = match fault {
         "α² is the variance along an axis" => 2.0 * roughness * roughness,
@@ -162,8 +162,9 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
 
 /// Returns the reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and
 /// along (p) the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle
-/// of refraction follows Snell's law, and is complex if the index is complex. The fault affects
-/// only one polarisation, because swapping s and p would not change the mean.
+/// of refraction follows Snell's law, and is complex if the index is complex. The planted fault
+/// affects only one polarisation, because swapping both polarisations would not change their
+/// mean.
 fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     let index = match *fresnel {
         Fresnel::White => return 1.0,

@@ -9,23 +9,25 @@ use crate::report::{
     Bound::{Above, AtMost, Below},
 };
 
-/// A function that returns the largest difference in a round; its text names the fault planted in
-/// the second implementation, if any.
+/// A function that returns the largest difference between two implementations in one round of
+/// points; the text names a planted fault, if any.
 type Difference = dyn Fn(&mut Dice, &str) -> f64;
 
 /// A comparison of two implementations.
 pub(super) struct SecondCheck {
     pub(super) name: &'static str,
-    /// Number of rounds, and number of points in each round.
+    /// Number of rounds (random configurations), and number of points in each round.
     pub(super) rounds: [u32; 2],
-    /// Maximum permitted difference, with the reason for it.
+    /// Maximum permitted difference between the implementations, with the reason for this
+    /// maximum.
     pub(super) tolerance: (f64, &'static str),
     /// Faults of the second implementation, each of which must be detected.
     pub(super) faults: &'static [&'static str],
     pub(super) difference: Box<Difference>,
 }
 
-/// The result: the differences without a fault and with each fault.
+/// The largest differences between the implementations, without a fault and with each planted
+/// fault.
 pub(super) struct Outcome {
     pub(super) difference: f64,
     pub(super) planted: Vec<f64>,
@@ -60,7 +62,7 @@ impl SecondCheck {
     }
 }
 
-/// Returns the difference of two numbers relative to the larger.
+/// Returns the difference between two numbers, divided by the larger of their magnitudes.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     let larger = worse(a.abs(), b.abs());
     if larger > 0.0 {

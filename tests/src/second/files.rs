@@ -1,5 +1,5 @@
-//! Pictures on surfaces as scene files define them: their formats, their placement, and their use
-//! as blend and texture.
+//! Pictures on surfaces as scene files define them: file formats, placement on the surface, and
+//! use as blend and texture.
 
 use super::check::{SecondCheck, worse};
 use super::pattern::{Levels, Pattern, Varied};
@@ -104,7 +104,7 @@ fn in_words(brdf: &Brdf) -> String {
     format!("(lobe: Ggx({roughness:?}), albedo: {albedo:?}, fresnel: Dielectric({index:?}))")
 }
 
-/// Writes the picture, with 16 bits and in colour, and returns its levels.
+/// Writes a colour picture with 16 bits per channel, and returns the levels of its pixels.
 pub(super) fn write_picture(folder: &Path, dice: &mut Dice) -> io::Result<Levels> {
     let (width, height) = (7_u16, 5_u16);
     let count = usize::from(width) * usize::from(height);
@@ -131,7 +131,7 @@ pub(super) fn write_picture(folder: &Path, dice: &mut Dice) -> io::Result<Levels
     })
 }
 
-/// Writes a map of the sky, in 32-bit colour, and returns its levels.
+/// Writes a map of the sky in 32-bit colour, and returns the levels of its pixels.
 pub(super) fn write_map(path: &Path, dice: &mut Dice) -> io::Result<Levels> {
     let (width, height) = (16_u16, 9_u16);
     let count = usize::from(width) * usize::from(height);

@@ -10,8 +10,8 @@ use etendue_field::{AngleTable, Brdf, Fresnel, Lobe, Mixture, Pattern, Reflectan
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A BRDF implementation under test: a function of a description and two directions, with the
-/// normal along Z.
+/// A BRDF implementation that is under test: a function of the BRDF's description and of two
+/// directions, with the normal along Z.
 type Fast = fn(&Brdf, Vector, Vector) -> f64;
 
 fn traced(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
@@ -22,7 +22,7 @@ fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
     etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
 }
 
-/// An implementation under test of a sum of BRDFs.
+/// An implementation of a sum of BRDFs that is under test.
 type FastSum = fn(&Mixture<'_>, Vector, Vector) -> f64;
 
 fn traced_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
@@ -120,7 +120,8 @@ fn of_sum(name: &'static str, fast: FastSum) -> SecondCheck {
     }
 }
 
-/// Returns the largest relative difference for a BRDF with this kind of lobe.
+/// Returns the largest relative difference between both implementations of a BRDF with the given
+/// kind of lobe.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
     let brdf = Brdf::new(lobe(dice), dice.unit(), fresnel(dice));
     compared(fast, &brdf, dice, fault)
@@ -145,7 +146,8 @@ fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     compared(fast, &brdf, dice, fault)
 }
 
-/// Returns the largest relative difference for a sum of BRDFs with weights.
+/// Returns the largest relative difference between both implementations of a weighted sum of
+/// BRDFs.
 fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
     let mut term = |exponent: f64| Term {
         brdf: Brdf::new(Lobe::Phong { exponent }, dice.unit(), fresnel(dice)),
@@ -192,7 +194,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
     }
 }
 
-/// Returns a direction within the lobe, occasionally below the surface.
+/// Returns a random direction within the lobe, which is occasionally below the surface.
 fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
     match lobe {
         Lobe::Lambertian => direction(dice),

@@ -1,6 +1,6 @@
 //! Theory's affine maps at surfaces, compared with differences of rays traced by the second
-//! implementation. The maps are used only by theory, but depend on conventions that the tracers
-//! share.
+//! implementation. Only theory uses these affine maps, but they depend on conventions that the
+//! tracers share.
 
 use super::check::{SecondCheck, worse};
 use super::paths::{Legs, Turn};
@@ -15,7 +15,7 @@ use etendue_theory::rays::{self, Plane, SpecularSurface};
 use etendue_theory::{Observed, scattering};
 use std::path::Path;
 
-/// Half of the difference between the two rays of a finite difference, in metres and radians.
+/// Half of the step between the two rays of a finite difference, in metres or radians.
 const STEP: f64 = 1e-5;
 
 const MIRROR: &[&str] = &[
@@ -74,7 +74,7 @@ impl Met {
         }
     }
 
-    /// Returns the frame of axes in the coordinates at the light.
+    /// Returns axes as a frame in the coordinate system at the light.
     fn frame(&self, axes: &Axes) -> Frame {
         let vector = |a: Vector| self.world.light.components(a).into();
         Frame {
@@ -102,7 +102,7 @@ impl Met {
         }
     }
 
-    /// Returns origin and direction of the ray (x, y, u, v) of the light.
+    /// Returns the origin and direction of the ray with coordinates (x, y, u, v) at the light.
     fn emitted(&self, [x, y, u, v]: [f64; 4]) -> (Vector, Vector) {
         let light = &self.world.light;
         (light.point([x, y, 0.0]), unit(light.vector([u, v, 1.0])))
@@ -123,7 +123,8 @@ impl Met {
     }
 }
 
-/// Returns the deviation of a map from the derivative of a function at a ray.
+/// Returns the deviation of an affine map from the derivative, at a ray, of the function that the
+/// map linearises.
 fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {

@@ -46,15 +46,15 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns the center of a random layer: its coordinates along X and Y, and its position in the
-/// world.
+/// Returns the center of a random layer, both as coordinates along X and Y and as a position in
+/// the world.
 fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
-/// Compares the transmittance of the resolved mask, at points around its center, with its
-/// definition.
+/// Compares the transmittance of the resolved mask, at points around its center, with the
+/// definition of the mask.
 fn against(
     dice: &mut Dice,
     scene: &Scene,
@@ -70,8 +70,8 @@ fn against(
     each.fold(0.0, worse)
 }
 
-/// Checks a layer with a rectangle to the left, a disc to the right, and a half-plane beyond both
-/// on any of the four sides.
+/// Checks a layer with a rectangle to the left, a disc to the right, and a half-plane that lies
+/// beyond both shapes on any of four sides.
 fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -121,7 +121,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// Squares on a regular grid, centred at the center of the layer.
+/// Checks squares on a regular grid that is centred at the center of the layer.
 fn squares(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);

@@ -104,12 +104,13 @@ struct Hill {
     scene: Scene,
     curvature: [f64; 2],
     scale: f64,
-    /// The point before scaling.
+    /// The coordinates of the point before scaling.
     at: [f64; 2],
 }
 
 impl Hill {
-    /// The fault is in the second implementation, not in the scene.
+    /// Returns a random mesh; the planted fault is in the second implementation, not in the
+    /// scene.
     fn new(dice: &mut Dice, fault: &str) -> Self {
         let tilt = between(dice, 0.0, 0.8);
         let down = aside(dice, [0.0, 0.0, -1.0], tilt);
@@ -155,8 +156,8 @@ impl Hill {
     }
 
     /// Returns the curvature of the normal section along (dx, dy, p dx + q dy): the second
-    /// fundamental form divided by the first (do Carmo 1976, section 3.3). The curvature is
-    /// positive if the surface is convex.
+    /// fundamental form divided by the first (do Carmo 1976, section 3.3). The returned curvature
+    /// is positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;

@@ -1,12 +1,13 @@
 //! A second implementation of the code that theory and both tracers share, and of the BRDFs that
 //! theory and the tracers implement separately.
 //!
-//! A comparison of photons with theory cannot reveal a mistake in code that both use. So this
-//! module implements every shared function again, in a slow and plain way, from its documentation:
-//! docs/scenes.md, docs/conventions.md, docs/theory.md, and the cited literature. The second
-//! implementation never calls the fast code, and shares only the plain data that describes a
-//! scene. If a function depends on how a scene file is read, a file is written and read. Faults
-//! are planted in the second implementation; each must be detected.
+//! A comparison of photons with theory cannot reveal a mistake in code that the tracers and
+//! theory share. So this module implements every shared function again, in a slow and plain way,
+//! from its documentation: docs/scenes.md, docs/conventions.md, docs/theory.md, and the cited
+//! literature. The second implementation never calls the fast code, and shares only the plain
+//! data that describes a scene. If a function depends on how scene files are read, its test
+//! writes a scene file and reads it. Faults are planted in the second implementation, and the
+//! comparison must detect each of them.
 
 mod brdf;
 mod check;
@@ -31,7 +32,8 @@ use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
-/// The seed of all points. This seed was fixed in advance, and not chosen by its results.
+/// The seed of all points. This seed was fixed in advance, and not chosen by the results that it
+/// gives.
 const SEED: u64 = 1;
 
 /// Compares every shared function with its second implementation.
@@ -61,7 +63,8 @@ pub(crate) fn second() -> io::Result<ReportSection> {
 
 fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
-    // Pictures use the largest case number, because the case numbers of points count up from 0.
+    // Pictures draw random numbers as the largest case number, because the case numbers of points
+    // count up from 0.
     let mut dice = Dice::new(SEED, u64::MAX);
     let picture = files::write_picture(folder.path(), &mut dice)?;
     let map = files::write_map(&folder.path().join(sky::FILE), &mut dice)?;
@@ -80,7 +83,7 @@ fn checks() -> io::Result<Vec<SecondCheck>> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// Returns a row for each planted fault.
+/// Returns one table row for each planted fault.
 fn rows(check: &SecondCheck) -> Vec<Row> {
     let outcome = check.run();
     let (tolerance, reason) = check.tolerance;

@@ -1,5 +1,5 @@
-//! The central ray at a surface, from docs/conventions.md, Frames: the frames of the legs before
-//! and after it, and of the surface.
+//! The central ray at a surface, from docs/conventions.md, Frames: the frame of the surface, and
+//! those of the legs before and after the surface.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
@@ -23,9 +23,9 @@ const RECTANGLE: &[&str] = &["edges along Y", "turned over"];
 /// The change of direction of the central ray at a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn {
-    /// A reflection along this direction, to the side from which the ray came.
+    /// A reflection into the given direction, on the side from which the ray came.
     Back(Vector),
-    /// A transmission along this direction.
+    /// A transmission into the given direction.
     Through(Vector),
 }
 
@@ -34,7 +34,8 @@ pub(super) enum Turn {
 pub(super) struct Legs {
     pub(super) before: Axes,
     pub(super) after: Axes,
-    /// T, B, N for arriving and for leaving light, with the longitude of the central ray in each.
+    /// The axes T, B, N for arriving light and for leaving light, each with the longitude of the
+    /// central ray in these axes.
     pub(super) arriving: (Axes, f64),
     pub(super) leaving: (Axes, f64),
 }
@@ -64,7 +65,7 @@ impl Legs {
             origin: hit,
             ..*light
         };
-        // The normal, on the side from which light comes.
+        // The normal on the side of the surface from which light comes.
         let normal = times(-dot(facing, light.d).signum(), facing);
         let after = Self::after(&before, normal, turn, fault);
         let t = across(light.d, normal);
@@ -103,9 +104,9 @@ impl Legs {
         }
     }
 
-    /// Returns the frame after a change of direction: after a reflection, the mirrored frame with
-    /// X reversed, otherwise the frame of the arriving ray; either is then rotated by the smallest
-    /// angle to the new direction.
+    /// Returns the frame after a change of direction: the frame of the arriving ray, mirrored
+    /// with X reversed if the event is a reflection, and rotated by the smallest angle to the new
+    /// direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {
@@ -141,7 +142,8 @@ fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
     super::vector::aside(dice, normal, tilt)
 }
 
-/// Returns a random event of the central ray, and its text.
+/// Returns a random event of the central ray at a surface, and the text of the event in a scene
+/// file.
 fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
     let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);
     match dice.below(3) {
@@ -190,8 +192,8 @@ fn frames(dice: &mut Dice, fault: &str) -> f64 {
     apart.fold(0.0, worse)
 }
 
-/// Checks that the edges of a rectangle are along the component of X that is orthogonal to its
-/// normal, and across this component.
+/// Checks that one edge of a rectangle is parallel to the component of X orthogonal to the
+/// rectangle's normal, and that the other edge is perpendicular to this component.
 fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice);
     let center = world.light.point([0.0, 0.0, 2.0]);

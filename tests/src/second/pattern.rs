@@ -1,5 +1,5 @@
-//! Patterns, pictures and sums of BRDFs from their definitions (docs of `etendue_field::Pattern`,
-//! docs/scenes.md).
+//! Patterns, pictures and sums of BRDFs computed from their definitions (docs of
+//! `etendue_field::Pattern`, docs/scenes.md).
 
 use etendue_field::{Brdf, Grating};
 use std::f64::consts::TAU;
@@ -17,12 +17,13 @@ pub(super) struct Levels {
 pub(super) enum Pattern {
     Cosine(Grating),
     Checkerboard(f64),
-    /// A picture: its levels, and its width and height in metres.
+    /// A picture: the levels of its pixels, and its width and height in metres.
     Picture(Levels, [f64; 2]),
 }
 
 impl Pattern {
-    /// Returns the value at a point given along the axes of the surface.
+    /// Returns the value of the pattern at a point, given by its coordinates along the axes of
+    /// the surface.
     pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
         let [s, t] = match fault {
             "axes swapped" => [at[1], at[0]],
@@ -68,8 +69,9 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// Returns a picture around the vertex, with its top along Y. The picture is bilinear between
-    /// pixel centres, constant beyond the outermost centres, and 0 beyond its edge.
+    /// Returns the value of a picture that is centred at the vertex, with its top towards Y. The
+    /// picture is bilinear between pixel centres, constant beyond the outermost centres, and 0
+    /// beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
@@ -99,8 +101,9 @@ impl Levels {
     }
 }
 
-/// Returns the last of the ascending centres before a position, and the fraction of the way to the
-/// next centre. Positions beyond the outermost centres are clamped.
+/// Returns the index of the last pixel centre before a position, and the position between this
+/// centre and the next as a fraction. Positions beyond the outermost pixel centres are clamped to
+/// these centres.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let last = centres.len() - 1;
     if at <= centres[0] {
@@ -117,7 +120,7 @@ fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     }
 }
 
-/// BRDFs that add up over a surface.
+/// Two BRDFs whose weighted sum is the BRDF at each point of a surface.
 #[derive(Clone, Debug)]
 pub(super) struct Varied {
     pub(super) brdf: Brdf,
@@ -127,8 +130,9 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// Returns both BRDFs with their weights at a point: `brdf` has the value of the blend, and
-    /// `other` the rest up to 1. The texture multiplies both weights.
+    /// Returns two BRDFs with their weights at a point: The weight of `brdf` is the value of the
+    /// blend, and the weight of `other` is one minus this value. The value of the texture
+    /// multiplies the weights of both BRDFs.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {

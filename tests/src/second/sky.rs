@@ -47,13 +47,13 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns the axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y ×
-/// Z.
+/// Returns the axes of a map: Y is `up`, Z is the component of `front` orthogonal to Y, and X = Y
+/// × Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
     let tilt = between(dice, 0.3, 2.8);
     let front = aside(dice, up, tilt);
-    // D is up and X points to the front, so Y = D × X is the X of the map.
+    // In these axes D is up and X points to the front, so Y = D × X is the axis X of the map.
     let text = format!("up: {}, front: {}", triple(up), triple(times(3.0, front)));
     (Axes::new([0.0; 3], up, front), text)
 }
@@ -67,7 +67,8 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     [x, up, front]
 }
 
-/// Returns the direction from which light comes, opposite to that in which it travels.
+/// Returns the direction from which light comes, opposite to the direction in which light
+/// travels.
 fn origin(along: Vector, fault: &str) -> Vector {
     match fault {
         "the way light goes" => along,
@@ -101,10 +102,11 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
 }
 
 impl Levels {
-    /// Radiance from a direction (x, up, front). The centre of column i of w is at longitude π (1 −
-    /// (2 i + 1)/w), counted from the front towards x. The centre of row j of h is at latitude π (½
-    /// − (j + ½)/h). Interpolation is bilinear, and periodic in longitude. Between an outermost row
-    /// and its pole, the value of the row is used.
+    /// Returns the radiance of a map from the direction with components (x, up, front). In a map
+    /// with w columns, the centre of column i is at longitude π (1 − (2 i + 1)/w), counted from
+    /// the front towards x. In a map with h rows, the centre of row j is at latitude π (½ − (j +
+    /// ½)/h). The map is interpolated bilinearly, and periodically in longitude. Between the
+    /// centre of an outermost row and the adjacent pole, the value of that row is used.
     fn radiance(&self, [x, up, front]: Vector, fault: &str) -> f64 {
         let longitude = angle([0.0, 0.0, 1.0], [x, 0.0, front]) * x.signum();
         let latitude = PI / 2.0 - angle([0.0, 1.0, 0.0], [x, up, front]);
@@ -120,7 +122,8 @@ impl Levels {
             _ => latitude,
         };
         let row = |j: usize| {
-            // The two adjacent columns; the last column of the map also stands before the first.
+            // The two columns adjacent to the direction, where the last column of the map
+            // precedes the first.
             let columns = (0..=self.width).map(|i| {
                 let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
                 let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);
@@ -175,7 +178,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
         let second: f64 = lobes
             .iter()
             .map(|(middle, width, radiance)| {
-                // The fault: the numbers in the file are used as directions of the world.
+                // The planted fault uses the numbers in the file as directions of the world.
                 let middle = match fault {
                     "axes of the world" => seen(&axes, *middle, ""),
                     _ => *middle,
@@ -186,7 +189,8 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
                 radiance * (-fall / squared).exp()
             })
             .sum();
-        // The constants are added because there is nothing to compare where the lobes vanish.
+        // The constant 1e-9 is added to both radiances, because a relative difference has no
+        // meaning where both lobes vanish.
         relative(
             fast(&world, &scene.light, along) + 1e-9,
             brightness * second + 1e-9,

@@ -4,7 +4,7 @@ use super::vector::{Axes, Vector, aside, between, dot, length, plus, times, unit
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
 
-/// The form, as named in a scene file.
+/// The form of the surface, as named in a scene file.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Form {
     Plane,
@@ -13,8 +13,8 @@ pub(super) enum Form {
     Paraboloid(f64, f64),
 }
 
-/// A surface with its vertex at the origin of its axes, facing along D, with its first curvature
-/// along X.
+/// A surface in axes whose origin is the vertex; the surface faces along D, and its first
+/// curvature is along X.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smooth {
     pub(super) axes: Axes,
@@ -24,7 +24,7 @@ pub(super) struct Smooth {
 
 impl Smooth {
     /// Returns a surface with its vertex on the central ray, tilted by up to `most` radians, and
-    /// its text in a scene file without the event.
+    /// the scene-file text of this surface without its event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
         let tilt = between(dice, 0.1, most);
         let facing = aside(dice, times(-1.0, world.light.d), tilt);
@@ -59,7 +59,7 @@ impl Smooth {
         (smooth, words)
     }
 
-    /// Returns the surface with the named fault planted in it.
+    /// Returns the surface after the named fault is planted in it.
     pub(super) fn wrong(mut self, fault: &str) -> Self {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
@@ -75,8 +75,8 @@ impl Smooth {
         self
     }
 
-    /// Returns the centre of the ball, or the point of the bar's axis nearest to the vertex; it is
-    /// behind the vertex if the surface is convex.
+    /// Returns the centre of the ball, or the point of the bar's axis nearest to the vertex; if
+    /// the surface is convex, this point is behind the vertex.
     fn middle(&self, k: f64) -> Vector {
         plus(self.axes.origin, -1.0 / k, self.axes.d)
     }
@@ -94,7 +94,7 @@ impl Smooth {
         self.axes.point([s, t, -below])
     }
 
-    /// Returns the normal at a point, on the side the surface faces.
+    /// Returns the normal of the surface at a point, on the side that the surface faces.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         match self.form {
             Form::Plane => self.axes.d,
@@ -107,7 +107,7 @@ impl Smooth {
         }
     }
 
-    /// Returns the component of a vector across the bar, which is along Y.
+    /// Returns the component of a vector perpendicular to the bar, whose axis is along Y.
     fn round(&self, a: Vector) -> Vector {
         plus(a, -dot(a, self.axes.y), self.axes.y)
     }
@@ -144,8 +144,8 @@ impl Smooth {
         met
     }
 
-    /// Whether a point of the solid's surface is within the aperture, and on the half of the solid
-    /// around the vertex.
+    /// Returns whether a point of the solid's surface is within the aperture and in the half of
+    /// the solid around the vertex.
     fn holds(&self, point: Vector) -> bool {
         let [s, t, _] = self.axes.coordinates(point);
         s.hypot(t) <= self.aperture && dot(self.normal(point), self.axes.d) > 0.0

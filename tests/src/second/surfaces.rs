@@ -13,7 +13,7 @@ use etendue_field::{Frame, Patch, Specular};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Points or rays per scene.
+/// Number of points or rays that are compared in each scene.
 const EACH: u32 = 20;
 
 const FORMS: &[&str] = &[
@@ -85,8 +85,8 @@ fn points(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// Compares hits of rays. If a ray hits only one of the two surfaces, the difference counts as one
-/// metre.
+/// Compares where rays hit a smooth surface of a scene file and where they hit the equivalent
+/// solid. If a ray hits only one of the two surfaces, the difference counts as one metre.
 fn hits(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);
@@ -137,7 +137,7 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
         Specular::Mirror if fault == "about the surface, not the normal" => {
             Some(turned(along, normal, PI))
         }
-        // The reversed direction, rotated by half a turn about the normal.
+        // A mirror reverses the direction and rotates it by half a turn about the normal.
         Specular::Mirror => Some(turned(times(-1.0, along), normal, PI)),
         Specular::Refraction { front, back } => {
             let indices = if fault == "indices swapped" {

@@ -86,17 +86,17 @@ impl Axes {
         Self { origin, x, y, d }
     }
 
-    /// Returns the vector with these components.
+    /// Returns the vector with the given components along X, Y and D.
     pub(super) fn vector(&self, [a, b, c]: Vector) -> Vector {
         plus(plus(times(a, self.x), b, self.y), c, self.d)
     }
 
-    /// Returns the point with these coordinates.
+    /// Returns the point with the given coordinates along X, Y and D.
     pub(super) fn point(&self, at: Vector) -> Vector {
         plus(self.origin, 1.0, self.vector(at))
     }
 
-    /// Converts a frame in these axes to world coordinates.
+    /// Converts a frame given in coordinates of these axes to world coordinates.
     pub(super) fn in_world(&self, local: &Frame) -> Frame {
         let vector = |a: DVec3| DVec3::from(self.vector(a.to_array()));
         Frame {
@@ -107,12 +107,12 @@ impl Axes {
         }
     }
 
-    /// Returns the components of a vector.
+    /// Returns the components of a vector along X, Y and D.
     pub(super) fn components(&self, a: Vector) -> Vector {
         [dot(a, self.x), dot(a, self.y), dot(a, self.d)]
     }
 
-    /// Returns the coordinates of a point.
+    /// Returns the coordinates of a point along X, Y and D.
     pub(super) fn coordinates(&self, point: Vector) -> Vector {
         self.components(plus(point, -1.0, self.origin))
     }
@@ -122,7 +122,7 @@ pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low + (high - low) * dice.unit()
 }
 
-/// Returns a random number between two bounds, with a uniformly distributed logarithm.
+/// Returns a random number between two bounds; its logarithm is uniformly distributed.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
 }
@@ -135,7 +135,7 @@ pub(super) fn direction(dice: &mut Dice) -> Vector {
     [across * around.cos(), across * around.sin(), height]
 }
 
-/// Returns a random direction at an angle to a unit vector.
+/// Returns a random direction at the given angle to a unit vector.
 pub(super) fn aside(dice: &mut Dice, from: Vector, by: f64) -> Vector {
     let axis = across(direction(dice), from);
     unit(turned(from, axis, by.min(PI)))

@@ -1,5 +1,5 @@
-//! Coordinates of planes on surfaces: photons at a plane across the central ray are compared with
-//! the same photons at planes on the surface.
+//! Comparison of photons at a plane perpendicular to the central ray with the same photons in the
+//! coordinates of planes on a surface.
 
 use super::check::{SecondCheck, relative, worse};
 use super::paths::{Legs, Turn};
@@ -11,7 +11,7 @@ use etendue_field::{Crossing, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_trace::Tracer;
 use std::path::Path;
 
-/// Photons of the single batch.
+/// Number of photons in the only batch.
 const EACH: u32 = 32;
 
 const VIEWS: &[&str] = &[
@@ -23,8 +23,8 @@ const VIEWS: &[&str] = &[
     "cosines left out",
 ];
 
-/// The planes under test: the orientation in a scene file, whether light arrives there, and the
-/// expected view.
+/// The planes under test, each with its orientation in a scene file, whether it records arriving
+/// light, and the expected view.
 pub(super) const PLANES: [(&str, bool, View); 7] = [
     ("Orthogonal", true, View::Across),
     ("Tangent", true, View::Tangent),
@@ -82,7 +82,7 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     let mut largest = 0.0;
     for (i, plane) in PLANES.iter().enumerate() {
         let across = if plane.1 { 0 } else { 4 };
-        // All planes must have the same photons in the same order.
+        // All planes must record the same photons in the same order.
         if crossings[i].is_empty() || crossings[i].len() != crossings[across].len() {
             return 1.0;
         }
@@ -116,7 +116,8 @@ impl Looking<'_> {
         } else {
             (legs.after, legs.leaving)
         };
-        // Light rotated about the normal has the longitude of its mirror direction.
+        // If light is rotated about the normal, its longitude becomes that of the mirror
+        // direction.
         let turned = if view == View::Mirrored { -1.0 } else { 1.0 };
         Looking {
             smooth,
@@ -129,7 +130,7 @@ impl Looking<'_> {
     }
 
     /// Returns how far coordinates, weight and the factor of differential irradiance deviate from
-    /// those computed from the same ray at the plane across the leg.
+    /// values computed from the same ray at a plane perpendicular to the leg.
     fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
         let ray = across.ray;
         let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
@@ -149,8 +150,8 @@ impl Looking<'_> {
         } else {
             cosines
         };
-        // Flux Φ has weight Φ (1 + u² + v²)² at the plane across the leg, and Φ/(cos θ cos² φ) on
-        // the surface.
+        // Flux Φ has weight Φ (1 + u² + v²)² at the plane perpendicular to the leg, and Φ/(cos θ
+        // cos² φ) on the surface.
         let weight = across.weight / (secant_squared * secant_squared) / per_flux;
         let TwoPlane { x, y, u, v } = seen.ray;
         let z = [x, y, u, v].into_iter().zip(second);
@@ -187,8 +188,8 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// Returns the point where the line of a ray meets the plane's surface nearest to the central
-    /// hit, and the normal there.
+    /// Returns the intersection, nearest to the central hit, of the line of a ray with the
+    /// plane's surface, and the normal at this intersection.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;
         let tangent = || {

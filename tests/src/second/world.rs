@@ -7,7 +7,8 @@ use etendue_field::Frame;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::path::Path;
 
-/// Parts of a scene file. The light's center, the path's direction and its X axis are random.
+/// The texts of which a scene file is composed. The light's center, the path's direction and its
+/// X axis are random.
 #[derive(Clone, Debug)]
 pub(super) struct World {
     /// The frame at the light.
@@ -17,7 +18,7 @@ pub(super) struct World {
     pub(super) lamp: String,
     pub(super) blockers: String,
     pub(super) surfaces: String,
-    /// Text of further fields of the path, which begins with a comma.
+    /// Text of the further fields of the path; the text begins with a comma.
     pub(super) onwards: String,
     pub(super) planes: String,
 }
@@ -87,7 +88,7 @@ pub(super) fn pair([a, b]: [f64; 2]) -> String {
     format!("({a:?}, {b:?})")
 }
 
-/// Returns the difference of two frames in position and directions.
+/// Returns the largest difference between two frames, over position and directions.
 pub(super) fn frames_apart(fast: &Frame, axes: &Axes) -> f64 {
     let pairs = [
         (fast.origin, axes.origin),

@@ -6,15 +6,15 @@ use etendue_scene::Scene;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Nodes of the midpoint rule along x and y, and along θ and φ. There are more than four nodes per
-/// cycle of the highest frequency.
+/// Numbers of nodes of the midpoint rule: along x and along y, and along θ and along φ. At the
+/// highest frequency the midpoint rule has more than four nodes per cycle.
 const NODES: [usize; 2] = [40, 36];
 
 /// A sphere in an unoccluded environment.
 pub(super) struct Sphere<'a> {
     pub(super) scene: &'a Scene,
     pub(super) environment: &'a Environment,
-    /// Curvature, convex positive, per metre.
+    /// Curvature of the sphere per metre, positive if convex.
     pub(super) k: f64,
 }
 
@@ -22,7 +22,7 @@ impl Sphere<'_> {
     /// Returns the windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
     /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated
-    /// about the normal. `turn` is +1 if these angles are not rotated.
+    /// about the normal. `turn` is +1 if the angles (θ, φ) are not rotated about the normal.
     pub(super) fn slices(&self, turn: f64) -> Slices {
         let plane = &self.scene.planes[0];
         let w = &plane.window;
@@ -76,7 +76,8 @@ impl Sphere<'_> {
         let local = plane.frame.turned_to(plane.frame.vector_to_world(normal));
         let from = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
         let along = self.scene.path.frame.vector_to_local(-from);
-        // The division by the cosine converts the integral to one over the area of the sphere.
+        // Dividing by the cosine converts the integral over the tangent plane to an integral over
+        // the area of the sphere.
         self.environment.radiance(along) / normal.z
     }
 }

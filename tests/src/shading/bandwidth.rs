@@ -5,9 +5,10 @@ use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use etendue_theory::shading::{Criterion, PlanarLobe};
 
-/// The tolerance: six digits.
+/// The relative tolerance, which corresponds to six digits.
 const DIGITS: f64 = 1e-6;
-/// The tolerance for images, which are a thousand times narrower than the circle's radius.
+/// The tolerance for bandwidths of images; an image is a thousand times narrower than the radius
+/// of the circle.
 const IMAGE: f64 = 0.01;
 
 /// Returns the scene from which the sweeps start.
@@ -100,7 +101,7 @@ pub(super) fn bandwidths() -> ReportSection {
         let (said, said_edge) = (criterion.environment(), criterion.blocker());
         let images = [scene.image(false, said), scene.image(true, said_edge)];
         let bound = criterion.combined();
-        // The bound is reached if both terms have the same sign.
+        // The sum of two terms reaches the bound if both terms have the same sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
         let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");

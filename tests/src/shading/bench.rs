@@ -11,7 +11,7 @@ use etendue_theory::scattering::{ScatteringSystem, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
 
-/// A scene with one plane, its photons and its prediction.
+/// A scene with one plane, the photons at this plane, and their prediction.
 pub(super) struct Bench {
     pub(super) scene: Scene,
     pub(super) photons: Measurement,
@@ -27,7 +27,7 @@ impl Bench {
         Self::of(scene, sound)
     }
 
-    /// Creates a bench with a given prediction.
+    /// Creates a bench whose prediction is given.
     pub(super) fn of(scene: Scene, sound: Slices) -> Self {
         let photons = traced(&scene);
         Self {
@@ -37,7 +37,7 @@ impl Bench {
         }
     }
 
-    /// Predicts the slices of a modified system.
+    /// Predicts the slices at the plane for a modified system.
     pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
         let mut view = seen(&self.scene);
         change(&mut view.system);
@@ -56,7 +56,7 @@ impl Bench {
         measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
     }
 
-    /// Returns p of the comparison of photons with a prediction.
+    /// Returns the p-value of the comparison of photons with a prediction.
     ///
     /// # Panics
     /// If there is no light and no light is predicted.
@@ -65,7 +65,8 @@ impl Bench {
         p.expect("light")
     }
 
-    /// Returns ‖a − b‖ divided by the norm of the prediction without a fault.
+    /// Returns the norm of the difference of two slices, ‖a − b‖, divided by the norm of the
+    /// prediction without a fault.
     pub(super) fn apart(&self, a: &Slices, b: &Slices) -> f64 {
         let norm = |values: &mut dyn Iterator<Item = Complex>| {
             values.map(|v| v.norm_sqr()).sum::<f64>().sqrt()
@@ -105,8 +106,8 @@ pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance 
     }
 }
 
-/// Returns the direction at a point of a plane on a flat surface, and the direction towards a
-/// projector there: unit vectors along (T, B, N).
+/// Returns two unit vectors in the axes (T, B, N) of a flat surface: the direction of a photon,
+/// and the direction from the photon's position to a projector.
 pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let plane = &scene.planes[0];
     let ray = crossing.ray;

@@ -1,4 +1,5 @@
-//! Statements about blockers: replicas, combinations, wedges, averages, soft shadows.
+//! Statements of the paper about blockers in 2D: replicas, combinations, wedges, averages, soft
+//! shadows.
 
 use super::primal::{about, between, integral, transform, wave};
 use super::strips::{coefficients, in_common, strips};
@@ -7,8 +8,8 @@ use crate::table1::slope;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Half-width of a light, its distance to the blockers, and the distance from there to the
-/// receiver, in metres.
+/// Half-width of a light, distance from the light to the blockers, and distance from the blockers
+/// to the receiver, in metres.
 const LIGHT: f64 = 0.2;
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.5;
@@ -28,7 +29,8 @@ pub(super) fn statements() -> Vec<Statement> {
 fn replicas() -> Statement {
     let mut worst = 0.0_f64;
     for pitch in [0.2, 0.1, 0.05] {
-        // The light that arrives at x, under a Gaussian window of width 0.3 over slopes.
+        // Returns the light that arrives at the position x, weighted by a Gaussian window of
+        // width 0.3 over slopes.
         let seen = |x: f64| {
             let [low, high] =
                 [x - LIGHT, x + LIGHT].map(|edge: f64| (edge / BEFORE).clamp(-0.5, 0.5));
@@ -68,8 +70,8 @@ fn replicas() -> Statement {
     }
 }
 
-/// Returns the 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy
-/// lies.
+/// Returns the 90 % bandwidth of Fourier coefficients c_n: the smallest |n| below which 90 % of
+/// their energy lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
     let energy =
@@ -105,7 +107,8 @@ fn combined() -> Vec<Statement> {
                 Complex::from(terms.sum::<f64>())
             })
             .collect();
-        // For |n| up to half of the coefficients, the sum omits only small distant terms.
+        // For |n| up to half of the computed range, the convolution sum omits only terms with
+        // small, distant coefficients.
         for n in 32..=64 {
             largest = largest.max(true_one[n].norm() / bound[n].norm());
         }
@@ -145,13 +148,14 @@ fn combined() -> Vec<Statement> {
 fn complementary() -> f64 {
     let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
-    // The product is Σ c_m d_(n−m), and the size is the sum of magnitudes. Product and size
-    // include the tail of 1/m², whose terms are negative in the product for n = 0.
+    // The product is Σ c_m d_(n−m), and the size is the sum of the magnitudes of the same terms.
+    // The product and the size both include the tail of terms in 1/m², which are negative in the
+    // product for n = 0.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
     let size: f64 = (0..a.len())
         .map(|m| a[m].norm() * b[2 * middle - m].norm())
         .sum();
-    // Coefficients beyond 48 are −1/(πm)² for odd m, on both sides.
+    // For odd |m| above 48, the terms of the product for n = 0 are −1/(πm)².
     let tail: f64 = (24..2_000_000)
         .map(|j| 2.0 / (PI * (2.0 * f64::from(j) + 1.0)).powi(2))
         .sum();
@@ -196,7 +200,8 @@ fn wedge() -> Vec<Statement> {
     ]
 }
 
-/// E(x) = ∫ cos θ dθ over the part of the light visible through strips, in closed form.
+/// Returns E(x) = ∫ cos θ dθ, in closed form, over the directions in which the light is visible
+/// through strips.
 fn irradiance(x: f64, pitch: f64, phase: f64) -> f64 {
     let distance = BEFORE + AFTER;
     let sine = |u: f64| (u - x) / (u - x).hypot(distance);
@@ -223,8 +228,8 @@ fn average() -> Vec<Statement> {
         let sine = |u: f64| (u - x) / (u - x).hypot(distance);
         sine(LIGHT) - sine(-LIGHT)
     };
-    // At these pitches the light's image covers an odd number of half periods, and the first
-    // harmonic is largest.
+    // At these pitches of the strips, the light's image covers an odd number of half periods, and
+    // the first harmonic is largest.
     let image = 2.0 * LIGHT * AFTER / distance;
     let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
     let ripple = |pitch: f64| {
@@ -238,7 +243,7 @@ fn average() -> Vec<Statement> {
             / (0.5 * free(0.0))
     };
     let logs = pitches.map(|pitch| [pitch.ln(), ripple(pitch).ln()]);
-    // The spectrum at one frequency, in a Gaussian window.
+    // Returns the spectrum at one frequency of the light in a Gaussian window.
     let at = |pitch: Option<f64>| -> Complex {
         transform(about(0.0, 1.4, 6000), 0.7, |x| {
             let e = pitch.map_or(0.5 * free(x), |pitch| irradiance(x, pitch, 0.25));
@@ -265,8 +270,8 @@ fn average() -> Vec<Statement> {
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
-            // The value is the tail of a Gaussian at f d₁/D − 0.7, from 1.5 to 3.7 cycles per
-            // metre in a window of 0.4 m.
+            // The expected value is the decrease of a Gaussian tail at f d₁/D − 0.7, from 1.5 to
+            // 3.7 cycles per metre in a window of 0.4 m.
             expected: [4.0, 100.0],
             holds: "holds, faster than any power: only replicas' tails arrive",
         },
@@ -285,7 +290,8 @@ fn soft_shadow() -> Vec<Statement> {
             lit(u, v) * mask(x + AFTER * v)
         })
     };
-    // The convolution, at x d₁/D, of the blockers with the light's image, a box scaled by d₂/D.
+    // The convolution, at x d₁/D, of the blockers with the light's image, which is a box scaled
+    // by d₂/D.
     let convolved = |x: f64| {
         let size = AFTER / distance;
         let at = x * BEFORE / distance;

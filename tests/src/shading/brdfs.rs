@@ -1,4 +1,5 @@
-//! Reflections: separable BRDFs, their sums, textures, and BRDFs that vary in space.
+//! Tests of reflections by separable BRDFs, by sums of BRDFs, by textured BRDFs, and by BRDFs
+//! that vary in space.
 
 use super::light::{PrimalSurface, frequencies, light, light_hat};
 use super::operators::OperatorComparison;
@@ -22,7 +23,7 @@ const SCHLICK: FresnelFactor = FresnelFactor::Schlick {
     normal_reflectance: 0.04,
 };
 
-/// Returns the theory's reflection by a sum of terms.
+/// Returns the theory's operators for reflection by a BRDF that is a sum of separable terms.
 pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
     PlanarReflection {
         incidence: THETA0,
@@ -83,7 +84,7 @@ pub(super) fn lopsided_hat(q: f64) -> Complex {
     Complex::new(cosine_hat(q), -0.3 * side)
 }
 
-/// Returns the comparisons that involve a whole surface.
+/// Returns the comparisons that involve all steps of a reflection at a surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = separable();
     rows.extend(listed());
@@ -204,7 +205,7 @@ fn listed() -> [OperatorComparison; 2] {
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
     };
-    // Interpolates the list between the nearest two angles.
+    // Interpolates a list of factors between the nearest two angles.
     let value = |t: f64| {
         let at = t.abs() / FRAC_PI_2 * 4.0;
         let hats = [1.0, 0.9, 0.2, 0.3, 0.8].iter().zip(0_u32..);
@@ -258,7 +259,8 @@ fn listed() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Compares a sum of two lobes, with the weights w = ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and 1 − w.
+/// Compares, with the primal domain, reflection by a sum of two lobes with the weights w = ½ (1 +
+/// 0.9 cos(2π 1.5 s + 0.4)) and 1 − w.
 fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
@@ -328,7 +330,8 @@ fn sum() -> OperatorComparison {
     }
 }
 
-/// Compares the texture 1 + 0.7 cos(2π 1.5 s + 0.4) after a glossy reflection.
+/// Compares, with the primal domain, a glossy reflection multiplied by the texture 1 + 0.7 cos(2π
+/// 1.5 s + 0.4).
 fn textured() -> OperatorComparison {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
     let traced = primal(&PrimalSurface {
@@ -372,7 +375,8 @@ fn varying() -> OperatorComparison {
     let traced = primal(&surface(Some(&lobe)));
     let mirror = reflection(vec![term(Factor::Cosine, None)]);
     let lit = |w: [f64; 2]| mirror.spectrum(ReflectionStep::Mirror, w, &light_hat);
-    // The light is 0.3 m wide, and the lattice repeats it every 8 m.
+    // The light is 0.3 m wide, and sampling frequencies on a lattice repeats this light every 8
+    // m.
     let lattice = Lattice {
         spacing: 0.125,
         reach: 12.0,

@@ -14,7 +14,8 @@ use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::scattering::{ScatteringChain, chain, defect};
 
-/// Level of the test of the exact prediction, whose result is not used here.
+/// Significance level of the test of the exact prediction; the result of this test is not used
+/// for chains.
 const LEVEL: f64 = 0.01;
 /// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
@@ -123,7 +124,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     }
 }
 
-/// Returns the report on the slices that a modified chain predicts.
+/// Returns the comparison report on the slices that a modified chain predicts.
 fn judged(
     scene: &Scene,
     measurement: &Measurement,

@@ -19,12 +19,12 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Maximum error of corrected formulas. The two sides of a comparison are quadratures accurate to
-/// 10⁻¹², or are traced with six digits.
+/// Maximum error of corrected formulas. Both sides of a comparison are quadratures accurate to
+/// 10⁻¹², or values traced with six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
-/// Minimum error of a misprint whose error is not known in advance. This minimum is far above
-/// [`QUADRATURE`].
+/// Minimum error that a misprinted formula must show if its error is not known in advance. This
+/// minimum is far above [`QUADRATURE`].
 const BY_FAR: f64 = 0.02;
 
 struct Erratum {
@@ -89,7 +89,8 @@ pub(super) fn errata() -> ReportSection {
 }
 
 fn irradiance() -> Vec<Erratum> {
-    // In a furnace of radiance 1 an albedo of 1 must give radiance 1.
+    // In an enclosure of uniform radiance 1 (a white furnace), a surface of albedo 1 must reflect
+    // radiance 1.
     let half = || between([-FRAC_PI_2, FRAC_PI_2], 60);
     let flat = integral(half(), f64::cos);
     let round = PI * integral(between([0.0, FRAC_PI_2], 60), |t| (2.0 * t).sin());
@@ -119,8 +120,8 @@ fn irradiance() -> Vec<Erratum> {
 fn brdf() -> Vec<Erratum> {
     let lobe = PlanarLobe::Gaussian { deviation: 0.12 };
     let fixed = |_: f64, d: f64| lobe.value(d);
-    // Without the prime, θ_o = θ_o' + k s is the angle to the normal at the centre in place of the
-    // normal at s.
+    // The misprint omits a prime: θ_o = θ_o' + k s is the angle to the normal at the centre, but
+    // θ_o' is the angle to the normal at s.
     let global = |s: f64, d: f64| lobe.value(d + K * s);
     let plain = primal(&surface(Some(&fixed)));
     let unprimed = primal(&surface(Some(&global)));
@@ -257,7 +258,8 @@ fn criteria() -> Vec<Erratum> {
             let traced = EyeScene { criterion }.traced()[usize::from(edge)];
             let [printed, corrected, traced] =
                 [printed, corrected, traced].map(|b| b / criterion.lobe_cutoff);
-            // Errors known from docs/theory.md, section 9, to their stated digits.
+            // The errors of both formulas are known from docs/theory.md, section 9, to the digits
+            // stated in this section.
             let unlike = (printed - known[0]).abs() > 0.01 || (traced - known[1]).abs() > 0.01;
             Erratum {
                 place,
@@ -285,7 +287,7 @@ fn criteria() -> Vec<Erratum> {
     };
     let twenty_one =
         |place, c: Criterion, known| row(place, c, true, c.printed_blocker(), c.blocker(), known);
-    // Travel as printed in section 6.2 takes content at (−a, Ω_ρ) to Ω_ρ − d a.
+    // The travel operator as printed in section 6.2 maps the frequency (−a, Ω_ρ) to Ω_ρ − d a.
     let towards = (2.0 * convex.lobe_cutoff - convex.environment()).abs();
     vec![
         row(

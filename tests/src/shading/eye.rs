@@ -1,17 +1,19 @@
-//! What an eye sees of a glossy circle, computed by tracing rays back.
+//! The image that an eye sees in a glossy circle, computed by tracing rays back from the eye.
 
 use etendue_theory::shading::Criterion;
 use std::f64::consts::TAU;
 
-/// Step of differences, in slope and radians; the error is of fourth order.
+/// Step of finite differences, in slope or radians; the error of the derivative is of fourth
+/// order in this step.
 const STEP: f64 = 1e-3;
 
-/// A circle, an eye and a blocker, without approximation.
+/// A glossy circle with an eye and a blocker, whose rays are traced without approximation.
 pub(super) struct EyeScene {
     pub(super) criterion: Criterion,
 }
 
-/// The hit of an eye ray: arc length and local outgoing angle.
+/// The hit of an eye ray on the circle: the arc length of the hit, and the outgoing angle to the
+/// local normal.
 struct EyeHit {
     turn: f64,
     point: [f64; 2],
@@ -51,8 +53,8 @@ impl EyeScene {
         self.from(&hit, self.aside() - hit.local)
     }
 
-    /// Returns the angle from the mirror direction to the outgoing central ray, which the lobe
-    /// does not change.
+    /// Returns the angle from the mirror direction to the outgoing central ray; this angle does
+    /// not depend on the lobe.
     fn aside(&self) -> f64 {
         self.criterion.incidence + self.criterion.outgoing
     }
@@ -68,9 +70,9 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// Returns how fast the phases in the environment and at the blocker change with the slope at
-    /// the eye, relative to how fast they change with the local angle of mirrored light at a fixed
-    /// point.
+    /// Returns two ratios, for the environment and for the blocker: the derivative of the phase
+    /// with respect to the slope at the eye, divided by its derivative with respect to the local
+    /// angle of mirrored light at a fixed point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
@@ -78,16 +80,17 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// Returns three bandwidths at the eye: B, B', and the largest bandwidth if the environment has
-    /// frequencies up to Ω_e and the blocker those that keep the sum on the surface below Ω_ρ.
+    /// Returns three bandwidths at the eye: B, B', and the maximum bandwidth if the environment
+    /// has frequencies up to Ω_e, and the blocker has all frequencies that keep the summed
+    /// frequency on the surface below Ω_ρ.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
         let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
         let [environment, blocker] = self.ratios();
-        // The frequencies of a wave g in the environment and a wave f at the blocker whose sum on
-        // the surface is at its limit.
+        // For a frequency g in the environment, f is the frequency at the blocker with which the
+        // summed frequency on the surface equals its limit.
         let mut most = 0.0_f64;
         for (limit, g) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let g = g * c.environment_cutoff;
@@ -98,8 +101,9 @@ impl EyeScene {
     }
 
     /// Returns the frequency below which 99 % of the energy of an image lies, divided by the
-    /// predicted one. The Gaussian lobe is narrow enough for the surface to be linear. The image
-    /// is that of a distant point or, if `edge` is set, the derivative of the image of an edge.
+    /// predicted frequency. The Gaussian lobe is so narrow that angles are linear functions of
+    /// the position within its image. The image is that of a distant point or, if `edge` is set,
+    /// the derivative of the image of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;

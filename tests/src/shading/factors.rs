@@ -1,4 +1,5 @@
-//! Cosines, Fresnel factors and lobes on their own, diffuse irradiance, and environments.
+//! Tests of single factors (cosines, Fresnel factors and lobes), of diffuse irradiance, and of
+//! environments.
 
 use super::operators::OperatorComparison;
 use super::primal::{about, between, transform, wave};
@@ -22,7 +23,7 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
 }
 
 /// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
-/// 0; the panels are finer towards the middle and the end.
+/// 0; the quadrature panels are finer near θ = 0 and near `end`.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;
@@ -41,7 +42,7 @@ fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(panels).collect()
 }
 
-/// Returns the comparisons that involve no surface.
+/// Returns the comparisons of single factors, without a surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = cosines();
     rows.extend(fresnel());
@@ -114,7 +115,8 @@ fn fresnel() -> Vec<OperatorComparison> {
             fault: (name, apart(&curve(wrong), &primal)),
         }
     };
-    // Fresnel's formulas in another form, with sines and tangents of the refracted angle.
+    // Fresnel's formulas in a form other than the theory's, with sines and tangents of the
+    // refracted angle.
     let snell = |theta: f64| {
         let theta = theta.max(1e-4);
         let beyond = (theta.sin() / 1.5).asin();
@@ -122,7 +124,7 @@ fn fresnel() -> Vec<OperatorComparison> {
         let along = (theta - beyond).tan() / (theta + beyond).tan();
         0.5 * (across * across + along * along)
     };
-    // The form for metals in real numbers (Born and Wolf 1999, section 14.2).
+    // Fresnel's formulas for metals, written in real numbers (Born and Wolf 1999, section 14.2).
     let conductor = |theta: f64| {
         let (n, k, sine, cosine) = (0.96_f64, 6.69_f64, theta.sin(), theta.cos());
         let t0 = n * n - k * k - sine * sine;
@@ -167,8 +169,8 @@ fn fresnel() -> Vec<OperatorComparison> {
 }
 
 fn lobes() -> Vec<OperatorComparison> {
-    // Each row has a shape of a lobe that is implemented again and normalised by a separate
-    // quadrature, the end of its support and its scale.
+    // Each row has a second implementation of a lobe's shape, which a separate quadrature
+    // normalises, and the end and the scale of the lobe.
     let row = |operator,
                lobe: PlanarLobe,
                off: PlanarLobe,
@@ -230,7 +232,8 @@ fn lobes() -> Vec<OperatorComparison> {
             PlanarLobe::Ggx { roughness: 0.105 },
             PI,
             0.1,
-            // Walter et al.: 1/(cos⁴ τ (α² + tan² τ)²) in cosines of δ.
+            // The GGX distribution of Walter et al. is 1/(cos⁴ τ (α² + tan² τ)²) as a function of
+            // the cosine of δ.
             &|t| (1.01 - 0.99 * t.cos()).powi(-2),
         ),
     ]
@@ -266,7 +269,8 @@ fn differential_irradiance() -> OperatorComparison {
                 .sum()
         })
         .collect();
-    // The factor g falls as 1/v³ without an end, so copies 3000 apart add an error of 10⁻¹⁰.
+    // The factor g decreases as 1/v³ and has unbounded support, so its periodic copies at a
+    // distance of 3000 add an error of 10⁻¹⁰.
     let lattice = Lattice {
         spacing: 1.0 / 3000.0,
         reach: 6.0,
@@ -310,8 +314,8 @@ fn environments() -> Vec<OperatorComparison> {
         let omegas: Vec<[f64; 2]> = (0..12)
             .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
             .collect();
-        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. The width of the field over s is
-        // that of the Gaussians divided by |k|.
+        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. The width of this field over s
+        // is the width of the environment's Gaussians divided by |k|.
         let primal = |[x, t]: [f64; 2]| -> Complex {
             let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
             mirrored

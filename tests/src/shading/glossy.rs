@@ -1,5 +1,5 @@
-//! The sampling criteria of section 6.2 compared with photons, in sweeps of all lengths and angles
-//! in the criteria.
+//! The sampling criteria of section 6.2 compared with photons; sweeps vary every length and angle
+//! that occurs in the criteria.
 
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -13,20 +13,20 @@ use std::f64::consts::SQRT_2;
 
 /// Default number of photons per point.
 const PHOTONS: u64 = 1_000_000;
-/// Maximum difference between measured and exact, in standard errors.
+/// Maximum difference between the measured and the exact bandwidth, in standard errors.
 const MOST: f64 = 3.3;
 /// Permitted relative error of a criterion.
 const ERROR: f64 = 0.05;
-/// The 95 % bandwidth of a Gaussian lobe times its standard deviation.
+/// The 95 % bandwidth of a Gaussian lobe, multiplied by the standard deviation of the lobe.
 const GAUSSIAN: f64 = 0.2206;
-/// The 95 % bandwidth of a box times its half-width.
+/// The 95 % bandwidth of a box, multiplied by the half-width of the box.
 const BOX: f64 = 1.03;
 /// Half-width of the window in x, metres.
 const ACROSS: f64 = 0.05;
 /// Maximum half-width of a window in slope.
 const WIDEST: f64 = 0.25;
 
-/// The light on the surface.
+/// The kind of light that illuminates the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Lit {
     /// Distant light.
@@ -67,9 +67,9 @@ const BASE: GlossyBench = GlossyBench {
     lobe: LobeOwner::Phong(2500.0),
 };
 
-/// The windows and grids at the eye.
+/// The windows and the frequency grids at the eye.
 struct Windows {
-    /// Half-widths in u and v.
+    /// Half-widths of the window in u and in v.
     slope: [f64; 2],
     /// Maximum frequencies in ρ and ν.
     most: [f64; 2],
@@ -88,7 +88,7 @@ impl GlossyBench {
         let (sine, cosine) = self.incidence.sin_cos();
         let (light, slit, from) = match self.lit {
             Lit::Beam => {
-                // The beam starts farther from the surface than the eye.
+                // The start of the beam is farther from the surface than the eye is.
                 let (w, from) = (windows.beam, 1.0_f64.max(1.5 * self.distance));
                 (
                     format!(
@@ -101,8 +101,8 @@ impl GlossyBench {
             }
             Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
             Lit::Slit(d) => {
-                // The slit is 2 % of its distance wide, which is less than half of the lobe's
-                // standard deviation.
+                // The width of the slit is 2 % of its distance from the surface, which is an
+                // angle below half of the lobe's standard deviation.
                 let (half, from) = (0.01 * d, 1.01 * d);
                 (
                     format!(
@@ -164,7 +164,7 @@ impl GlossyBench {
         found.expect("across a ray that left a glossy surface")
     }
 
-    /// Returns the bandwidth by the criterion, corrected and as printed.
+    /// Returns the bandwidth that the criterion predicts, in its corrected form and as printed.
     fn says(&self, c: &Criterion) -> [f64; 2] {
         match self.lit {
             Lit::Beam => [c.environment(), c.printed_environment()],
@@ -172,7 +172,7 @@ impl GlossyBench {
         }
     }
 
-    /// Returns windows that hold the lobe, grids, and how much the window in u widens a spectrum.
+    /// Returns windows that contain the lobe, grids, and the bandwidth that the window in u adds.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
@@ -182,7 +182,7 @@ impl GlossyBench {
             Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,
         };
         let along = (2.0 * c.curvature + nearness) / c.outgoing.cos();
-        // GGX has long tails.
+        // The window is wider for GGX lobes, because they have long tails.
         let tails = if matches!(self.lobe, LobeOwner::Ggx(_)) {
             14.0
         } else {
@@ -192,8 +192,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at azimuth 0 integrates over y and v. If the lobe is no product in u and v, a
-        // narrow window keeps the visible light in the plane of incidence.
+        // The slice at azimuth 0 integrates over y and v. If the lobe is no product of functions
+        // of u and v, a narrow window in v selects the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -205,14 +205,14 @@ impl GlossyBench {
         let windows = Windows {
             slope: [u, v],
             most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
-            // The beam is seven times as wide as the lobe seen from the eye.
+            // The beam is seven times as wide as the lobe that the eye sees on the surface.
             beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
         };
         (windows, floor)
     }
 }
 
-/// A sweep: its name, the quantity on its axis, and how a value of it changes the bench.
+/// A sweep: its name, the swept quantity, and the bench for each value of this quantity.
 struct GlossySweep {
     name: &'static str,
     quantity: AxisQuantity,
@@ -336,7 +336,7 @@ fn sweeps() -> Vec<GlossySweep> {
     ]
 }
 
-/// Returns the section and its picture.
+/// Returns the section on the sweeps and the picture that plots them.
 ///
 /// # Panics
 /// If a scene cannot be measured.
@@ -353,7 +353,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let c = bench.criterion();
             let (windows, floor) = bench.windows(&c);
             count += 1;
-            // Each point has its own seed, so that they are independent.
+            // Each point of a sweep has its own seed, so that the points are independent.
             let scene = bench.scene(&windows, photons, count.unsigned_abs().into());
             let plane = &scene.planes[0];
             let theory = Applicability::new(&scene, plane);
@@ -372,7 +372,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let [ours, theirs] = [said, printed].map(|b| range(b, floor));
             let holds =
                 |[low, high]: [f64; 2], x: f64, slack: f64| low - slack < x && x < high + slack;
-            // Whether no measurement with this noise would be compatible with both ranges.
+            // Whether no measurement with this noise can be compatible with both ranges.
             let apart = ours[1] + 2.0 * noise < theirs[0] || theirs[1] + 2.0 * noise < ours[0];
             let rejected = !holds(theirs, found.value, noise);
             told += i32::from(rejected);
@@ -413,7 +413,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             panels.push(panel(&sweep, points));
         }
     }
-    // The probability is two-sided, for normally distributed errors.
+    // The probability of the deviation is two-sided, for normally distributed errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
     let section = ReportSection {
@@ -458,17 +458,17 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// Returns the range of measurements that agree with the `bandwidth` of a criterion, if the window
-/// widens the spectrum by at most `floor`.
+/// Returns the range of measured bandwidths that agree with the `bandwidth` of a criterion; the
+/// window may widen the spectrum by at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// Returns the measured points and the curves of the criteria.
+/// Returns the measured points, and the curves that the criteria predict.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
-    // Four digits are enough for curves.
+    // Four digits are sufficient for the points of a curve.
     let digits = |x: f64| (x * 1e4).round() / 1e4;
     let first = points.first().map_or(0.0, |p| p[0]);
     let last = points.last().map_or(1.0, |p| p[0]);

@@ -1,10 +1,12 @@
-//! The light of these sections, and its first-order reflection by quadrature in the primal domain.
+//! The light for the tests of shading in 2D, and its first-order reflection by quadrature in the
+//! primal domain.
 
 use super::primal::{about, between, wave};
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Standard deviations at which sums over a Gaussian end, where its value is 2·10⁻¹⁶.
+/// Number of standard deviations at which sums over a Gaussian end; there the Gaussian has the
+/// value 2·10⁻¹⁶.
 const REACH: f64 = 8.5;
 
 /// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
@@ -58,7 +60,7 @@ pub(super) fn light_hat(omega: [f64; 2]) -> Complex {
     LIGHT.iter().map(|bell| bell.spectrum(omega)).sum()
 }
 
-/// Frequencies at which such light has content.
+/// Frequencies at which the spectrum of the light is not negligible.
 pub(super) fn frequencies() -> Vec<[f64; 2]> {
     (0..18)
         .map(|i| {
@@ -74,13 +76,15 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) theta0: f64,
     pub(super) theta1: f64,
     pub(super) k: f64,
-    /// Maximum angle of incidence in sums: π/2, or more if the horizon must not cut the light.
+    /// Maximum angle of incidence in sums: π/2 if the horizon cuts the light, and more if it must
+    /// not.
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
     /// ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// The factor h(θ_o') on the half-circle; `None` means 1 on the whole circle.
+    /// The factor h(θ_o') on the half-circle of outgoing directions; `None` means a factor of 1
+    /// on the full circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
     /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],
@@ -89,8 +93,8 @@ pub(super) struct PrimalSurface<'a> {
 }
 
 impl PrimalSurface<'_> {
-    /// Returns nodes from −`end` to `end`, with `count` nodes on either side of the centre of each
-    /// piece between two kinks.
+    /// Returns quadrature nodes from −`end` to `end`; each interval between two kinks has `count`
+    /// nodes on either side of its centre.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();
         let pieces = ends
@@ -100,13 +104,14 @@ impl PrimalSurface<'_> {
     }
 
     /// Returns the transform of the reflected light field in the outgoing light frame, with all
-    /// angles and positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' =
-    /// −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
+    /// angles and positions linear in the incoming angle and position: x = −c₀ s, θ = θ_i' + k s
+    /// − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
         let incident = self.pieces(self.horizon, 120);
         let outgoing = self.pieces(FRAC_PI_2, 160);
-        // The sum of ρ over δ with its phase; computed once if ρ does not vary.
+        // The sum of the lobe ρ over δ, weighted by a phase; if ρ does not vary along s, the sum
+        // is computed once.
         let spread = |s: f64, mirror: f64| -> Complex {
             let Some(lobe) = self.lobe else {
                 let h = self.after.map_or(1.0, |h| h(mirror));

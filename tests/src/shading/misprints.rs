@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const ALPHA: f64 = 0.01;
 /// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
-/// Curvature, per metre, of the sphere in the scene file with the environment.
+/// Curvature, per metre, of the sphere in the scene file that has an environment.
 pub(super) const K: f64 = 1.25;
 
 struct Misprint {

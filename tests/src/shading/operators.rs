@@ -1,13 +1,13 @@
-//! The section of the operators.
+//! The section on the operators of shading in 2D.
 
 use super::{brdfs, factors, small, visibility};
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 
-/// Maximum difference: both sides are accurate to about 10⁻¹².
+/// Maximum difference between operator and quadrature, each of which is accurate to about 10⁻¹².
 const REQUIRED: f64 = 1e-9;
-/// Minimum difference of a planted fault.
+/// Minimum difference that a planted fault must cause.
 const SEEN: f64 = 1e-3;
 
 /// An operator compared with the primal domain.
@@ -18,7 +18,7 @@ pub(super) struct OperatorComparison {
     pub(super) compared: String,
     /// ‖predicted − quadrature‖/‖quadrature‖.
     pub(super) off: f64,
-    /// A wrong form of the operator, and the error of this form.
+    /// Name of a wrong form of the operator, and the relative error of this form.
     pub(super) fault: (&'static str, f64),
 }
 

@@ -15,16 +15,18 @@ const ALPHA: f64 = 0.01;
 /// Maximum rounding error of the flux balance relative to the emitted flux.
 const LEDGER: f64 = 1e-12;
 
-/// The results of a scene.
+/// The results for one scene of shading.
 struct ShadedRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
-    /// For each plane, p of photons against backward rays; `None` without backward rays.
+    /// For each plane, the p-value of the comparison of photons with backward rays; `None` if no
+    /// backward rays are traced.
     backward: Vec<Option<f64>>,
     imbalance: f64,
 }
 
-/// Returns the section, with the photons of the files or with `photons` for each scene.
+/// Returns the section on all planes; each scene is traced with `photons` photons if given, else
+/// with the number in its file.
 pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();
@@ -141,7 +143,8 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(lines)
 }
 
-/// Returns the last step before a plane, and the rows of this step in the paper's Table 1.
+/// Returns the name of the last step before a plane, and the rows of the paper's Table 1 that
+/// describe this step.
 fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     let (word, line) = match (plane.leg, plane.orientation, plane.quantity) {
         (0, Orientation::Tangent, _) => ("incidence", Line::Incidence),
@@ -160,7 +163,7 @@ fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     (word.to_owned(), vec![line])
 }
 
-/// Returns the BRDF of the first surface.
+/// Returns the BRDF of the first surface in a scene.
 fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let hit = scene.path.legs[1].leaves.map(|hit| hit.object);
     let Some(Object::Patch(i)) = hit else {

@@ -23,15 +23,16 @@ const PIXEL: f64 = TAU / 256.0;
 
 /// A planted fault.
 enum Plant {
-    /// Changes the prediction, through a modified system.
+    /// Changes the prediction, which is computed for a modified system.
     ScatteringSystem(fn(&mut ScatteringSystem)),
-    /// Changes the prediction, by a factor.
+    /// Multiplies the prediction by a factor.
     Factor(f64),
-    /// Changes the photons, through a modified scene and modified crossings.
+    /// Changes the photons by modifications of the scene and of the crossings.
     Photons(fn(&mut Scene), fn(&Scene, Crossing) -> Crossing),
 }
 
-/// A plane, the modifications of its scene's text, and the faults compared with its photons.
+/// A plane of a scene, the modifications of the scene's text, and the faults that are tested at
+/// this plane.
 struct Stand {
     scene: &'static str,
     plane: &'static str,
@@ -42,7 +43,7 @@ struct Stand {
 /// Returns the section.
 pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
-    // The bench in the arriving light counts as one more.
+    // The bench that records arriving light is not in the list and counts as one more bench.
     let count = stands.len() + 1;
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
@@ -90,7 +91,8 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
 }
 
 impl Plant {
-    /// Returns p of the comparison with the fault, and how much the fault changes the spectrum.
+    /// Returns the p-value of the comparison with the fault, and the relative change of the
+    /// spectrum that the fault causes.
     fn judged(&self, bench: &Bench) -> (f64, f64) {
         let by_prediction = |said: &Slices| {
             let p = bench.p_value(&bench.photons, said);
@@ -301,7 +303,7 @@ pub(super) fn swapped(reflectance: &mut Reflectance) {
     }
 }
 
-/// Extends the range of each varying weight down to 0.
+/// Extends the range of values of each varying weight down to 0.
 fn full(reflectance: &mut Reflectance) {
     for Term { weight, .. } in &mut reflectance.terms {
         if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
@@ -345,7 +347,7 @@ fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     (Bench::of(scene, sound), turned)
 }
 
-/// Returns the row for a fault and the place where it is planted.
+/// Returns the table row for a fault, which names where the fault is planted.
 fn row(
     [name, place]: [&str; 2],
     bench: &Bench,

@@ -1,9 +1,11 @@
-//! Plain quadrature of functions of position and angle, independent of that of the theory.
+//! Plain quadrature of functions of position and angle, independent of the quadrature that theory
+//! uses.
 
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// The limit beyond which the nodes of the double exponential rule equal the ends up to rounding.
+/// Limit of the parameter beyond which nodes of the double exponential rule equal the ends of the
+/// interval up to rounding.
 const LAST: f64 = 3.1;
 
 /// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974):

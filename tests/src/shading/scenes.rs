@@ -1,4 +1,4 @@
-//! The scenes of shading in 4D.
+//! The scenes that test shading in 4D.
 
 use crate::scenes::emit;
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -31,10 +31,10 @@ const SCENES: &[(&str, &str)] = &[
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 
-/// The number of scenes that scatter light: all but the last.
+/// The number of scenes that scatter light, which are all scenes of the list but the last.
 const SHADED: usize = 14;
 
-/// Returns every scattering scene, by default with the photons of its file.
+/// Returns every scattering scene, by default with the number of photons in its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let shaded = SCENES[..SHADED].iter();
     shaded
@@ -58,7 +58,8 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
 }
 
-/// Returns a scene reduced to one of its planes: all photons are aimed at its window.
+/// Returns a scene reduced to one of its planes, so that all photons are aimed at the window of
+/// this plane.
 ///
 /// # Panics
 /// If there is no such plane.

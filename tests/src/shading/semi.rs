@@ -16,7 +16,7 @@ use ndarray::Array3;
 
 const SCENE: &str = "semi_convolution";
 
-/// A modification of the operator's BRDFs.
+/// A function that modifies the BRDFs of the operator.
 type BrdfChange = fn(&mut Reflectance);
 
 const FAULTS: [(&str, BrdfChange); 6] = [
@@ -91,9 +91,9 @@ impl Sides {
         }
     }
 
-    /// Returns ‖operator(before) − after‖ without its part from noise, and the noise, both
-    /// relative to ‖after‖. The two numbers are for the slice along x, over all frequencies whose
-    /// shifts stay within the grid.
+    /// Returns ‖operator(before) − after‖ after the contribution of noise is subtracted, and the
+    /// noise, both relative to ‖after‖. Both norms are over the slice along x and over all
+    /// frequencies that the operator's shifts keep within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());
@@ -128,7 +128,7 @@ fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
         .position(|v| (v - value).abs() < 0.01 * axis.spacing)
 }
 
-/// Returns the largest frequency of any weight, cycles per metre.
+/// Returns the largest spatial frequency of the BRDFs' weights, in cycles per metre.
 fn shift(reflectance: &Reflectance) -> f64 {
     let patterns = reflectance.terms.iter().filter_map(|t| t.weight.pattern());
     patterns.fold(0.0, |most, pattern| match pattern {
@@ -197,7 +197,7 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     }
 }
 
-/// Maximum error of a correct operator.
+/// Maximum relative error of a correct operator.
 const LARGEST: f64 = 0.002;
 const WHY: &str = "4 and 8 million photons leave 0.11 % and 0.13 % beyond their noise; noise spreads by less than itself";
 

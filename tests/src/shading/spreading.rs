@@ -1,4 +1,5 @@
-//! Statements about discontinuities, curvature and the cosine of environments.
+//! Statements of the paper about discontinuities, about curvature, and about the cosine factor of
+//! environment light.
 
 use super::brdfs::{THETA0, THETA1};
 use super::light::light_hat;
@@ -22,7 +23,7 @@ pub(super) fn statements() -> Vec<Statement> {
 
 /// cosⁿ on the half-circle has a discontinuous n-th derivative.
 fn discontinuity(n: i32) -> Statement {
-    // At these frequencies |sin(π²Ω)| or, for even n, |cos(π²Ω)| is one.
+    // The frequencies Ω are chosen such that |sin(π²Ω)| or, for even n, |cos(π²Ω)| equals one.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
     let points: Vec<[f64; 2]> = [20, 28, 40, 56, 80, 113, 160]
         .map(|m| {
@@ -44,8 +45,8 @@ fn discontinuity(n: i32) -> Statement {
     }
 }
 
-/// Returns the reflection of the other sections with another curvature, and with this factor in
-/// place of the cosine.
+/// Returns the reflection that the other sections use, with the given curvature and with the
+/// given factor in place of the cosine.
 fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
     PlanarReflection {
         incidence: THETA0,
@@ -79,7 +80,7 @@ fn curvature() -> Vec<Statement> {
         let [low, high] = [f64::min, f64::max].map(|pick| all.into_iter().fold(all[0], pick));
         high / low - 1.0
     };
-    // The width in Ωθ of the whole light field: |L|² is summed over Ωx.
+    // The width in Ωθ of the whole light field: The power |L|² is summed over Ωx.
     let everywhere = |step: ReflectionStep, before: Factor<'static>| {
         change(&|k| {
             let chain = reflection(k, before);
@@ -91,7 +92,7 @@ fn curvature() -> Vec<Statement> {
             })
         })
     };
-    // The width in Ωθ at a single point 1.5 m away: L is projected along Ωx.
+    // The width in Ωθ at a single point 1.5 m away: The spectrum L is projected along Ωx.
     let eye = change(&|k| {
         let chain = reflection(k, Factor::One);
         spread(|t| {
@@ -144,8 +145,8 @@ fn cosine() -> Vec<Statement> {
         mean: 0.3,
         deviation: 0.3,
     };
-    // The relative error of the convolution if the light also varies along the surface by
-    // `pattern`.
+    // Returns the relative error of the convolution if the light is also multiplied by `pattern`
+    // along the surface.
     let off = |pattern: &dyn Fn(f64) -> f64| {
         let pairs: Vec<[Complex; 2]> = (0..16)
             .map(|i| {

@@ -26,8 +26,9 @@ pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     [s, p].map(|share| 2.0 * share / (s + p))
 }
 
-/// Multiplies the weight by the texture of `textured_glossy` at the position of the leaving light.
-/// The factor 1/cos θ₁ converts this position to one along the surface.
+/// Multiplies the weight by the texture of `textured_glossy` at the position of the leaving
+/// light. The factor 1/cos θ₁ converts a position across the leaving ray to a position along the
+/// surface.
 pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     const MIRROR: f64 = 0.796_083_799;
     let etendue_scene::Event::Reflects(reflectance) = &scene.patches[0].event else {
@@ -39,8 +40,8 @@ pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     scaled(crossing, factor)
 }
 
-/// Rotates the leaving light so that the mirror direction becomes the normal. The rotation
-/// preserves solid angles, but not areas in (θ, φ).
+/// Rotates the leaving light so that the mirror direction becomes the normal. The rotation of
+/// directions preserves solid angles, but not areas in the coordinates (θ, φ).
 pub(super) fn around_the_normal(scene: &Scene, mut crossing: Crossing) -> Crossing {
     let [away, from] = on_flat(scene, &crossing);
     let mirrored = DVec3::new(-from.x, -from.y, from.z);

@@ -14,7 +14,7 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::TAU;
 
-/// Sizes of the neighbourhood.
+/// Relative sizes of the neighbourhood of the central ray.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
 /// Maximum error of an exact step, which is that of the trapezoid rule over ± 7 standard
 /// deviations.
@@ -25,7 +25,8 @@ const REACH: f64 = 7.0;
 struct Circle {
     theta0: f64,
     k: f64,
-    /// Standard deviation of the lobe, relative to the size; `None` means a Dirac.
+    /// Standard deviation of the lobe, relative to the size of the neighbourhood; `None` means a
+    /// Dirac.
     lobe: Option<f64>,
 }
 
@@ -150,7 +151,8 @@ const fn line(step: ReflectionStep) -> Line {
 }
 
 impl Circle {
-    /// Returns the known order of the error, or `None` if the step is exact.
+    /// Returns the known order at which the error of a step decreases with the neighbourhood's
+    /// size, or `None` if the step is exact.
     fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
             _ if self.theta0 != 0.0 => Some(1.0),
@@ -168,7 +170,7 @@ impl Circle {
         }
     }
 
-    /// ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
+    /// Returns ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
     fn error(&self, step: ReflectionStep, size: f64, plant: &ChainChange) -> f64 {
         let bell = Self::light(size);
         let lobe = self.lobe.map(|lobe| lobe * size);
@@ -182,7 +184,8 @@ impl Circle {
                 after: Factor::One,
                 weight: None,
             }],
-            // The light's spectrum has the standard deviation 0.18/e; shears tilt it.
+            // The light's spectrum has the standard deviation 0.18/e, and shears tilt this
+            // spectrum.
             lattice: Lattice::circle(2.5 / size),
         };
         plant(&mut reflection);
@@ -200,8 +203,8 @@ impl Circle {
         apart(&said, &self.rays(step, size, &omegas))
     }
 
-    /// Returns the map of the steps of a mirror, which gives the frequencies where the spectrum
-    /// has content.
+    /// Returns the affine map composed of a mirror's steps, which locates the frequencies where
+    /// the spectrum is not negligible.
     fn map(&self, step: ReflectionStep) -> AffineMap<2> {
         let mut map = AffineMap::identity();
         for next in ReflectionStep::ALL {
@@ -220,7 +223,8 @@ impl Circle {
         map
     }
 
-    /// Transforms of the traced field, by the trapezoid rule over rays at their hits.
+    /// Returns the transforms of the traced field, by the trapezoid rule over positions of hits
+    /// and over angles.
     fn rays(&self, step: ReflectionStep, size: f64, omegas: &[[f64; 2]]) -> Vec<Complex> {
         let bell = Self::light(size);
         let mut sums = vec![Complex::from(0.0); omegas.len()];
@@ -234,7 +238,8 @@ impl Circle {
             _ => None,
         };
         for (s, ds) in about(0.0, REACH * size / self.theta0.cos(), 26) {
-            // In the first step s is a position on the tangent, in the others on the arc.
+            // In the first step, s is a position on the tangent; in all later steps, s is a
+            // position on the arc.
             let turn = if step == ReflectionStep::Incidence {
                 0.0
             } else {
@@ -245,7 +250,8 @@ impl Circle {
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
             for (theta, dt) in about(0.0, REACH * size, 26) {
-                // The radiance along −ω(θ₀ + θ) through the point, in the light's frame.
+                // The radiance of the light, in the light's frame, along the direction −ω(θ₀ + θ)
+                // through the hit point.
                 let radiance = bell.value([-self.across(self.theta0, point, theta), theta]);
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;

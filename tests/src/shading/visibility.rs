@@ -7,8 +7,8 @@ use crate::table1::apart;
 use etendue_field::{Complex, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 use etendue_theory::{Chain, Operator, Source, at};
 
-/// Half-sides of the light, its distance to the mask, and the distance from there to the plane,
-/// metres.
+/// Half-sides of the light, distance from the light to the mask, and distance from the mask to
+/// the plane, in metres.
 const LIGHT: [f64; 2] = [0.2, 0.3];
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.7;
@@ -17,7 +17,7 @@ const WINDOW: [f64; 2] = [0.4, 0.5];
 /// Number of nodes on either side of the centre of each interval between two kinks.
 const NODES: i32 = 30;
 
-/// Compares the light behind a rectangle and behind a half-plane.
+/// Compares theory with the light field itself, behind a rectangle and behind a half-plane.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let rectangle = Rectangle {
         center: [0.1, -0.05],
@@ -115,7 +115,7 @@ fn frequencies() -> Vec<[f64; 4]> {
 fn section(light: f64, passed: [f64; 2], [along_x, along_u]: [f64; 2]) -> Complex {
     let [half, steepest] = WINDOW;
     let hann = |t: f64, half: f64| 0.5 + 0.5 * (std::f64::consts::PI * t / half).cos();
-    // Each bound of x is a + b u.
+    // The integration over x has bounds of the form a + b u, where u is the slope.
     let far = BEFORE + AFTER;
     let lows = [[-half, 0.0], [-light, far], [passed[0].max(-1e3), AFTER]];
     let highs = [[half, 0.0], [light, far], [passed[1].min(1e3), AFTER]];

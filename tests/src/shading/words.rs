@@ -1,4 +1,4 @@
-//! Statements in the paper's text, as numbers.
+//! Statements in the paper's text, each tested by a number.
 
 use super::{blockers, spreading};
 use crate::report::Bound::{AtLeast, AtMost};
@@ -9,9 +9,9 @@ pub(super) struct Statement {
     pub(super) said: &'static str,
     pub(super) measured: String,
     pub(super) number: f64,
-    /// The expected range of the number, known in advance.
+    /// The expected range of the measured number, which is known in advance.
     pub(super) expected: [f64; 2],
-    /// The conclusion: "holds", or which part of the statement holds.
+    /// The conclusion about the statement: "holds", or the part of it that holds.
     pub(super) holds: &'static str,
 }
 

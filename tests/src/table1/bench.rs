@@ -8,10 +8,11 @@ use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction}
 use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
 use etendue_theory::{Model, Parameter, rays};
 
-/// Level of the test of the exact prediction, whose result is not used here.
+/// Significance level of the test of the exact prediction; the result of this test is not used
+/// for chains.
 const LEVEL: f64 = 0.01;
 
-/// A scene with one mirror, and its steps.
+/// A scene with one mirror, and the operators (steps) of this mirror.
 pub(super) struct MirrorBench<'a> {
     pub(super) outcome: &'a TableRun,
     pub(super) distance: f64,
@@ -38,7 +39,8 @@ impl<'a> MirrorBench<'a> {
         Steps::sound(self.distance, self.theta0, self.shape)
     }
 
-    /// Returns the difference between the steps and the chain that theory derives from the scene.
+    /// Returns the largest difference between the chain composed of the steps and the chain that
+    /// theory derives from the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
         let Some(read) = rays::chain(&self.outcome.system(plane), Edition::Corrected) else {
             return f64::NAN;
@@ -54,8 +56,8 @@ impl<'a> MirrorBench<'a> {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// Compares the photons of a plane with the chain made of these steps, by the rule for
-    /// first-order chains.
+    /// Compares the photons of a plane with the chain composed of the given steps, by the rule
+    /// for first-order chains.
     pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
         let TableRun {
             scene,

@@ -9,10 +9,11 @@ use etendue_compare::{FirstOrderReport, Verdict};
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use std::f64::consts::TAU;
 
-/// Permitted difference between a chain composed here and the one derived from the scene.
+/// Maximum permitted difference between a chain composed of single steps and the chain derived
+/// from the scene.
 const SAME: f64 = 1e-8;
 
-/// A function that modifies the steps, given θ₀ and the shape operator.
+/// A function that modifies the steps of a mirror, given θ₀ and the shape operator.
 type StepMisprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
 
 fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
@@ -30,8 +31,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // With longitude 0 the shear has no cosines and is M alone; it has the correct sign if
-            // `sign` is 1.
+            // With longitude 0 the shear has no cosines and is M alone; the sign of this shear is
+            // correct if `sign` is 1.
             let longitude = cosine(theta0);
             steps.curvature =
                 AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
@@ -113,8 +114,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// Returns a row for each single misprint. All misprints are tested on a hollow sphere, and those
-/// that concern plane mirrors also on a plane mirror.
+/// Returns one table row for each single misprint. All misprints are tested on a hollow sphere,
+/// and those that concern plane mirrors also on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();
@@ -130,7 +131,8 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
         let mut steps = bench.sound();
         misprint(&mut steps, bench.theta0, bench.shape);
         let printed = bench.judged(index, &steps);
-        // On a plane mirror Table 1's two scales cancel, and so do its two phases (docs/theory.md, section 7).
+        // On a plane mirror the two scales of Table 1 cancel each other, and so do the two phases
+        // (docs/theory.md, section 7).
         let hidden = flat && name == "Table 1 as printed";
         let due = if hidden { Verdict::Pass } else { Verdict::Fail };
         let is_due = printed.verdict == due;
@@ -183,13 +185,13 @@ fn section(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// Returns the section on the misprints, for the hollow and the plane mirror.
+/// Returns the section on the misprints, tested on the hollow mirror and on the plane mirror.
 pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     section(&[sphere, flat])
 }
 
-/// Returns the section on the scene files that request the printed formulas, which must fail as
-/// with `--expect disagreement`.
+/// Returns the section on scene files that request the printed formulas; such scenes must
+/// disagree, as with `--expect disagreement`.
 pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();

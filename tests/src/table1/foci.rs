@@ -10,16 +10,18 @@ use etendue_scene::{Emission, LightFile, Scene, resolve};
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Beam widths in metres: the width in the file, and a width so narrow that its aberration is below
-/// its noise.
+/// Beam widths in metres: the width in the scene file, and a width so narrow that the beam's
+/// aberration is below the noise.
 const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;
 
-/// Sums of weight, weight · x and weight · x² over the crossings of a plane, and the same for y.
+/// Sums of weight, weight · x and weight · x² over the crossings of a plane, and the same three
+/// sums for y.
 type CrossingSums = [[f64; 3]; 2];
 
-/// Distances at which the beam is narrowest in the plane of incidence and across it.
+/// Returns the section on the distances at which the beam is narrowest, in the plane of incidence
+/// and perpendicular to this plane.
 pub(super) fn foci(outcome: &TableRun) -> ReportSection {
     let theta0: f64 = 0.7;
     let radius = 2.0;
@@ -94,7 +96,7 @@ fn with_beam(scene: &Scene, width: f64) -> Scene {
     resolve(&scene.name, file, ".".as_ref(), u64::MAX).expect("the scene was sound")
 }
 
-/// Returns, for each batch, the sums of each plane.
+/// Returns, for each batch, the sums over the crossings of each plane.
 fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     let tracer = Tracer::new(scene);
     let batch = |number: u32| {
@@ -116,7 +118,8 @@ fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     (0..scene.run.batches).into_par_iter().map(batch).collect()
 }
 
-/// Returns the variances along x and y at each plane, over all batches or over all but one.
+/// Returns the variances of crossings along x and y at each plane, over all batches or over all
+/// batches but one.
 fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
     let variance = |plane: usize| {

@@ -28,7 +28,7 @@ use etendue_theory::rays::SpecularSystem;
 /// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
 
-/// The results of a scene of the table.
+/// The results for one scene that tests Table 1.
 struct TableRun {
     scene: Scene,
     measurement: Measurement,
@@ -56,7 +56,8 @@ impl TableRun {
     }
 }
 
-/// Returns all sections, with the photons of the files or with `photons` for each scene.
+/// Returns all sections on Table 1; each scene is traced with `photons` photons if given, else
+/// with the number in its file.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

@@ -1,4 +1,4 @@
-//! Every plane of the table.
+//! Comparison of photons with theory at every plane of the scenes for Table 1.
 
 use super::order::{self, Fall, KnownOrder, ORDER, fall};
 use super::path::{MirrorPath, PathStage};
@@ -13,8 +13,8 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Permitted difference between two predictions that are equal because the first order is exact;
-/// the quadrature of each is accurate to 10⁻⁴.
+/// Permitted difference between the exact and the first-order prediction where the first order is
+/// exact; the quadrature of either prediction is accurate to 10⁻⁴.
 const QUADRATURE: f64 = 2e-4;
 
 /// Returns the section on Table 1 in 4D.
@@ -123,7 +123,8 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
     Check::new("order", largest, Below(QUADRATURE), "two quadratures")
 }
 
-/// Returns the last step before a plane, and the row of this step in the paper's Table 1.
+/// Returns the name of the last step before a plane, and the row of the paper's Table 1 that
+/// describes this step.
 fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
@@ -153,8 +154,8 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     }
 }
 
-/// Returns the 2D scene in the plane of incidence of a scene with one surface, which must have a
-/// principal axis in this plane.
+/// Returns the 2D section, in the plane of incidence, of a scene with one surface; a principal
+/// axis of this surface must lie in that plane.
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
@@ -177,7 +178,8 @@ fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
         None => plane.patch,
     };
     let [k1, k2, _] = patch.map_or([0.0; 3], |patch| patch.curvature);
-    // The direction of the principal axes does not matter if both curvatures are equal.
+    // If both principal curvatures are equal, the direction of the principal axes does not
+    // matter.
     let across = patch.is_some_and(|p| p.frame.x.y.abs() > 1e-9);
     if across && (k1 - k2).abs() > 1e-12 {
         return None;

@@ -9,13 +9,13 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Sizes of the neighbourhood, relative to that of the scene.
+/// Sizes of the neighbourhood, relative to the size in the scene file.
 const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Maximum deviation of a fitted order from the known one.
+/// Maximum deviation of a fitted order from the known order.
 pub(crate) const ORDER: f64 = 0.15;
 
-/// Checks that the order fitted to decreasing errors is the known one.
+/// Checks that the order fitted to decreasing errors equals the known order.
 pub(crate) fn check(fitted: f64, known: f64) -> Check {
     let off = (fitted - known).abs();
     Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
@@ -27,16 +27,16 @@ const NORMAL: f64 = 1e-6;
 /// The order known in advance (docs/theory.md, section 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum KnownOrder {
-    /// Exact: travel and plane mirrors only.
+    /// The chain is exact: the path has only travel and plane mirrors.
     Exact,
-    /// First order: light arrives obliquely at some surface.
+    /// The error is of first order: light arrives obliquely at some surface.
     First,
-    /// Second order: light arrives along every normal.
+    /// The error is of second order: light arrives along the normal of every surface.
     Second,
 }
 
 impl KnownOrder {
-    /// Returns the known order for a plane.
+    /// Returns the order at which the error at a plane is known to decrease.
     pub(super) fn expected(view: &Observed<SpecularSystem>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
@@ -57,7 +57,7 @@ impl KnownOrder {
         }
     }
 
-    /// Returns the exponent with which the error decreases; `None` if there is no error.
+    /// Returns the exponent with which the error decreases, or `None` if the chain has no error.
     pub(super) fn exponent(self) -> Option<f64> {
         match self {
             Self::Exact => None,
@@ -67,7 +67,7 @@ impl KnownOrder {
     }
 }
 
-/// The error at each size, and the fitted exponent.
+/// The error of the chain at each size of the neighbourhood, and the fitted exponent.
 #[derive(Clone, Debug)]
 pub(super) struct Fall {
     pub(super) errors: [f64; 4],

@@ -2,7 +2,7 @@
 
 use etendue_theory::geometry::{AffineMap, Media};
 
-/// Steps of the path, in the order of light.
+/// Steps of the path, in the order in which light passes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PathStage {
     Travel,
@@ -16,7 +16,7 @@ pub(super) enum PathStage {
 
 use PathStage::{Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 
-/// Travel and a surface: a mirror, or an interface if it has media.
+/// A path with travel and one surface, which is a mirror or, if media are given, an interface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MirrorPath {
     /// Metres of travel before and after the surface.
@@ -34,7 +34,7 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the map of all operators up to a stage.
+    /// Returns the map composed of all operators up to a stage of the path.
     pub(super) fn map(&self, stage: PathStage) -> AffineMap<2> {
         let theta1 = self.theta1();
         let event = match &self.media {
@@ -146,7 +146,7 @@ impl std::ops::Neg for Direction {
     }
 }
 
-/// sin θ T + cos θ N.
+/// Returns the unit vector sin θ T + cos θ N.
 fn omega(theta: f64) -> Direction {
     Direction(theta.sin(), theta.cos())
 }

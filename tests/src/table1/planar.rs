@@ -1,5 +1,5 @@
-//! The operators in 2D: compared with a plain quadrature of the mapped field, and with rays traced
-//! off a circle.
+//! Comparison of the operators in 2D with a plain quadrature of the mapped field, and with rays
+//! traced off a circle.
 
 use super::order::{self, ORDER, slope};
 use super::path::MirrorPath;
@@ -13,14 +13,15 @@ use etendue_theory::geometry::covariance::gaussian_spectrum;
 use etendue_theory::geometry::{Matrix, Media};
 use std::f64::consts::TAU;
 
-/// Covariance of the Gaussian field of the tests at size 1, (x, θ).
+/// Covariance over (x, θ) of the Gaussian light field in these tests, for a neighbourhood of size
+/// 1.
 const FIELD: Matrix<2> = [[1.0, 0.3], [0.3, 0.8]];
-/// Sizes of the neighbourhood.
+/// Relative sizes of the neighbourhood of the central ray.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
 /// Rounding error of a sum of 10⁴ terms.
 const ROUNDING: f64 = 1e-12;
 
-/// Metres before and after the surface.
+/// Distances travelled before and after the surface, in metres.
 const TRAVELS: [f64; 2] = [1.0, 0.7];
 
 const GLASS: Media = Media {
@@ -110,12 +111,12 @@ const fn line(stage: PathStage) -> Line {
     }
 }
 
-/// The errors of the operators at a stage of a path.
+/// The errors of the composed operators at one stage of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StageFound {
     /// Error of the operators' spectrum relative to a quadrature of the mapped field.
     pub(super) map: f64,
-    /// Errors relative to the traced field, at all sizes.
+    /// Relative errors of the operators' spectrum, compared with the traced field at all sizes.
     pub(super) traced: [f64; 4],
     pub(super) order: f64,
     pub(super) known: f64,
@@ -150,8 +151,9 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the order known in advance. The order is 1 at oblique incidence. The order is 2 at
-    /// normal incidence, and also if the only approximation is that of tangents by angles.
+    /// Returns the order of the error, which is known in advance. The order of the error is 1 at
+    /// oblique incidence. The order of the error is 2 at normal incidence, and also if the only
+    /// approximation replaces tangents by angles.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
@@ -168,7 +170,7 @@ impl MirrorPath {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));
         let content = |i: i32| {
-            // Frequencies of the original field, moved by the map.
+            // Frequencies of the original field, transformed by the map.
             let radius = 0.06 * f64::from(i / 6) / size;
             let angle = TAU * f64::from(i % 6) / 6.0 + 0.2;
             map.content([radius * angle.cos(), radius * angle.sin()])

@@ -19,7 +19,7 @@ fn turned(map: &mut SpectrumMap<4>, row: usize) {
     map.matrix[row] = map.matrix[row].map(|x| -x);
 }
 
-/// Multiplies a scale by a squared cosine: from 1/cos to cos.
+/// Multiplies a scale of 1/cos by a squared cosine, so that the scale becomes cos.
 fn cosine(map: &mut SpectrumMap<4>, at: usize, by: f64) {
     map.matrix[at] = map.matrix[at].map(|x| x * by);
 }
@@ -89,7 +89,7 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
         let straight = bench.theta0.abs() < 1e-6;
         for (name, fault) in faults() {
             if straight && (name.contains("cos") || name.contains('θ') && name.contains("sign")) {
-                // Along the normal these faults have no effect.
+                // At normal incidence these faults have no effect.
                 continue;
             }
             let mut steps = bench.sound();
@@ -189,7 +189,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
     ]
 }
 
-/// Wrong numbers in the exact prediction, judged by p.
+/// Wrong numbers in the exact prediction, which the p-value must reject.
 pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {

@@ -37,7 +37,7 @@ pub(super) fn of_rays(
             let weight = (-exponent).exp() * (xx * tt - xt * tx).abs() * p * q;
             let z = to([x, t]);
             if !weight.is_finite() {
-                // The ray misses the circle if the circle is small.
+                // If the circle is small, the ray misses the circle.
                 continue;
             }
             for (sum, w) in sums.iter_mut().zip(frequencies) {

@@ -1,4 +1,4 @@
-//! The scenes of the table.
+//! The scenes that test the paper's Table 1.
 
 use crate::scenes::emit;
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -38,7 +38,7 @@ const SCENES: &[(&str, &str)] = &[
     scene!("printed_sagittal"),
 ];
 
-/// Returns every scene of the table, by default with the photons of its file.
+/// Returns every scene that tests Table 1, by default with the number of photons in its file.
 ///
 /// # Panics
 /// If a scene is invalid.

@@ -1,9 +1,11 @@
-//! The single steps at one mirror, so that each can be changed.
+//! The single operators (steps) of one mirror, stored separately so that a test can change each
+//! of them.
 
 use etendue_field::{Orientation, Side, VirtualPlane};
 use etendue_theory::geometry::{AffineMap, Matrix, SpectrumMap};
 
-/// Travel to a mirror, with incidence in the plane of X and D, and the steps of its reflection.
+/// The operators of travel to a mirror and of the reflection, with incidence in the plane of X
+/// and D.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
     pub(super) distance: f64,

@@ -9,13 +9,14 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, SpecularSurface, SpecularSystem};
 use glam::DVec3;
 
-/// Step of the differences, metres and direction cosines; their error is of sixth order.
+/// Step of the finite differences, in metres or direction cosines; the error of these differences
+/// is of sixth order.
 const STEP: f64 = 2e-3;
 /// Maximum error of the differences, from rounding (10⁻¹⁶ divided by the step) and from terms of
 /// sixth order.
 const ROUNDING: f64 = 1e-10;
 
-/// A straight leg of a ray.
+/// A straight segment of a ray between two surfaces.
 #[derive(Clone, Copy)]
 struct VolumeRay {
     point: DVec3,
@@ -110,7 +111,7 @@ fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
 }
 
 fn bundle() -> impl Iterator<Item = [f64; 4]> {
-    // Corners of a small box.
+    // The rays start at the corners of a small box in phase space.
     (0..16).map(|n: u32| {
         std::array::from_fn(|i| {
             let size = if i < 2 { 0.01 } else { 0.02 };
@@ -168,8 +169,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Whether there is an ideal lens. An ideal lens preserves the volume of positions and slopes,
-/// unlike real lenses.
+/// Whether the path contains an ideal lens. An ideal lens preserves the volume of positions and
+/// slopes, unlike real lenses.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events

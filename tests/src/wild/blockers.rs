@@ -1,4 +1,4 @@
-//! Random blockers, across the first leg of the path.
+//! Random blockers, perpendicular to the first leg of the path.
 
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
@@ -11,10 +11,10 @@ use std::io;
 const LEAST: f64 = 1e-9;
 /// Maximum number of products of shapes for which a prediction takes an acceptable time.
 const MOST: f64 = 3e4;
-/// Number of rectangles that a disc counts as.
+/// Number of rectangles whose cost of prediction equals that of one disc.
 const STRIPS: f64 = 64.0;
 
-/// Up to three layers before the first surface, whose distance is given.
+/// Draws up to three layers before the first surface, whose distance from the light is given.
 pub(super) fn blockers(
     draw: &mut SceneDraw,
     light: &LightFile,
@@ -33,7 +33,7 @@ pub(super) fn blockers(
         } else {
             share
         };
-        // Layers must not lie in one plane.
+        // No two layers may lie in the same plane.
         let share = share * (1.0 + 1e-4 * i as f64 - 2e-4);
         let layer = layer(draw, format!("mask {i}"), share * first)?;
         products *= terms(&layer);
@@ -108,7 +108,7 @@ fn squares(draw: &mut SceneDraw, name: String, center: [f64; 3]) -> BlockersFile
     }
 }
 
-/// Draws shapes in the cells of a square grid.
+/// Draws shapes, at most one in each cell of a square grid.
 fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let pitch = draw.length([0.1, 0.5], [1e-4, 20.0]);
     let count = 1 + draw.below(5);
@@ -126,7 +126,8 @@ fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     (0..count).map(|i| shape(draw, i)).collect()
 }
 
-/// Draws one half-plane, or two that leave a slit, which is occasionally very narrow or closed.
+/// Draws one half-plane, or two half-planes with a slit between them, which is occasionally very
+/// narrow or closed.
 fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let axis: AxisName = axis(draw);
     let edge = draw.unit * draw.between(-0.15, 0.15);

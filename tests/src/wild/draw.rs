@@ -6,15 +6,15 @@ use glam::DVec3;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-/// The choices of one scene, in order of use.
+/// The random choices for one scene, in the order in which they are used.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// On average, one of this number of values is extreme; if the number is 0, no value is
+    /// Average number of drawn values for each extreme value; if the number is 0, no value is
     /// extreme.
     rarity: usize,
     /// The scale of all lengths in the scene, metres.
     pub(super) unit: f64,
-    /// The frame at the light, in whose coordinates everything else is drawn.
+    /// The frame at the light; all other objects are drawn in the coordinates of this frame.
     pub(super) frame: Frame,
     /// The folder for pictures and meshes of the scene.
     pub(super) folder: PathBuf,
@@ -22,7 +22,8 @@ pub(super) struct SceneDraw {
     pub(super) inputs: usize,
 }
 
-/// Units that make all lengths of a scene tiny or huge. Results must not depend on the unit.
+/// Units of length, some of which make all lengths of a scene tiny or huge. Results of a scene
+/// must not depend on the unit of length.
 const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
 /// The range of lengths permitted in a scene file, metres.
 const LENGTHS: [f64; 2] = [1e-9, 1e9];
@@ -54,7 +55,7 @@ impl SceneDraw {
         Frame::new(origin, d, x).unwrap_or(Frame::IDENTITY)
     }
 
-    /// Returns a uniform direction.
+    /// Returns a random direction, uniformly distributed over the sphere.
     pub(super) fn direction(&mut self) -> DVec3 {
         let z = self.between(-1.0, 1.0);
         let (sin, cos) = self.between(0.0, TAU).sin_cos();
@@ -88,36 +89,37 @@ impl SceneDraw {
         low + u32::try_from(more).unwrap_or(0)
     }
 
-    /// Returns a positive number with uniform logarithm, from the usual range or from the legal
-    /// one.
+    /// Returns a positive number, with a uniformly distributed logarithm, from the range `usual`
+    /// or, as an extreme value, from the legal range.
     pub(super) fn value(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = if self.is_extreme() { legal } else { usual };
         rounded(self.between(low.ln(), high.ln()).exp()).clamp(low, high)
     }
 
-    /// Returns a length drawn like [`Self::value`], in units of the scene.
+    /// Returns a length that is drawn as [`Self::value`] draws numbers, and multiplied by the
+    /// unit of the scene.
     pub(super) fn length(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = LENGTHS;
         (self.unit * self.value(usual, legal)).clamp(low, high)
     }
 
-    /// Returns the number with a random sign.
+    /// Returns the given number with a random sign.
     pub(super) fn signed(&mut self, x: f64) -> f64 {
         if self.one_in(2) { -x } else { x }
     }
 
-    /// Returns a point in the frame at the light, in world coordinates.
+    /// Converts a point from coordinates in the frame at the light to world coordinates.
     pub(super) fn place(&self, local: DVec3) -> [f64; 3] {
         self.frame.to_world(local).to_array()
     }
 
-    /// Returns a direction in the frame at the light, in world coordinates.
+    /// Converts a direction from components in the frame at the light to world coordinates.
     pub(super) fn along(&self, local: DVec3) -> [f64; 3] {
         self.frame.vector_to_world(local).to_array()
     }
 }
 
-/// Rounds to four digits, to keep scenes readable.
+/// Rounds a number to four digits, so that scene files stay readable.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -1,4 +1,4 @@
-//! The outcome of a run: whether its verdict is wrong, and which of tracers and prediction is at
+//! Judgement of a run: whether its verdict is wrong, and whether a tracer or the prediction is at
 //! fault.
 
 use super::run::{PlaneSummary, RunEnding, Runner};
@@ -15,7 +15,8 @@ pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
-    /// The named plane fails, with photons or with backward rays, and again with other seeds.
+    /// The plane of this name fails, with photons or with backward rays, and fails again with
+    /// other seeds.
     Wrong {
         plane: String,
         backward: bool,
@@ -26,11 +27,12 @@ pub(super) enum SceneTrouble {
 /// The cause of a failed plane.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Culprit {
-    /// The prediction is wrong: both tracers agree, but disagree with it.
+    /// The prediction is wrong: both tracers agree with each other, but disagree with the
+    /// prediction.
     Theory,
     /// A tracer is wrong: the two tracers disagree.
     Tracer,
-    /// The verdict is wrong, because it is based on too few rays.
+    /// The verdict "disagreement" is wrong, because it is based on too few rays.
     Handful,
     /// The comparisons do not determine whether a tracer or the prediction is wrong.
     Unknown,
@@ -52,14 +54,14 @@ impl Culprit {
 pub(super) struct JudgedScene {
     /// The reason for a refusal.
     pub(super) refused: Option<String>,
-    /// The verdicts of the scene.
+    /// The verdicts on the planes of the scene.
     pub(super) verdicts: Vec<String>,
-    /// The number of runs with a verdict (`runs`), of those with a failed plane (`fails`), and of
+    /// Three counts: runs with a verdict (`runs`), runs with a failed plane (`fails`), and
     /// failures that do not repeat with other seeds (`chance`).
     pub(super) runs: usize,
     pub(super) fails: usize,
     pub(super) chance: usize,
-    /// The faults, with descriptions.
+    /// The faults of the scene, each with a description.
     pub(super) troubles: Vec<(SceneTrouble, String)>,
 }
 
@@ -67,7 +69,8 @@ pub(super) struct JudgedScene {
 /// rays in each batch.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// Returns the seed of the scene for its first run, and those of two more runs.
+/// Returns three seeds: the seed in the scene file, for the first run, and the seeds for two more
+/// runs.
 fn seeds(file: &SceneFile) -> [u64; 3] {
     [0, 1, 2].map(|i| file.run.seed + i)
 }
@@ -102,7 +105,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     Ok(judged)
 }
 
-/// Returns the fault of a run that did not finish.
+/// Returns the fault that a run without a result shows.
 fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
         RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),
@@ -113,7 +116,7 @@ fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
 }
 
 impl JudgedScene {
-    /// Records the verdicts of a run; failures are run again with other seeds.
+    /// Records the verdicts of a run; if a plane fails, the scene is run again with other seeds.
     fn count(
         &mut self,
         runner: &Runner,
@@ -216,16 +219,16 @@ fn who(
     ))
 }
 
-/// Photons of one plane, and backward rays or a substitute.
+/// Photons at one plane, and the backward rays (or substitute photons) compared with them.
 struct Tracers {
     verdict: Verdict,
     p: Option<f64>,
-    /// Numbers of rays in the window.
+    /// Numbers of rays that each of the two tracers has in the window.
     inside: [u64; 2],
 }
 
-/// Compares photons with backward rays, or with photons that are not aimed if backward rays find
-/// no light.
+/// Compares photons with backward rays, or, if backward rays find no light, with photons that are
+/// not aimed.
 fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
     scene.planes.retain(|plane| plane.name == name);
@@ -247,7 +250,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Whether a reduced scene still has the same fault, and not only by chance.
+/// Returns whether a reduced scene still has the same fault, with more than one seed.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

@@ -98,8 +98,7 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
         EnvironmentFile::File(sky(draw)?)
     } else {
         let count = 1 + draw.below(3);
-        // Lobes are given in the axes of the map if the environment has axes, and otherwise in
-        // world axes.
+        // If the environment has axes, lobes are given in these axes, otherwise in world axes.
         EnvironmentFile::Lobes((0..count).map(|_| lobe(draw, plain)).collect())
     };
     Ok(LightFile::Environment {
@@ -113,7 +112,8 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
 
 fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
-    // Around a random direction, a lobe must be wide to send light forward.
+    // If its direction is random, a lobe must be wide, because otherwise it sends no light
+    // forward.
     let (from, width) = if plain {
         let [x, y] = [(); 2].map(|()| draw.between(-0.7, 0.7));
         (draw.along(DVec3::new(x, y, -1.0)), width)

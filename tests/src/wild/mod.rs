@@ -1,7 +1,8 @@
-//! A search for scenes on which Étendue is wrong.
+//! A search for scenes for which Étendue gives a wrong verdict.
 //!
-//! Scenes are drawn from all features of scene files and run as a user runs them. A scene that
-//! panics, hangs or fails with several seeds is reduced as far as possible and kept.
+//! The search draws scenes that use all features of scene files, and runs them as a user runs
+//! them. If a run panics, hangs or fails with several seeds, the search reduces its scene as far
+//! as possible and saves the scene.
 
 mod blockers;
 mod draw;
@@ -60,13 +61,13 @@ pub(crate) struct WildOptions {
     /// Seconds to spend on reducing a scene.
     #[arg(long, default_value_t = 120)]
     shrink: u64,
-    /// Number of parallel scenes [default: one for each core].
+    /// Number of scenes that run in parallel [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
     /// Folder for scenes with a fault.
     #[arg(long, default_value = "target/wild")]
     out: PathBuf,
-    /// Only draw the scenes, and keep them all.
+    /// Only draw the scenes and save all of them, without running any.
     #[arg(long)]
     draw: bool,
     /// Program to test [default: etendue in the same folder].
@@ -111,8 +112,8 @@ fn told(seed: u64, number: u64, says: &str) {
     eprintln!("seed {seed}, scene {number}: {says}");
 }
 
-/// Draws a scene, runs and judges it; if it has a fault, keeps the scene and reports the fault.
-/// Returns `None` if no scene could be drawn.
+/// Draws, runs and judges a scene; if the run shows a fault, saves the scene and reports the
+/// fault. Returns `None` if no scene could be drawn.
 fn one(
     options: &WildOptions,
     program: &Path,
@@ -152,7 +153,7 @@ fn one(
     Ok(Some(judged))
 }
 
-/// Saves a scene and its files.
+/// Saves a scene with its pictures and meshes.
 fn keep(options: &WildOptions, number: u64, what: &str, text: &str, from: &Path) -> io::Result<()> {
     let folder = options.out.join(format!("{}-{number}", options.seed));
     fs::create_dir_all(&folder)?;

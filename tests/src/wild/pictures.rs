@@ -1,4 +1,4 @@
-//! Random pictures and meshes, written beside the scene.
+//! Random pictures and meshes, written into the folder of the scene.
 
 use super::draw::SceneDraw;
 use exr::prelude::write_rgb_file;
@@ -7,14 +7,15 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io;
 
-/// Writes a random environment map; returns its file.
+/// Writes a random environment map, and returns the name of its file.
 pub(super) fn sky(draw: &mut SceneDraw) -> io::Result<String> {
     let width = 1 << draw.whole(1, 6);
     let bright = draw.one_in(2);
     picture(draw, [width, (width / 2).max(1)], bright)
 }
 
-/// Writes a random picture for a surface, with values from 0 to 1; returns its file.
+/// Writes a random picture for a surface, with values from 0 to 1, and returns the name of its
+/// file.
 pub(super) fn texture(draw: &mut SceneDraw) -> io::Result<String> {
     let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
     picture(draw, size, false)
@@ -38,7 +39,8 @@ fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> i
     Ok(name)
 }
 
-/// Writes a wavy sheet across `d`, around the origin, up to `half` to each side; returns its file.
+/// Writes a mesh of a wavy sheet around the origin, perpendicular to `d`, with half-width `half`,
+/// and returns the name of its file.
 pub(super) fn sheet(draw: &mut SceneDraw, [x, y, n]: [DVec3; 3], half: f64) -> io::Result<String> {
     let cells = draw.whole(1, 8);
     let relief = half * draw.between(0.0, 0.15);

@@ -6,7 +6,7 @@ use etendue_scene::{
     AxisFile, CentralRay, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
 
-/// One to three planes at points of the path.
+/// Draws one to three planes at points of the path.
 pub(super) fn planes(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Vec<PlaneFile> {
     let mut planes = Vec::new();
     for i in 0..*draw.pick(&[1, 1, 2, 2, 3]) {

@@ -1,4 +1,4 @@
-//! Faults planted in predictions of light reflected by two glossy surfaces.
+//! Faults planted in predictions of light that two glossy surfaces reflect.
 
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
@@ -26,14 +26,15 @@ const PLANE: &str = "beyond";
 
 type PlantedFault = (&'static str, fn(&mut ReflectionSystem));
 
-/// The faults, with descriptions.
+/// The planted faults, each with a description.
 const FAULTS: [PlantedFault; 6] = [
     ("square left out", |system| system.obstacles.clear()),
     ("first lobe 1 % wider", |system| {
         change_lobe(system, 0, 1.01);
     }),
     ("second lobe 1 % wider", |system| {
-        // The width of a Phong lobe is proportional to the inverse square root of its exponent.
+        // The width of a Phong lobe is proportional to the inverse square root of the lobe's
+        // exponent.
         change_lobe(system, 1, 1.01_f64.powi(-2));
     }),
     ("curvature of the first left out", |system| {
@@ -109,7 +110,8 @@ pub(super) fn planted() -> ReportSection {
     }
 }
 
-/// Returns p for the slices predicted for a view; all else is taken from another prediction.
+/// Returns the p-value for the slices predicted for `view`; all other fields of the prediction
+/// are those of `like`.
 fn p_value(
     scene: &Scene,
     measured: &Measurement,

@@ -1,4 +1,4 @@
-//! Random BRDFs, and their variation over a surface.
+//! Random BRDFs, and random variation of BRDFs over a surface.
 
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
@@ -6,7 +6,7 @@ use super::pictures::texture;
 use etendue_scene::{BrdfFile, EventFile, FresnelFile, LobeFile, PatternFile};
 use std::io;
 
-/// Reflection by a BRDF.
+/// A random event of the central ray: reflection by a BRDF.
 pub(super) fn reflects(draw: &mut SceneDraw) -> io::Result<EventFile> {
     let (mut other, mut blend, mut varied) = (None, None, None);
     if draw.one_in(4) {

@@ -1,4 +1,4 @@
-//! A scene run by the program, as a user runs it, in a child process with a time limit.
+//! Runs of a scene by the program, as a user runs it, in a child process with a time limit.
 
 use crate::hostile::child::{self, Ended, Limit};
 use etendue_scene::SceneFile;
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// The name of the scene file in the folder.
 const SCENE: &str = "scene.ron";
-/// Maximum wall-clock time of a run, as a multiple of the limit.
+/// Maximum wall-clock time of a run, as a multiple of the limit on processor time.
 const LONGER: u32 = 10;
 /// The exit code of a panic.
 const PANIC: i32 = 101;
@@ -22,36 +22,38 @@ const REFUSED: [i32; 2] = [2, 3];
 /// The folders and limits for running scenes.
 pub(super) struct Runner {
     pub(super) program: PathBuf,
-    /// The folder of the scene and its files.
+    /// The folder of the scene file, pictures and meshes.
     pub(super) folder: PathBuf,
     /// A folder for results.
     pub(super) scratch: PathBuf,
-    /// Limit of processor time, which does not depend on the load of the machine.
+    /// Limit on the processor time of a run; unlike wall-clock time, it does not depend on the
+    /// load of the machine.
     pub(super) limit: Duration,
 }
 
 /// The outcome of a run.
 pub(super) enum RunEnding {
-    /// Completed, with a verdict on each plane.
+    /// The run completed, with a verdict on each plane.
     Done(Vec<PlaneSummary>),
-    /// Refused, for this reason.
+    /// The program refused the scene, for the given reason.
     Refused(String),
-    /// Panicked, with this message.
+    /// The program panicked, with the given message.
     Panic(String),
-    /// Exceeded the time limit.
+    /// The run exceeded the time limit.
     Hang,
-    /// Ended by a signal, or with an undefined exit code.
+    /// The process was ended by a signal, or with an undefined exit code.
     Killed(String),
 }
 
-/// The summary of a plane.
+/// The summary that a run gives for one plane.
 pub(super) struct PlaneSummary {
     pub(super) name: String,
     pub(super) class: String,
     pub(super) verdict: String,
     /// The p-values of the exact prediction and, if there is one, of the affine chain.
     pub(super) p: [Option<f64>; 2],
-    /// Relative error, noise limit, and the stated error of the prediction.
+    /// Relative error of the prediction, limit of this error due to noise, and stated error of
+    /// the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
 
@@ -76,7 +78,8 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether the other tracer replaced theory.
+    /// Whether a measurement with the other tracer (photons or backward rays) replaced theory at
+    /// this plane.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }
@@ -92,7 +95,7 @@ pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
 }
 
 impl Runner {
-    /// Runs a scene with this seed of photons, or of backward rays.
+    /// Runs a scene with the given seed of photons or of backward rays.
     pub(super) fn run(&self, file: &SceneFile, seed: u64, backward: bool) -> io::Result<RunEnding> {
         fs::write(self.folder.join(SCENE), text(file)?)?;
         let out = self.scratch.join("out");

@@ -27,8 +27,8 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
-        // The surface is removed if it makes the path invalid: one that stands on an earlier leg
-        // would have to be visited.
+        // If a surface makes the path invalid, it is removed; for example, the path would have to
+        // visit a surface that stands on an earlier leg.
         if central_ray(&file, folder).is_none() {
             file.surfaces.pop();
         }
@@ -44,7 +44,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     Ok(file)
 }
 
-/// Returns a light, and a plane at it.
+/// Returns a scene file with a light, and with a plane at this light.
 fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     let light = light::light(draw)?;
     let window = window(draw);
@@ -88,7 +88,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     })
 }
 
-/// Adds one to three surfaces along the path; returns the path.
+/// Adds one to three surfaces along the path, and returns the path with these surfaces.
 fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay> {
     let count = *draw.pick(&[1, 1, 1, 1, 2, 2, 3]);
     let mut leg = Frame::IDENTITY;
@@ -117,7 +117,7 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     if path.legs.is_empty() {
         return Err(io::Error::other("the central ray meets nothing"));
     }
-    // Occasionally the path leaves the last surface in a direction given by the file.
+    // Occasionally the scene file states the direction in which the path leaves the last surface.
     if !file.surfaces.last().is_some_and(is_specular) && draw.one_in(4) {
         file.path.leaves = Some(draw.along(leg.d));
         match central_ray(file, &draw.folder) {
@@ -182,7 +182,8 @@ mod tests {
                 refused.push(format!("{number}: {error}"));
             }
         }
-        // One scene in twenty may be refused, because the generator does not know all rules.
+        // The program may refuse one scene in twenty, because the generator does not obey all
+        // rules of scene files.
         assert!(20 * refused.len() as u64 <= SCENES, "{refused:#?}");
     }
 }

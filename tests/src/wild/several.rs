@@ -1,5 +1,5 @@
 //! Random scenes with several surfaces that scatter or redirect light, and masks on any leg.
-//! Photons must not reject any prediction.
+//! Photons must not reject any prediction for these scenes.
 
 use super::draw::SceneDraw;
 use super::planted::planted;
@@ -14,15 +14,15 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-/// Cycles across the window at the highest frequencies. The number is small because few photons
-/// arrive.
+/// Number of cycles across the window at the highest frequency. The number of cycles is small,
+/// because few photons arrive at the plane.
 const CYCLES: f64 = 3.0;
 /// Maximum number of scattering surfaces that are counted separately.
 const MAX_SCATTERERS: usize = 3;
-/// Range of the width of an occluder, relative to that of the light.
+/// Range of the ratio of an occluder's width to the light's width.
 const WIDE: [f64; 2] = [0.02, 0.4];
 
-/// A plane, with its outcome.
+/// The outcome for one plane of a scene.
 struct Tried {
     number: u64,
     scatterers: usize,
@@ -32,7 +32,7 @@ struct Tried {
     seconds: f64,
 }
 
-/// Plants faults if this is requested, else tests all scenes.
+/// Plants faults in predictions if the options request it, and otherwise tests all scenes.
 pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());

@@ -1,7 +1,8 @@
-//! Reduction of a scene that keeps its fault.
+//! Reduction of a scene to a smaller scene with the same fault.
 //!
-//! The scene is changed as a tree of values: elements are removed one at a time, and numbers
-//! rounded. An invalid scene does not have the same fault, and is not accepted.
+//! Reduction treats the scene as a tree of values: it removes elements one at a time, and rounds
+//! numbers. If a reduced scene is invalid, it does not have the same fault, and the reduction
+//! does not accept it.
 
 use super::judge::{SceneTrouble, persists};
 use super::run::Runner;
@@ -11,11 +12,11 @@ use serde_json::{Value, json};
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Lists whose elements can be removed.
+/// Names of lists whose elements can be removed.
 const LISTS: [&str; 6] = [
     "planes", "blockers", "visits", "surfaces", "shapes", "Lobes",
 ];
-/// Fields that can be removed or disabled.
+/// Names of fields that can be removed or disabled.
 const OPTIONAL: [&str; 11] = [
     "y",
     "v",
@@ -39,7 +40,7 @@ const PLAIN: [(&str, &str); 6] = [
     ("form", "Plane"),
 ];
 
-/// Returns the smallest scene that was found in the given time.
+/// Returns the smallest scene with the same fault that is found in the given time.
 pub(super) fn shrink(
     runner: &Runner,
     file: &SceneFile,
@@ -52,7 +53,7 @@ pub(super) fn shrink(
     while begun.elapsed() < time {
         let candidates = candidates(&best);
         let Some(candidate) = candidates.get(next) else {
-            // A round without a change ends the search.
+            // The search ends after a pass over all reductions in which none is accepted.
             if !taken {
                 break;
             }
@@ -71,8 +72,7 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// Returns all scenes that are one step smaller, of which those with the largest removals come
-/// first.
+/// Returns all scenes that are one reduction step smaller, those with the largest removals first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());
@@ -138,11 +138,12 @@ fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     };
     let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
     for (place, x) in &numbers {
-        // Centres are not rounded to 0 or 1, because an object at 0 would be in the light.
+        // Coordinates of centres are not rounded to 0 or 1, because an object at 0 would be in
+        // the light.
         let moved = place.contains("/center/");
         let round = [0.0, 1.0].into_iter().filter(|_| !moved);
         for y in round.chain([short(*x, 0), short(*x, 1)]) {
-            // Each step must reduce the number of digits, so that the search ends.
+            // Each rounding must reduce the number of digits, so that the search ends.
             if digits(y) < digits(*x) {
                 found.push(with(tree, place, json!(y)));
             }
@@ -155,7 +156,8 @@ fn short(x: f64, digits: usize) -> f64 {
     format!("{x:.digits$e}").parse().unwrap_or(x)
 }
 
-/// Returns the length of a number when written, where 0 counts as the shortest and 1 as the next.
+/// Returns the number of characters of a number when written; 0 counts as the shortest number,
+/// and 1 as the second shortest.
 fn digits(x: f64) -> usize {
     match format!("{:e}", x.abs()).as_str() {
         "0e0" => 0,
@@ -206,7 +208,7 @@ mod tests {
         let found = candidates(&tree);
         assert!(found.contains(&json!({"blockers": [], "planes": [{"name": "a"}]})));
         assert!(found.contains(&json!({"blockers": [{"pitch": 0.1}], "planes": [{"name": "a"}]})));
-        // The last plane is kept.
+        // The reduction keeps the last plane of a scene.
         assert!(found.iter().all(|tree| tree["planes"][0]["name"] == "a"));
     }
 

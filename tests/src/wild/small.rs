@@ -1,5 +1,5 @@
-//! Small objects at random positions in the light of random scenes: theory must either include the
-//! object or not apply to the plane.
+//! Small objects at random positions in the light of random scenes: the prediction must include
+//! the object, or no theory may apply to the plane.
 
 use super::draw::SceneDraw;
 use super::run::text;
@@ -33,10 +33,10 @@ pub(crate) struct SmallOptions {
     /// Photons per plane.
     #[arg(long, default_value_t = 10_000_000)]
     pub(super) photons: u64,
-    /// Only count classes, and trace nothing.
+    /// Only count the classes of outcomes, and trace nothing.
     #[arg(long)]
     pub(super) classes: bool,
-    /// Only plant faults (in scenes with several surfaces).
+    /// Only test planted faults, in scenes with several surfaces.
     #[arg(long)]
     pub(super) planted: bool,
     /// Folder for scenes whose prediction is rejected by photons.
@@ -44,23 +44,24 @@ pub(crate) struct SmallOptions {
     out: PathBuf,
 }
 
-/// Maximum seconds of one core for a prediction.
+/// Maximum time for a prediction, in seconds of one core.
 const LONGEST_PREDICTION: f64 = 120.0;
 /// Seeds of the first and of a second comparison. One correct plane in a hundred fails the first
-/// comparison.
+/// comparison by chance.
 const SEEDS: [u64; 2] = [1, 2];
-/// Number of photons in the second comparison, divided by that in the first. With more photons the
-/// second prediction sums more rays, without which its noise would be that of the first.
+/// Number of photons in the second comparison, divided by the number in the first comparison.
+/// With more photons, the second prediction also sums more rays; otherwise it would have the same
+/// noise as the first prediction.
 pub(super) const MORE_PHOTONS: u64 = 8;
 /// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
 
-/// Range of the radius of an object, relative to the light's width.
+/// Range of the ratio of a small object's radius to the width of the light.
 const SMALL: [f64; 2] = [5e-3, 0.05];
-/// The kinds of objects.
+/// The kinds of small objects.
 const KINDS: [&str; 3] = ["a mask", "a black mesh", "a surface off the path"];
 
-/// A plane, with its outcome.
+/// The outcome for one plane of a scene.
 struct TriedSmall {
     number: u64,
     kind: usize,
@@ -107,7 +108,7 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried?))
 }
 
-/// Saves a scene and its files.
+/// Saves a scene with its pictures and meshes.
 pub(super) fn keep(
     options: &SmallOptions,
     number: u64,
@@ -144,12 +145,12 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     None
 }
 
-/// Cycles across the window at the highest frequencies, enough for a shadow with an eighth of the
-/// window's width.
+/// Number of cycles across the window at the highest frequency, sufficient for a shadow an eighth
+/// as wide as the window.
 const CYCLES: f64 = 8.0;
 
-/// Gives a scene a window with sharp edges, so that a small object near the edge of the window has
-/// full weight. The frequencies go up to `cycles` across the window.
+/// Gives a scene a window with sharp edges, so that a small object near the edge of the window
+/// has full weight. The highest frequency has `cycles` cycles across the window.
 pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     let WindowFile { x, y, u, v } = &mut file.window;
     let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());
@@ -166,7 +167,7 @@ pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     };
 }
 
-/// Draws a plane perpendicular to a leg, usually to the last.
+/// Draws a plane perpendicular to a leg of the path, usually to the last leg.
 pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     let legs = &scene.path.legs;
     let last = legs.len() - 1;
@@ -187,7 +188,8 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// Returns a relative coordinate in the window: anywhere, or near its edge.
+/// Returns a random coordinate in the window, relative to its half-width: anywhere, or near the
+/// edge of the window.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)
@@ -197,8 +199,8 @@ fn share(draw: &mut SceneDraw) -> f64 {
     }
 }
 
-/// Draws a point on the leg of the plane that a ray of the window meets, in the frame at the
-/// light; returns it with the width of the light there.
+/// Draws a point, in the frame at the light, on a ray of the window before the plane, and returns
+/// this point and the width of the light at this point.
 fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
     let window = &plane.window;
     let profiles = [window.x, window.y, window.u, window.v];
@@ -210,7 +212,8 @@ fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f
     (frame.to_world(local), wide)
 }
 
-/// Adds an object in the light, with a radius relative to the light's width; returns its kind.
+/// Adds an object in the light, whose radius is relative to the light's width, and returns the
+/// kind of the object.
 pub(super) fn object(
     draw: &mut SceneDraw,
     scene: &Scene,

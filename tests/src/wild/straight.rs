@@ -15,9 +15,10 @@ const DIRECTIONS: [&str; 7] = [
     "front",
 ];
 
-/// Returns the scene in the frame at its light; `None` if it is already in this frame.
+/// Returns the scene in the frame at its light, or `None` if the scene is already in this frame.
 ///
-/// Meshes are not rotated, so a run must show whether such a scene still has its fault.
+/// Meshes are not rotated, so a run must show whether a rotated scene with meshes still has the
+/// fault.
 pub(super) fn straightened(tree: &Value) -> Option<Value> {
     let vector = |value: &Value| -> Option<DVec3> { serde_json::from_value(value.clone()).ok() };
     let light = tree.get("light")?.as_object()?.values().next()?;

@@ -1,4 +1,4 @@
-//! Random surfaces, on the central ray or beside it.
+//! Random surfaces, on the central ray or beside this ray.
 
 use super::draw::SceneDraw;
 use super::pictures::sheet;
@@ -8,7 +8,7 @@ use etendue_scene::{EventFile, FormFile, MeshSource, SurfaceFile};
 use glam::DVec3;
 use std::io;
 
-/// Returns a surface across a leg of the path, at this distance along it.
+/// Returns a surface that a leg of the path meets at the given distance along the leg.
 pub(super) fn surface(
     draw: &mut SceneDraw,
     name: String,
@@ -59,7 +59,7 @@ fn rectangle(
     on_axis: DVec3,
     normal: DVec3,
 ) -> SurfaceFile {
-    // For a surface perpendicular to the first leg, the file may omit the facing direction.
+    // For a surface perpendicular to the first leg, the scene file may omit the facing direction.
     let plain = leg.d == DVec3::Z && draw.one_in(2);
     SurfaceFile::Rectangle {
         name,

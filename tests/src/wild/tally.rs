@@ -1,4 +1,4 @@
-//! The outcomes of all scenes, as a table.
+//! The outcomes of all random scenes, as a table.
 
 use super::judge::{Culprit, JudgedScene, SceneTrouble};
 use crate::report::{Check, ReportSection, Row};
@@ -22,7 +22,7 @@ pub(super) struct Tally {
     wrong: BTreeMap<Culprit, Vec<u64>>,
 }
 
-/// False rejection rate over the scenes of a run.
+/// False rejection rate over all scenes of one search.
 const ALPHA: f64 = 0.01;
 
 impl Tally {

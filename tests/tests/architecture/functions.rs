@@ -1,10 +1,11 @@
-//! Functions of more than sixty lines need a stated reason; clippy finds those without one.
+//! Functions of more than sixty lines need a stated reason; clippy finds such functions without a
+//! stated reason.
 
 use super::{crates, root};
 use std::fs;
 use std::process::Command;
 
-/// The length of a planted function, in lines: above the threshold in clippy.toml.
+/// The length of a planted function, in lines, which is above the threshold in clippy.toml.
 const PLANTED: usize = 70;
 
 /// Every crate uses the lints of the workspace, which require a reason beside each long function.

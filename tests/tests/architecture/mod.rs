@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each crate with the crates it may use.
+/// Each crate, with the list of crates that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("field", &[]),
     ("transform", &["field"]),
@@ -138,7 +138,8 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// Returns the workspace crates among the dependencies of a manifest, without those of tests.
+/// Returns the workspace crates among the dependencies of a manifest; dependencies of tests are
+/// not included.
 fn uses(manifest: &str) -> BTreeSet<String> {
     let own = manifest
         .split("\n[dependencies]")
@@ -174,7 +175,7 @@ fn crates_use_those_below_them() {
         let forbidden = forbidden(&name, &found);
         assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
     }
-    // The row of a crate must come after the rows of the crates that it uses.
+    // In this table, the row of a crate must come after the rows of the crates that it uses.
     for (i, (name, uses)) in MAY_USE.iter().enumerate() {
         let place =
             |other: &&&str| MAY_USE.iter().position(|(known, _)| known == *other) >= Some(i);
@@ -234,7 +235,7 @@ fn a_planted_circle_is_found() {
         ]),
         1
     );
-    // These imports go through re-exports of the root, and stand in nested groups.
+    // The planted imports use re-exports of the crate root, and are in nested groups.
     assert_eq!(
         of(&[
             root,

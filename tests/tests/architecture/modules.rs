@@ -1,4 +1,4 @@
-//! The modules of a crate and their dependencies, read from their text.
+//! The modules of a crate and the dependencies between them, read from the source text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 /// The names on the path from the root of a crate to a module; empty for the root.
 pub(crate) type Module = Vec<String>;
 
-/// The modules of a crate with their text.
+/// The modules of a crate, each with its source text.
 pub(crate) type Modules = BTreeMap<Module, String>;
 
 /// The names that a module imports, each with the path in its `use`.
@@ -115,7 +115,8 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     resolved.filter(|found| found != module).collect()
 }
 
-/// Returns the imports of a text, each with a flag for re-exports, and the remaining text.
+/// Returns the imports in a source text, each with a flag that marks re-exports, and the text
+/// without these imports.
 fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     let mut imports = Vec::new();
     let mut rest = String::new();
@@ -134,7 +135,7 @@ fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     (imports, rest)
 }
 
-/// Returns the position of the first `use`.
+/// Returns the position of the first `use` in a source text.
 fn find_use(text: &str) -> Option<usize> {
     let starts = text.match_indices("use ").map(|(at, _)| at);
     let is_word = |at: &usize| {
@@ -148,8 +149,8 @@ fn find_use(text: &str) -> Option<usize> {
     })
 }
 
-/// Returns the paths of an import tree such as `a::{b, c::d as e}`; the last part of each is the
-/// local name.
+/// Returns the paths of an import tree such as `a::{b, c::d as e}`; the last name in each path is
+/// the local name.
 fn expanded(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -178,7 +179,7 @@ fn expanded(tree: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns the paths in code other than imports that begin at the crate, a parent, or a child
+/// Returns the paths, outside imports, that begin at the crate root, a parent module or a child
 /// module.
 fn paths_of(body: &str) -> Vec<Vec<String>> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
@@ -191,7 +192,8 @@ fn paths_of(body: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns a path as counted from the root of the crate, or `None` if it leads to another crate.
+/// Returns a path relative to the root of the crate, or `None` if the path leads to another
+/// crate.
 fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Module> {
     let mut base = module.clone();
     let mut path = path;

@@ -1,4 +1,4 @@
-//! Checks that each type name has one meaning, or a reason for two.
+//! Checks that each type name has one meaning, unless a reason for two meanings is stated.
 
 use super::files;
 use super::modules::code;
@@ -29,11 +29,11 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "a bitmap of a scene, of a camera, and of a figure",
     ),
 ];
-/// Files whose types may share names with others: tests, the second implementation, which is
-/// independent of the first, and the binding, which uses Python's names.
+/// Files whose types may share names with types of other files: tests, the second implementation,
+/// which is independent of the first, and the binding, which uses Python's names.
 const APART: [&str; 3] = ["/src/tests/", "tests/src/second/", "python/src/"];
 
-/// Returns the types defined by a text outside its tests.
+/// Returns the names of the types that a source text defines outside its tests.
 fn types(text: &str) -> Vec<String> {
     let text = code(text);
     let names = text.lines().filter_map(|line| {

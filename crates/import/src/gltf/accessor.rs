@@ -8,7 +8,7 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
 use std::sync::Arc;
 
-/// Rows of numbers in a buffer, checked to lie within it.
+/// Rows of numbers in a buffer, which are checked to lie within the buffer.
 struct AccessorRows {
     bytes: Arc<[u8]>,
     start: usize,

@@ -1,4 +1,4 @@
-//! The alpha of pictures.
+//! Reads the alpha channel of pictures.
 
 use crate::pictures;
 use etendue_field::Raster;
@@ -13,7 +13,7 @@ pub(super) fn read(
     number: impl Fn(f64) -> f64,
 ) -> Result<Raster, String> {
     let file = Path::new("image").with_extension(extension);
-    // The decoder checks the size before it allocates memory.
+    // The decoder checks the size of the picture before it allocates memory.
     let colours = pictures::decode(&file, bytes)?;
     let (width, height) = (colours.width, colours.height);
     drop(colours);

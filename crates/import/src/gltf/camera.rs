@@ -7,7 +7,7 @@ use ::gltf::json::camera::{Orthographic, Perspective};
 use etendue_world::{Camera, Projection};
 use std::f64::consts::PI;
 
-/// Width of pictures in pixels; files do not state a resolution.
+/// Width of pictures in pixels, which is constant because glTF files do not state a resolution.
 const ACROSS: usize = 512;
 
 /// Range of aspect ratios for which the height is at least one pixel and at most the allowed

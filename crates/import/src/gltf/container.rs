@@ -1,10 +1,10 @@
-//! The checked JSON of a file, and the buffer of a binary file.
+//! The checked JSON of a glTF file and, if the file is binary, its buffer.
 
 use crate::report::{Report, SourcePlace, quoted};
 use ::gltf::json::validation::{Error, Validate};
 use ::gltf::json::{Path, Root};
 
-/// The first bytes of a binary file.
+/// The first bytes of a binary glTF file.
 const MAGIC: &[u8] = b"glTF";
 
 /// Supported required extensions.
@@ -20,10 +20,10 @@ const KNOWN: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// A file with valid indices.
+/// A glTF file whose indices are valid.
 pub(super) struct Document {
     pub(super) root: Root,
-    /// The buffer of a binary file.
+    /// The buffer, if the file is binary.
     pub(super) chunk: Option<Vec<u8>>,
 }
 
@@ -80,8 +80,8 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
 }
 
-/// Whether all indices are within range and all keywords are known; if not, adds causes of
-/// refusal.
+/// Returns whether all indices are within range and all keywords are known; adds causes of
+/// refusal otherwise.
 fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let version = &root.asset.version;
     if version.split('.').next() != Some("2") {
@@ -94,16 +94,16 @@ fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
             report.cause(place, message);
         }
     }
-    // This is checked first because the gltf crate uses the accessors of positions before it
-    // checks that they exist.
+    // Accessors are checked first, because the gltf crate uses the accessors of positions before
+    // it checks that they exist.
     if !has_positions(root, place, report) {
         return false;
     }
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
         let path = path.as_str();
-        // These errors are ignored: minima and maxima are not needed here, and extensions were
-        // checked above.
+        // Errors about minima and maxima are ignored because these values are not needed, and
+        // errors about extensions because extensions were checked above.
         let is_bound = path.ends_with(".min") || path.ends_with(".max");
         if error == Error::Unsupported || (error == Error::Missing && is_bound) {
             return;

@@ -1,4 +1,4 @@
-//! Images, converted to numbers.
+//! Conversion of images to one number for each pixel.
 
 use super::level::{TextureChannel, cut};
 use super::raster_key::RasterKey;
@@ -63,8 +63,8 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // Three equal numbers are used as they are, because rounding would make their
-            // luminance differ from them.
+            // If all three numbers are equal, their value is used as it is, because rounding
+            // would change it in a computed luminance.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

@@ -1,10 +1,10 @@
-//! Notes on content of files that a world cannot represent.
+//! Notes on content of glTF files that a world cannot represent.
 
 use super::reader::GltfReader;
 use crate::report::quoted;
 
 impl GltfReader<'_> {
-    /// Adds notes on those ignored parts that concern the whole file.
+    /// Adds notes on ignored content that concerns the whole file.
     pub(super) fn tell_leftovers(&self) {
         let root = self.root;
         for (i, animation) in root.animations.iter().enumerate() {

@@ -3,17 +3,19 @@
 /// The texture channel that is read from a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TextureChannel {
-    /// The three colour channels, linearised from sRGB, times these factors.
+    /// The three colour channels, linearised from sRGB, times the given factors.
     Color([f64; 3]),
     /// The square of the product of the second channel and a factor.
     GreenSquared(f64),
-    /// The third channel times a factor.
+    /// The third channel of the pixel times a factor.
     Blue(f64),
-    /// Alpha times a factor; if there is a cutoff, 0 below it and 1 from it on.
+    /// Alpha times a factor; if there is a cutoff, this product is replaced by 0 below the cutoff
+    /// and by 1 otherwise.
     Alpha { factor: f64, cutoff: Option<f64> },
 }
 
-/// Returns alpha without a cutoff, else 0 below the cutoff and 1 from it on.
+/// Returns alpha if there is no cutoff; otherwise returns 0 for alpha below the cutoff, and 1 for
+/// all other values.
 pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
     match cutoff {
         Some(cutoff) if alpha >= cutoff => 1.0,

@@ -66,10 +66,10 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns the half-angles of the inner and the outer cone.
+    /// Returns the half-angles of the inner and the outer cone of a spot light.
     fn cone(&self, spot: &Spot, path: &str) -> Option<[f64; 2]> {
         let [inner, outer] = [spot.inner_cone_angle, spot.outer_cone_angle].map(f64::from);
-        // The tolerance is needed because π/2 rounded to 32 bits is slightly larger.
+        // The tolerance is needed because π/2 rounded to 32 bits is slightly larger than π/2.
         let fits = 0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6;
         if !fits {
             let message =

@@ -65,7 +65,7 @@ impl<'a> GltfReader<'a> {
         })
     }
 
-    /// Returns what a material scatters, on one side or on both.
+    /// Returns the scattering of a material, on one side or on both sides.
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
@@ -83,8 +83,8 @@ impl<'a> GltfReader<'a> {
         self.with_glass(draft, opaque)
     }
 
-    /// Returns the emission of the front. The outer `None` means that a cause of refusal was
-    /// reported.
+    /// Returns the emission of a material's front. The outer `None` means that a cause of refusal
+    /// was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"
@@ -113,8 +113,8 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns the opacity. The inner `None` means opaque, and the outer one that a cause of
-    /// refusal was reported.
+    /// Returns the opacity. The inner `None` means an opaque material, and the outer `None` means
+    /// that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"

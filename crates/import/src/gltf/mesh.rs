@@ -8,7 +8,7 @@ use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Maximum number of corners, for which 32-bit indices suffice.
+/// Maximum number of corners of a mesh, for which 32-bit indices suffice.
 const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
@@ -16,8 +16,8 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
 }
 
 impl GltfReader<'_> {
-    /// Returns the triangles of a primitive, with the texture coordinates that its material uses,
-    /// or `None` if there are none, or if a cause of refusal was reported.
+    /// Returns the triangles of a primitive, with the texture coordinates that its material uses;
+    /// returns `None` if the primitive has no triangles, or if a cause of refusal was reported.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,
@@ -142,8 +142,8 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// Returns the triangles flipped and moved back by `gap`; corners at the same position stay
-/// together.
+/// Returns the triangles, flipped and moved back by `gap`; corners that share a position still
+/// share one afterwards.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();

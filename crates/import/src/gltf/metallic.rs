@@ -1,4 +1,4 @@
-//! The metallic-roughness model, as plastic and metal.
+//! Conversion of the metallic-roughness model to a mixture of plastic and metal.
 
 use super::level::TextureChannel;
 use super::reader::GltfReader;
@@ -50,13 +50,13 @@ impl GltfReader<'_> {
         }
     }
 
-    /// Returns `metallicFactor` times the channel of its picture.
+    /// Returns `metallicFactor` times the metallic channel of the picture.
     fn share(&mut self, draft: &mut Draft<'_>, name: &str) -> Option<Texture> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.{name}", draft.path);
         let factor = self.within(&path, pbr.metallic_factor.0, [0.0, 1.0])?;
         match &pbr.metallic_roughness_texture {
-            // If the factor is 0, the picture has no effect.
+            // If the metallic factor is 0, the picture has no effect.
             Some(info) if factor > 0.0 => {
                 let field = format!("{PBR}.metallicRoughnessTexture");
                 self.bitmap(draft, info, &field, TextureChannel::Blue(factor))

@@ -1,4 +1,4 @@
-//! Nodes and their placement.
+//! Nodes of a glTF scene, and the placement of these nodes.
 
 use super::reader::GltfReader;
 use crate::range::{MAX_NUMBER, holds};
@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 /// Maximum deviation of the length of a rotation quaternion from 1.
 const UNIT: f64 = 1e-3;
 
-/// A node and its transform.
+/// A node and the transform of this node.
 pub(super) struct PlacedNode<'a> {
     pub(super) node: &'a Node,
     pub(super) path: String,
@@ -17,7 +17,8 @@ pub(super) struct PlacedNode<'a> {
 }
 
 impl<'a> GltfReader<'a> {
-    /// Adds the content of all nodes of the scene, without recursion: each node is visited once.
+    /// Adds the content of all nodes of the scene; the traversal is not recursive and visits each
+    /// node once.
     pub(super) fn nodes(&mut self) {
         let mut met = vec![false; self.root.nodes.len()];
         let mut open: Vec<(usize, DAffine3)> = Vec::new();
@@ -70,8 +71,8 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Adds a note on the nodes that were not visited; in a file without scenes, these are nodes
-    /// in cycles.
+    /// Adds a note on the nodes that were not visited; in a file without scenes, such nodes form
+    /// cycles.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
@@ -86,7 +87,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Adds the content of a node.
+    /// Adds the mesh, camera and light of a node to the world.
     fn hold(&mut self, placed: &PlacedNode<'a>) {
         let (node, path) = (placed.node, &placed.path);
         if !holds(placed.to_world) {
@@ -146,7 +147,7 @@ impl<'a> GltfReader<'a> {
         Some(DAffine3::from_mat3_translation(linear, column(3)))
     }
 
-    /// Returns a transform from scale, rotation and translation, applied in this order.
+    /// Returns the transform that first scales, then rotates, then translates.
     fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
         let turn = match &node.rotation {

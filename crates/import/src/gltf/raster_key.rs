@@ -1,4 +1,4 @@
-//! Keys of rasters, by which each raster is made only once.
+//! Keys of rasters in a cache, so that each raster is made only once.
 
 use super::level::TextureChannel;
 

@@ -13,10 +13,10 @@ use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes, and of lights.
+/// Maximum number of shapes in a world, and maximum number of lights.
 pub(super) const MAX_SHAPES: usize = 1 << 20;
 
-/// Converts a file to a world.
+/// Converts a glTF file to a world.
 pub(super) struct GltfReader<'a> {
     pub(super) root: &'a Root,
     pub(super) chunk: Option<&'a [u8]>,
@@ -26,18 +26,19 @@ pub(super) struct GltfReader<'a> {
     pub(super) folder: PathBuf,
     pub(super) color: Color,
     pub(super) world: World,
-    /// Bytes of the buffers read so far; `None` if a cause of refusal was reported.
+    /// Bytes of each buffer that was read so far; `None` if a cause of refusal was reported for
+    /// the buffer.
     pub(super) buffers: HashMap<usize, Option<Arc<[u8]>>>,
-    /// Meshes by mesh and primitive number; `None` if there are no triangles, or if a cause of
-    /// refusal was reported.
+    /// Meshes by mesh and primitive number; `None` if a primitive has no triangles, or if a cause
+    /// of refusal was reported for the primitive.
     pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
     /// The meshes of back sides, which are flipped and moved back.
     pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// Materials by number; `None` if a cause of refusal was reported. The default material has no
-    /// number.
+    /// Materials by number in the file; `None` if a cause of refusal was reported for the
+    /// material. The default material has no number in the file.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
     pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
-    /// Notes that were given and are not repeated.
+    /// Notes that were already given, and are not repeated.
     pub(super) told: HashSet<&'static str>,
 }
 
@@ -67,7 +68,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns the world of the file.
+    /// Returns the world that the file describes.
     pub(super) fn world(mut self) -> World {
         self.tell_leftovers();
         self.nodes();
@@ -86,7 +87,7 @@ impl<'a> GltfReader<'a> {
             .note(&self.place, format!("{path}: {}", message.as_ref()));
     }
 
-    /// Adds a note on the file as a whole, once.
+    /// Adds a note on the file as a whole, unless the same note was already given.
     pub(super) fn note_once(&mut self, message: &'static str) {
         if self.told.insert(message) {
             self.report.note(&self.place, message);

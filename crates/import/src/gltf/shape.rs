@@ -1,4 +1,4 @@
-//! Meshes of nodes, as shapes.
+//! Conversion of the meshes of nodes to shapes.
 
 use super::mesh::back_of;
 use super::node::PlacedNode;
@@ -52,7 +52,7 @@ impl<'a> GltfReader<'a> {
     ) {
         let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
         if self.world.shapes.len() >= MAX_SHAPES {
-            // Only the first shape beyond the limit gives a cause.
+            // Only the first shape beyond the limit adds a cause of refusal.
             if !self.report.has_causes() {
                 self.cause(&placed.path, format!("more than {MAX_SHAPES} shapes"));
             }

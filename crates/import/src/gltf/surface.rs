@@ -1,4 +1,4 @@
-//! Surface materials, finished or in progress.
+//! Materials of surfaces: finished materials, and materials that are being converted.
 
 use ::gltf::json::Material as BufferSource;
 use etendue_world::EmittedRadiance;
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 /// The material of a surface.
 #[derive(Clone, Debug)]
 pub(super) struct GltfSurface {
-    /// The index of the material.
+    /// The index of the material in the world.
     pub(super) material: usize,
     pub(super) emission: Option<EmittedRadiance>,
     pub(super) is_double_sided: bool,

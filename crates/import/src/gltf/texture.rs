@@ -1,4 +1,4 @@
-//! Textures and their placement.
+//! Textures of a glTF file, and the placement of these textures.
 
 use super::level::{TextureChannel, cut};
 use super::reader::GltfReader;

@@ -4,17 +4,17 @@ use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-/// Base64 with optional padding.
+/// Decoder of Base64 with optional padding.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// The place where the bytes are.
+/// The source of the bytes.
 pub(super) enum BufferSource {
     /// Embedded data.
     Data(Vec<u8>),
-    /// A file of this name.
+    /// A file with the given name.
     File(String),
 }
 

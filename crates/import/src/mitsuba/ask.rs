@@ -1,4 +1,4 @@
-//! Reading of object properties, which marks them as read.
+//! Functions that read the properties of an object and mark them as read.
 
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::reader::MitsubaReader;
@@ -7,8 +7,8 @@ use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the property of this name; if several nested objects have the name, the last one
-    /// counts, as in Mitsuba.
+    /// Returns the property with the given name; if several nested objects have this name, the
+    /// last of these objects counts, as in Mitsuba.
     pub(super) fn property(
         &self,
         object: &'a MitsubaObject,
@@ -106,7 +106,8 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns the place of a property or, if it is missing, that of the object.
+    /// Returns the position of a property in the file or, if the property is missing, the
+    /// position of the object.
     pub(super) fn place_of(
         &self,
         object: &'a MitsubaObject,
@@ -135,7 +136,7 @@ impl<'a> MitsubaReader<'a> {
             Value::Object(at) => *at,
             Value::Reference(id) => match self.ids.get(id) {
                 Some(at) => *at,
-                // The cause of refusal was already added.
+                // The cause of refusal for this object was already added.
                 None => return None,
             },
             _ => return None,
@@ -163,7 +164,8 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// Returns the only child of a kind, if there is one; a second one is a cause of refusal.
+    /// Returns the only child object of a kind, if one exists; a second child of this kind is a
+    /// cause of refusal.
     pub(super) fn child(
         &self,
         object: &'a MitsubaObject,

@@ -14,7 +14,7 @@ const MAX_INCLUDES: usize = 1000;
 const MOST_FOLDERS: usize = 64;
 
 impl Tree<'_> {
-    /// Adds a search folder before the others.
+    /// Adds a search folder before all other search folders.
     pub(super) fn search(
         &mut self,
         attributes: &Attributes,
@@ -55,7 +55,7 @@ impl Tree<'_> {
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {
-            // Only the first file beyond the limit gives a cause.
+            // Only the first file beyond the limit adds a cause of refusal.
             return match self.includes == MAX_INCLUDES + 1 {
                 true => Err(format!("more than {MAX_INCLUDES} files are included")),
                 false => Ok(()),

@@ -1,10 +1,10 @@
-//! Indices of refraction by name.
+//! Indices of refraction of materials that scenes name.
 
 use super::object::{MitsubaObject, Value};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 
-/// Values at about 589 nm (Hecht, Optics, 4th edition), as in Mitsuba.
+/// The indices are values at about 589 nm (Hecht, Optics, 4th edition), as in Mitsuba.
 const NAMED: [(&str, f64); 23] = [
     ("vacuum", 1.0),
     ("helium", 1.000_036),
@@ -32,8 +32,8 @@ const NAMED: [(&str, f64); 23] = [
 ];
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the ratio of the index inside to that outside, where `inside` names the default
-    /// material inside.
+    /// Returns the ratio of the index of refraction inside to the index outside, where `inside`
+    /// names the default material inside.
     pub(super) fn relative_index(&self, object: &'a MitsubaObject, inside: &str) -> Option<f64> {
         let inside = self.one_index(object, "int_ior", inside);
         let outside = self.one_index(object, "ext_ior", "air");

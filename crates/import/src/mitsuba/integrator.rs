@@ -4,7 +4,8 @@ use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 
-/// Maximum nesting depth of integrators; `moment` and `aov` contain others.
+/// Maximum nesting depth of integrators; the integrators `moment` and `aov` contain other
+/// integrators.
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
@@ -51,7 +52,7 @@ impl<'a> MitsubaReader<'a> {
     fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
         match self.whole(object, "max_depth")? {
             -1 => None,
-            // Depth 0 shows nothing, which the depth of a world cannot express.
+            // A picture with depth 0 is black, which the depth of a world cannot express.
             0 => {
                 self.report.cause(
                     self.place_of(object, "max_depth"),

@@ -9,7 +9,7 @@ pub(super) fn tell(objects: &[MitsubaObject], report: &Report) {
         if object.is_used.get() {
             properties(object, report);
         } else if at != object.parent && objects[object.parent].is_used.get() {
-            // One note suffices for an unused object and all that it contains.
+            // One note suffices for an unused object and all objects that it contains.
             let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
             let id = object.id.as_deref().map(|id| format!(" {}", quoted(id)));
             let id = id.unwrap_or_default();

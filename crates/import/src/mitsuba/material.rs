@@ -33,7 +33,8 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// Returns the material of shapes that specify none, which is diffuse, or black for emitters.
+    /// Returns the material of shapes that specify no material, which is black for emitters and
+    /// otherwise diffuse.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;
@@ -57,7 +58,8 @@ impl<'a> MitsubaReader<'a> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
-            // The number is limited because references may duplicate nested materials.
+            // The number of materials is limited because references may duplicate nested
+            // materials.
             if self.made_materials == MAX_MATERIALS + 1 {
                 let message = format!("more than {MAX_MATERIALS} bsdfs, counting repetitions");
                 self.report.cause(&object.place, message);
@@ -107,8 +109,8 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Returns n and k, or an inner `None` for a perfect reflector. The outer `None` means that a
-    /// cause of refusal was reported.
+    /// Returns the complex index n and k of a conductor, or an inner `None` for a perfect
+    /// reflector. The outer `None` means that a cause of refusal was reported.
     fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {
             true => self.text(object, "material")?,

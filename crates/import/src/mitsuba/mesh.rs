@@ -61,8 +61,8 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba computes missing normals from the placed triangles, so a mirror flips them, but
-        // it transforms the normals of a file.
+        // Mitsuba computes missing normals from the placed triangles, so a mirroring placement
+        // flips computed normals, but it transforms the normals of a file.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,
@@ -186,7 +186,7 @@ impl<'a> MitsubaReader<'a> {
 }
 
 fn bits(linear: DMat3) -> [u64; 9] {
-    // The sum with 0 turns −0 into 0.
+    // Adding 0 to a number turns −0 into 0.
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 

@@ -1,4 +1,4 @@
-//! Keys of meshes, by which each mesh is read only once.
+//! Keys of meshes in a cache, so that each mesh is read only once.
 
 use std::path::PathBuf;
 

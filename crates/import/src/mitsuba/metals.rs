@@ -2,7 +2,7 @@
 //!
 //! Mitsuba 3.9.1 converted these indices from its tables of n and k by wavelength (from
 //! luxpop.com, Palik and others), by the rule stated at [`Color`](crate::Color). Negative
-//! components are set to 0.
+//! components of a colour are set to 0.
 
 /// Red, green and blue.
 type MetalRgb = [f64; 3];
@@ -13,7 +13,7 @@ pub(super) fn index(name: &str) -> Option<[MetalRgb; 2]> {
     Some([found.1, found.2])
 }
 
-/// Each conductor with its n and k.
+/// The name of each conductor, with the conductor's n and k.
 #[rustfmt::skip]
 const NAMED: &[(&str, MetalRgb, MetalRgb)] = &[
     ("Ag", [0.1552762, 0.116728, 0.1383876], [4.828354, 3.122222, 2.146901]),

@@ -1,4 +1,4 @@
-//! Materials that contain others.
+//! Materials that contain other materials.
 
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;

@@ -29,7 +29,7 @@ pub(super) struct MitsubaObject {
 /// A property of an object: a value, or another object.
 #[derive(Debug)]
 pub(super) struct ObjectProperty {
-    /// The name; empty for objects without one.
+    /// The name of the property; empty for an object without a name.
     pub(super) name: String,
     pub(super) value: Value,
     pub(super) place: SourcePlace,
@@ -121,7 +121,7 @@ impl ObjectKind {
 }
 
 impl Value {
-    /// Returns a noun for the kind of value, for messages.
+    /// Returns a noun that names the kind of the value in messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

@@ -17,7 +17,8 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether the caller has set the parameter, which the file must then use.
+    /// Whether the caller has set the parameter; the file must use every parameter that the
+    /// caller has set.
     is_set: bool,
     is_used: bool,
 }
@@ -39,7 +40,7 @@ impl Parameters {
         }
     }
 
-    /// Sets the value of a parameter that has none yet.
+    /// Sets the value of a parameter, unless the parameter already has a value.
     pub(super) fn default(&mut self, name: &str, value: &str) {
         self.values
             .entry(name.to_owned())
@@ -57,8 +58,8 @@ impl Parameters {
             .map(|(name, _)| name.as_str())
     }
 
-    /// Returns the text with the values of parameters substituted. `\$` stands for a dollar sign;
-    /// if several names match, the longest is used.
+    /// Returns the text after parameters are replaced by their values. `\$` stands for a dollar
+    /// sign; if the names of several parameters match, the longest name is used.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
         let mut made = String::new();
         let mut rest = text;

@@ -26,12 +26,12 @@ pub(super) struct MitsubaReader<'a> {
     /// The contents of mesh files that may hold several meshes.
     pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
     pub(super) meshes: HashMap<MitsubaMeshKey, Result<Arc<Triangles>, String>>,
-    /// The material of each bsdf; `None` if it is invalid.
+    /// The material of each bsdf; `None` if the bsdf is invalid.
     pub(super) materials: HashMap<usize, Option<usize>>,
     /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
-    /// The indices of the default material of surfaces and of that of emitters, if they are in
-    /// use.
+    /// The indices of two default materials, if they are in use: that of surfaces and that of
+    /// emitters.
     pub(super) defaults: [Option<usize>; 2],
 }
 
@@ -99,7 +99,8 @@ impl<'a> MitsubaReader<'a> {
     /// Refuses media, because a world has no volumetric scattering.
     fn refuse_media(&self) {
         for object in self.objects {
-            // A medium within another medium is not reported again.
+            // A medium within another medium is not reported, because the outer medium already
+            // was.
             let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
             if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
@@ -110,7 +111,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Marks the object and its contents as read, after a message that covers them.
+    /// Marks the object and its contents as read, after a message that covers both.
     pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         for property in &object.properties {
@@ -121,7 +122,8 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Reports an object that could not be read, unless a cause was already added.
+    /// Reports an object that could not be read, unless a cause of refusal was already added for
+    /// it.
     pub(super) fn lost(&self, object: &'a MitsubaObject) {
         if !self.report.has_causes() {
             let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));

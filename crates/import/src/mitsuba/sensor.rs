@@ -91,8 +91,8 @@ impl<'a> MitsubaReader<'a> {
             if is_lens || !self.has(object, name) {
                 return 0.0;
             }
-            // The sign is reversed because Mitsuba shifts the position in the picture and not the
-            // picture.
+            // The sign of the shift is reversed, because Mitsuba shifts the position in the
+            // picture, not the picture itself.
             -self.number(object, name).unwrap_or_default()
         });
         let lens = if is_lens {
@@ -171,7 +171,8 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the placement with Z normalised, and the original length of Z.
+    /// Returns the placement of the camera with the axis Z normalised, and the original length of
+    /// Z.
     fn orthographic(&self, object: &'a MitsubaObject) -> Option<(DAffine3, f64)> {
         if !self.has(object, "to_world") {
             return Some((DAffine3::IDENTITY, 1.0));
@@ -245,7 +246,8 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// Adds a note on the sampler, which is not needed here, and marks it as read.
+    /// Adds a note on the sampler, which is not needed for a world, and marks the sampler as
+    /// read.
     fn sampler(&self, object: &'a MitsubaObject) {
         let samplers: Vec<(&ObjectProperty, &MitsubaObject)> =
             self.children(object, ObjectKind::Sampler);

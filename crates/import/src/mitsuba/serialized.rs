@@ -18,7 +18,7 @@ const LONGEST_NAME: u64 = 1 << 16;
 /// meshes.
 const MAX_PER_BYTE: u64 = 64;
 
-/// Reads the mesh of this index, from 0.
+/// Reads the mesh with the given index, counted from 0.
 pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts, String> {
     let (version, start) = find(bytes, number)?;
     let packed = bytes
@@ -76,7 +76,7 @@ fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     }
 }
 
-/// A reader of unpacked data.
+/// A reader of the unpacked data of a mesh.
 struct UnpackedStream<R> {
     inner: std::io::Take<R>,
     most: u64,
@@ -125,8 +125,8 @@ impl<R: Read> UnpackedStream<R> {
         Err(format!("has a name of more than {LONGEST_NAME} bytes"))
     }
 
-    /// Reads the number of vertices or triangles, and checks it: each of them takes more than a
-    /// byte.
+    /// Reads the number of vertices or triangles, and checks that the file is long enough; each
+    /// vertex or triangle takes more than a byte.
     fn count(&mut self) -> Result<u64, String> {
         let count = u64::from_le_bytes(self.some()?);
         if count <= self.most && u32::try_from(count).is_ok() {
@@ -138,8 +138,8 @@ impl<R: Read> UnpackedStream<R> {
         }
     }
 
-    /// Reads rows of numbers. Memory is allocated only as rows are read, because the stated count
-    /// may be wrong.
+    /// Reads rows of numbers from the unpacked data. Memory is allocated only as rows are read,
+    /// because the number of rows that the file states may be wrong.
     fn rows<const N: usize>(
         &mut self,
         count: u64,

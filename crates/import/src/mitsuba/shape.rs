@@ -1,4 +1,4 @@
-//! Shapes, groups of them and instances.
+//! Shapes, groups of shapes, and instances of groups.
 
 use super::mesh::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind};
@@ -48,7 +48,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Adds one shape, placed by its own transform and then by `outer`.
+    /// Adds one shape, which is placed by the shape's own transform and then by `outer`.
     fn shape(&mut self, object: &'a MitsubaObject, outer: DAffine3, is_instance: bool) {
         if self.world.shapes.len() >= MOST_SHAPES {
             if !self.report.has_causes() {
@@ -87,7 +87,8 @@ impl<'a> MitsubaReader<'a> {
         found.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// Returns the geometry of a shape, its placement, and whether its front is flipped.
+    /// Returns the geometry of a shape, the placement of the shape, and whether the front of the
+    /// shape is flipped.
     fn geometry(
         &mut self,
         object: &'a MitsubaObject,
@@ -170,7 +171,8 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Whether a shape can have this placement; if not, adds a cause of refusal.
+    /// Returns whether a shape can have the given placement; if it cannot, adds a cause of
+    /// refusal.
     fn is_sound(
         &self,
         object: &'a MitsubaObject,

@@ -7,7 +7,8 @@ use std::rc::Rc;
 /// A file being read.
 pub(super) struct SourceFile {
     pub(super) name: Rc<str>,
-    /// The search folders: those added by this file, then those of the including file.
+    /// The search folders: first the folders that this file adds, then the folders of the
+    /// including file.
     pub(super) folders: Rc<[PathBuf]>,
     /// Whether the format is older than version 2.
     pub(super) is_old: bool,

@@ -113,7 +113,7 @@ impl<'a> MitsubaReader<'a> {
         Some(Texture::Constant(constant))
     }
 
-    /// Returns the value for a spectrum that is given by one number.
+    /// Returns the value of a spectrum that a scene states as a single number.
     fn uniform(&self, value: f64, role: Role) -> f64 {
         match (self.color, role) {
             (Color::Luminance, _) | (_, Role::Reflectance | Role::Number) => value,

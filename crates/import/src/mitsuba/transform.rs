@@ -1,15 +1,17 @@
-//! The elements of a transform. Each element is applied after those that precede it.
+//! The elements of a transform. Each element of a transform is applied after the elements that
+//! precede it.
 
 use super::value;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
-/// The attributes of an element, after substitution.
+/// The attributes of an element, after parameters are replaced by their values.
 pub(super) type Attributes = Vec<(String, String)>;
 
 /// Maximum deviation of the length of an axis from 1, due to rounded components in a file.
 const UNIT: f64 = 1e-3;
 
-/// Maximum deviation of a transform from a rigid one; a transform is a product of rounded numbers.
+/// Maximum deviation of a transform from a rigid transform; deviations arise because transforms
+/// are products of rounded numbers.
 const RIGID: f64 = 1e-3;
 
 /// Returns the map of one element; `Err` describes a fault.
@@ -91,7 +93,8 @@ pub(super) fn is_rigid(map: DAffine3) -> bool {
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// Returns the map given by 16 numbers, or by the 9 of the linear part, row by row.
+/// Returns the map that is given, row by row, by 16 numbers, or by the 9 numbers of its linear
+/// part.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
         DMat4::from_cols_array(&all).transpose()
@@ -128,7 +131,7 @@ pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a
     find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
 }
 
-/// Returns an error if there are attributes other than these.
+/// Returns an error if an element has attributes other than the given ones.
 pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
     let mut all = attributes.iter();
     match all.find(|(name, _)| !names.contains(&name.as_str())) {

@@ -24,8 +24,8 @@ pub(super) fn underscored(name: &str) -> String {
     made
 }
 
-/// Applies those changes that are more than another spelling: of the reflectance of diffuse
-/// surfaces, and of scales of texture coordinates.
+/// Applies changes other than of spelling, which concern the reflectance of diffuse surfaces and
+/// the scales of texture coordinates.
 pub(super) fn upgrade(object: &mut MitsubaObject) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {

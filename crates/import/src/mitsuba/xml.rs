@@ -22,14 +22,14 @@ const MOST_ELEMENTS: usize = 1 << 21;
 
 /// The content of the files of a scene.
 pub(super) struct Tree<'a> {
-    /// The objects; the scene is the first.
+    /// The objects of all files; the scene is the first object.
     pub(super) objects: Vec<MitsubaObject>,
     /// Objects by their id.
     pub(super) ids: HashMap<String, usize>,
     parameters: Parameters,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
-    /// Files being read, the innermost last.
+    /// Files that are being read, with the innermost included file last.
     pub(super) open: Vec<PathBuf>,
     pub(super) elements: usize,
     pub(super) includes: usize,
@@ -61,7 +61,8 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Reads a file: the scene, or a file that is included in an object at this depth.
+    /// Reads a file: the file of the scene, or a file included in an object at the given nesting
+    /// depth.
     pub(super) fn file(
         &mut self,
         text: &str,
@@ -309,7 +310,8 @@ impl<'a> Tree<'a> {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
-                // An invalid value still defines the property, so that it has only one cause.
+                // An invalid value still defines the property, so that the property has only one
+                // cause of refusal.
                 let (value, fault) = match value {
                     Ok(value) => (value, None),
                     Err(fault) => (Value::Broken, Some(fault)),

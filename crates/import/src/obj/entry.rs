@@ -3,10 +3,10 @@
 use super::map::MtlMap;
 use crate::report::SourcePlace;
 
-/// A material of an MTL file, as written.
+/// A material as it is written in an MTL file.
 #[derive(Clone, Debug)]
 pub(super) struct MtlEntry {
-    /// The place where the material begins.
+    /// The position in the file where the material begins.
     pub(super) place: SourcePlace,
     /// Diffuse reflectance.
     pub(super) kd: Option<[f64; 3]>,

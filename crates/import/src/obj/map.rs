@@ -18,7 +18,7 @@ pub(super) struct MtlMap {
     pub(super) wrap: Wrap,
 }
 
-/// Options and the maximum number of values of each.
+/// The known options, each with the maximum number of its values.
 const OPTIONS: [(&str, usize); 13] = [
     ("-o", 3),
     ("-s", 3),
@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A word that is no known option is a file name that begins with a hyphen.
+                // A word with a hyphen that is not a known option is taken as a file name.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
@@ -94,8 +94,8 @@ fn cut(text: &str) -> (&str, &str) {
     (&text[..end], text[end..].trim_start())
 }
 
-/// Reads at most this number of values of an option. Options with several values take only numbers,
-/// since a file name follows.
+/// Reads the values of an option, at most the given number. Options with several values take only
+/// numbers, since a file name follows.
 fn arguments<'a>(mut rest: &'a str, most: usize, option: &str) -> (Vec<&'a str>, &'a str) {
     let mut values = Vec::new();
     let takes_words = most == 1;

@@ -77,7 +77,7 @@ impl ObjReader<'_> {
         Some(Material::TwoSided(Box::new([side.clone(), side])))
     }
 
-    /// Returns `Kd` times its picture.
+    /// Returns the colour `Kd` times the picture of `Kd`.
     fn diffuse(&mut self, entry: &MtlEntry) -> Option<Texture> {
         match &entry.map_kd {
             Some(map) => {

@@ -101,7 +101,7 @@ struct MtlStatement<'a> {
 }
 
 impl MtlStatement<'_> {
-    /// Applies a statement; returns whether it is known.
+    /// Applies a statement, and returns whether the statement is known.
     fn apply(&self, entry: &mut MtlEntry, folder: &Path) -> bool {
         match self.word.to_ascii_lowercase().as_str() {
             "kd" => entry.kd = self.color(1.0).or(entry.kd),
@@ -120,7 +120,7 @@ impl MtlStatement<'_> {
                 }
                 entry.illum = whole.or(entry.illum);
             }
-            // These pictures would change normals or displace the surface.
+            // The pictures of these statements would change normals or displace the surface.
             "bump" | "map_bump" | "norm" | "disp" => {
                 let message = format!("{} is not supported: surfaces are smooth", self.word);
                 self.report.cause(&self.place, message);

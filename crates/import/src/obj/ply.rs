@@ -1,4 +1,4 @@
-//! PLY files: one mesh.
+//! PLY files, each of which contains one mesh.
 
 use crate::main_file::MainFile;
 use crate::meshes::MeshParts;

@@ -1,4 +1,4 @@
-//! Parts of OBJ files, as shapes.
+//! Conversion of the parts of OBJ files to shapes.
 
 use super::entry::MtlEntry;
 use super::mtl::{self, left_out};
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Converts a file to a world.
+/// Converts an OBJ file to a world.
 pub(super) struct ObjReader<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
@@ -23,7 +23,7 @@ pub(super) struct ObjReader<'a> {
     place: SourcePlace,
     folder: PathBuf,
     entries: HashMap<String, MtlEntry>,
-    /// Surfaces by material name; `None` if a cause of refusal was reported.
+    /// Surfaces by material name; `None` if a cause of refusal was reported for the material.
     surfaces: HashMap<Option<String>, Option<ObjSurface>>,
 }
 
@@ -153,8 +153,8 @@ impl<'a> ObjReader<'a> {
         made
     }
 
-    /// Returns the triangles of a part with their own vertices, and with texture coordinates whose
-    /// v points downwards.
+    /// Returns the triangles of a part with vertices that no other part uses, and with texture
+    /// coordinates whose v points downwards.
     fn parts(&self, mesh: &DetailedMesh, part: &MaterialPart) -> Option<MeshParts> {
         let mut known: HashMap<u32, u32> = HashMap::new();
         let mut order: Vec<usize> = Vec::new();

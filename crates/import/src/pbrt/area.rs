@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns an emitting picture.
+    /// Returns the emission that a picture states for a surface.
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {

@@ -18,7 +18,7 @@ pub(super) const DEEPEST_FILES: usize = 64;
 pub(super) const MOST_FILES: usize = 1 << 14;
 
 /// Maximum number of `Attribute` parameters in effect at one place. The limit is needed because
-/// each of these parameters is checked for each shape.
+/// each `Attribute` parameter is checked for each shape.
 const MOST_DEFAULTS: usize = 256;
 
 /// The kinds of entity whose parameters `Attribute` may set.
@@ -70,7 +70,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Builds the scene of a text.
+    /// Builds the scene that a text describes.
     pub(super) fn build(mut self, text: &str, name: &str) -> PbrtScene {
         let mut tokens = Tokens::new(text, name);
         self.follow(&mut tokens);
@@ -88,7 +88,7 @@ impl<'a> Builder<'a> {
     pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
-            // This is only a note because pbrt only warns, too.
+            // An unknown coordinate system is only a note, because pbrt also only warns.
             None => {
                 let message = format!("coordinate system {} is not known", quoted(name));
                 self.report.note(place, format!("{message}: left out"));

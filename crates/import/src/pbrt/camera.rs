@@ -64,8 +64,8 @@ impl PbrtReader<'_> {
         let size = size?;
         let window = self.window(entity, size)?;
         let (rigid, scale) = placed?;
-        // X points to the right of the picture in pbrt and to the left in a world. The map mirrors,
-        // because the file's coordinates are left-handed.
+        // X points to the right of the picture in pbrt and to the left in a world. The camera's
+        // map mirrors, because the coordinates in the file are left-handed.
         let rigid = rigid * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         let (to_world, projection) = match is_flat {
             true => (
@@ -84,7 +84,7 @@ impl PbrtReader<'_> {
     }
 
     /// Returns the visible range: minimum and maximum x, then minimum and maximum y. The shorter
-    /// side is from −1 to 1.
+    /// side of the visible range is from −1 to 1.
     fn window(&self, entity: &Entity, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
         let report = self.report;
         let above: (_, fn(f64) -> bool) = ("above 0", |a| a > 0.0);

@@ -23,7 +23,8 @@ impl Builder<'_> {
             };
             if let Err(error) = done {
                 self.report.cause(&place, error);
-                // The tokens up to the next directive belong to the unknown one, and are skipped.
+                // The tokens up to the next directive belong to the unknown directive, and are
+                // skipped.
                 while tokens.peek().is_some_and(
                     |(token, _)| !matches!(token, Token::Word(word) if is_directive(word)),
                 ) {

@@ -30,7 +30,7 @@ pub(super) struct Entity {
 }
 
 impl Entity {
-    /// pbrt's default plugin, used if a file names none.
+    /// The default plugin of pbrt, which is used if a file names no plugin.
     pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
         Self {
             kind,
@@ -42,8 +42,8 @@ impl Entity {
         }
     }
 
-    /// Returns the last parameter of this name among those of the entity, or else among the
-    /// defaults.
+    /// Returns the last parameter with the given name among the parameters of the entity, or else
+    /// among the default parameters.
     pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {
         let all = self.own.iter().rev().chain(self.defaults.iter().rev());
         let found = all.map(|p| &**p).find(|p| p.name == name)?;
@@ -55,7 +55,8 @@ impl Entity {
         self.find(name).is_some()
     }
 
-    /// Returns the place of a parameter or, if it is missing, that of the directive.
+    /// Returns the position of a parameter in the file or, if the parameter is missing, the
+    /// position of the directive.
     pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.find(name).map_or(&self.place, |p| &p.place)
     }
@@ -78,7 +79,7 @@ impl Entity {
         CauseGiven
     }
 
-    /// Marks all parameters as read, after a message that covers them.
+    /// Marks all parameters as read, after a message that covers all of them.
     pub(super) fn drop_all(&self) {
         self.is_used.set(true);
         for parameter in &self.own {
@@ -86,7 +87,8 @@ impl Entity {
         }
     }
 
-    /// Returns the values of a parameter of one of these types, or `None` if it is missing.
+    /// Returns the values of a parameter, which must have one of the given types, or `None` if
+    /// the parameter is missing.
     fn values(
         &self,
         report: &Report,

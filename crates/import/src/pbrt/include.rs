@@ -9,8 +9,9 @@ use std::io::Read;
 use std::path::Path;
 
 impl Builder<'_> {
-    /// Reads a file. `Include` reads it as if its text stood here; after `Import`, the graphics
-    /// state is restored, and only the objects that the file has defined are kept.
+    /// Reads a file. `Include` reads a file as if the text of the file replaced the directive;
+    /// after `Import`, the graphics state is restored, and only the objects that the file defines
+    /// are kept.
     pub(super) fn include(
         &mut self,
         word: &str,
@@ -29,7 +30,7 @@ impl Builder<'_> {
         if self.included > MOST_FILES {
             return match self.included == MOST_FILES + 1 {
                 true => Err(format!("more than {MOST_FILES} files are included")),
-                // The cause of refusal was already added.
+                // The cause of refusal for this file was already added.
                 false => Ok(()),
             };
         }

@@ -1,8 +1,8 @@
-//! Keys of meshes and textures, by which each is made only once.
+//! Keys of meshes and textures in a cache, so that each mesh and each texture is made only once.
 
 use std::path::PathBuf;
 
-/// How (u, v) of a surface in pbrt follow from its (u, v) in a world.
+/// The rule by which (u, v) of a surface in pbrt follow from the surface's (u, v) in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
     /// Both are equal.
@@ -13,8 +13,9 @@ pub(super) enum Uv {
     Disc,
 }
 
-/// The key of a mesh: its file, and whether its texture coordinates are needed.
+/// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
-/// The key of a texture: its name, and for which type and which coordinates it is read.
+/// The key of a texture: the name of the texture, and the type and the coordinates for which it
+/// is read.
 pub(super) type TextureKey = (bool, String, u8, Uv);

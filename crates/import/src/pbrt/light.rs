@@ -112,8 +112,8 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // As in pbrt, the mean of the falloff between the two cones is taken as a half, averaged
-        // over the cosine.
+        // As in pbrt, the mean falloff between both cones, averaged over the cosine, is taken as
+        // one half.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;
         let along = way?;

@@ -125,8 +125,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// n and k. If a reflectance is given instead, it is that of a metal with n = 1 at normal
-    /// incidence.
+    /// n and k. If a reflectance is given in place of n and k, it is the reflectance of a metal
+    /// with n = 1 at normal incidence.
     fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
@@ -150,7 +150,8 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
-            // The note above already covers these parameters, so they are marked as read.
+            // The note about the approximation covers these parameters, so they are marked as
+            // read.
             entity.has(name);
         }
         if albedo? > 0.0 {
@@ -184,8 +185,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Returns the ratio of the index of refraction behind the surface to that on the side of the
-    /// normal.
+    /// Returns the ratio of the index of refraction behind the surface to the index on the side
+    /// of the normal.
     fn index(&mut self, entity: &Entity) -> Read<f64> {
         let is_float =
             |p: &super::parameter::PbrtParameter| p.kind == super::parameter::ParameterKind::Float;

@@ -101,7 +101,7 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Bilinear patches, each as two triangles.
+    /// Converts bilinear patches to meshes with two triangles for each patch.
     fn bilinear(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
         let (vertices, patches) = self.indexed::<4>(entity)?;
         let normals = self.beside(entity, "N", &vertices, |e, r| {
@@ -136,9 +136,9 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a cause
-    /// of refusal; one that is not a parallelogram gets a note, because its texture coordinates
-    /// differ inside.
+    /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a
+    /// cause of refusal; a planar patch that is not a parallelogram gets a note, because texture
+    /// coordinates inside the patch differ from pbrt's.
     fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
         let size = along.length().max(across.length()).max(diagonal.length());

@@ -155,7 +155,7 @@ struct List {
 impl List {
     fn add(&mut self, token: Token<'_>, at: LineColumn, tokens: &Tokens<'_>, report: &Report) {
         let error = match (self.found.as_mut(), token) {
-            // One message per parameter is enough.
+            // One message for each faulty parameter is sufficient.
             (Some(ParameterValues::Broken), _) => return,
             (_, Token::Broken(what)) => what.to_owned(),
             (_, Token::Open | Token::Close) => "a bracket in place of a value".to_owned(),

@@ -87,14 +87,14 @@ impl<'a> PbrtReader<'a> {
         self.world
     }
 
-    /// Adds a note only once, even if its object is used several times.
+    /// Adds a note only once, even if the object that the note concerns is used several times.
     pub(super) fn note_once(&self, place: &SourcePlace, message: &str) {
         if self.is_first(place, message) {
             self.report.note(place, message);
         }
     }
 
-    /// Whether this message was not given before.
+    /// Whether the given message is new, that is, was not given before.
     pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));

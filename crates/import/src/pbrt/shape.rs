@@ -61,7 +61,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Adds a shape; returns whether further shapes are allowed.
+    /// Adds a shape, and returns whether further shapes are allowed.
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MOST_SHAPES {
             let message = format!("more than {MOST_SHAPES} shapes, counting instances");
@@ -130,11 +130,12 @@ impl PbrtReader<'_> {
         self.add_material(Material::Mask { opacity, of })
     }
 
-    /// Whether the front of a shape is opposite to that of its geometry in a world.
+    /// Returns whether the front of a shape in pbrt is opposite to the front of the shape's
+    /// geometry in a world.
     ///
-    /// pbrt computes normals of meshes after placement, so a mirror keeps their front; but a
-    /// mirror flips the normals of other shapes. If a mirrored shape emits, pbrt shows the light
-    /// on one side and emits it from the other; the emitting side is used here.
+    /// pbrt computes normals of meshes after placement, so a mirroring placement keeps the front
+    /// of meshes, but flips the normals of other shapes. If a mirrored shape emits, pbrt shows
+    /// the light on one side and emits it from the other; the emitting side is used here.
     fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));

@@ -84,7 +84,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let pixel = |i: usize| {
         let (column, row) = ((i % w) as f64 + 0.5, (i / w) as f64);
         let places = (0..count * count).map(|k| {
-            // The angle is limited because there is no area beyond the poles.
+            // The polar angle is limited because the sphere has no area beyond the poles.
             let polar = ((row + within(k / count)) * PI / (h - 1) as f64).clamp(0.0, PI);
             let (sin, cos) = libm::sincos(polar);
             let (x, z) = libm::sincos((column + within(k % count)) * TAU / w as f64);
@@ -150,7 +150,7 @@ mod tests {
         for i in 0..64 {
             let at = [f64::from(i % 8) / 8.0 + 0.07, f64::from(i / 8) / 8.0 + 0.03];
             let back = place(direction(at));
-            // The tolerance is the rounding error.
+            // The tolerance of the comparison is the rounding error.
             assert!(
                 (back[0] - at[0]).abs() + (back[1] - at[1]).abs() < 1e-12,
                 "{at:?}"

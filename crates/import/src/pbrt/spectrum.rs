@@ -16,7 +16,7 @@ const PLANCK: f64 = 1.438_776_877e7;
 /// The temperature of the CIE's illuminant A, K.
 const TUNGSTEN: f64 = 2855.5;
 
-/// A spectrum as given in a file.
+/// A spectrum as it is given in a file.
 enum PbrtSpectrum {
     Rgb([f64; 3]),
     /// Temperature in kelvin.
@@ -72,7 +72,8 @@ impl PbrtReader<'_> {
             PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
                 "stdillum-A" => blackbody(TUNGSTEN),
-                // Only the luminance is needed, which is 1.
+                // For a conversion to luminance only the illuminant's luminance is needed, which
+                // is 1.
                 _ if named::is_illuminant(&name) && self.color == Color::Luminance => {
                     return Ok([1.0; 3]);
                 }

@@ -168,7 +168,8 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// Parses a finite number; `Err` describes a fault. The range of integers is checked elsewhere.
+/// Parses a finite number; `Err` describes a fault. The function does not check the range of
+/// integers.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

@@ -6,7 +6,7 @@ const MOST_PER_BYTE: usize = 1032;
 /// Maximum number of values in a picture, as in the scene crate.
 const MAX_NUMBERS: usize = 1 << 27;
 
-/// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
+/// Refuses a picture that is too large, or larger than a file of `length` bytes can contain.
 pub(super) fn check_size(width: usize, height: usize, length: usize) -> Result<(), String> {
     let most = MAX_NUMBERS.min(length.saturating_mul(MOST_PER_BYTE));
     let numbers = width.checked_mul(height).and_then(|n| n.checked_mul(3));
