@@ -79,7 +79,8 @@ pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Ra
 /// From OpenEXR, it reads the first layer with channels R, G and B, or Y, over the entire data
 /// window. From PNG, it reads grey or colour of 8 or 16 bits. Alpha is ignored.
 ///
-/// # Errors When the file is damaged, or when it is larger than allowed.
+/// # Errors
+/// When the file is damaged, or when it is larger than allowed.
 pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
     match extension(file).as_str() {
         "png" => png(bytes),

@@ -29,7 +29,8 @@ pub enum ReadError {
 
 /// Returns the bytes of a regular file that has at most `most` bytes.
 ///
-/// # Errors [`ReadError`], but never because of the file's folder.
+/// # Errors
+/// [`ReadError`], but never because of the file's folder.
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     // The kind of file is checked before opening, because opening a pipe would wait for the other
     // end.

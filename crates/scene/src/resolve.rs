@@ -36,7 +36,8 @@ use std::path::Path;
 /// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative
 /// to `folder`; `memory` is the memory of this machine, in bytes.
 ///
-/// # Errors [`SceneError::Values`] with every fault found; if the scene exceeds the counts of
+/// # Errors
+/// [`SceneError::Values`] with every fault found; if the scene exceeds the counts of
 /// [`crate::limits`], only these faults are reported.
 pub fn resolve(
     name: &str,

@@ -18,7 +18,8 @@ impl Mesh {
     /// first corner, which is correct for convex faces; a face has at most 4,096 corners.
     /// Triangles of zero area are dropped, unless no other triangles remain.
     ///
-    /// # Errors The first fault found: its position in the file, the faulty value and the values
+    /// # Errors
+    /// The first fault found: its position in the file, the faulty value and the values
     /// that are allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as
     /// these formats do; lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {

@@ -21,7 +21,8 @@ impl Mesh {
     /// occur in real files. A scene may drop or refuse further triangles, depending on where the
     /// scene places the mesh.
     ///
-    /// # Errors When a coordinate or an index is out of range, or when no triangle has an area.
+    /// # Errors
+    /// When a coordinate or an index is out of range, or when no triangle has an area.
     pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Fault> {
         // The largest index is never used, so the number of vertices also fits in a u32.
         let count = u32::try_from(vertices.len())
@@ -50,7 +51,8 @@ impl Mesh {
     /// Returns the mesh under an affine map. If the map mirrors the mesh, the order of corners is
     /// reversed, so that triangles still face outward.
     ///
-    /// # Errors When coordinates exceed ±10⁹, or when no triangle has an area after the map.
+    /// # Errors
+    /// When coordinates exceed ±10⁹, or when no triangle has an area after the map.
     pub fn transformed(&self, map: DAffine3) -> Result<Self, Fault> {
         let vertices = self.vertices.iter().map(|v| map.transform_point3(*v));
         let mirrored = map.matrix3.determinant() < 0.0;

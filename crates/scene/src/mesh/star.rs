@@ -17,7 +17,8 @@ impl Mesh {
     /// for l ≥ 1 is R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!). The volume of the mesh is smaller than
     /// the volume of the smooth surface, by an amount proportional to rings⁻².
     ///
-    /// # Errors When there are fewer than four segments per lobe, or when [`Self::new`] refuses
+    /// # Errors
+    /// When there are fewer than four segments per lobe, or when [`Self::new`] refuses
     /// the mesh.
     ///
     /// # Panics

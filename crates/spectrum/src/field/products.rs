@@ -13,7 +13,8 @@ impl RadialBins {
     /// ring of frequencies (Ωx, Ωy) is summed separately and in order, so the result is bitwise
     /// identical on any number of threads.
     ///
-    /// # Panics If a spectrum is on a grid other than that of these bins.
+    /// # Panics
+    /// If a spectrum is on a grid other than that of these bins.
     #[must_use]
     pub fn products(&self, spectra: &[&FieldSpectrum]) -> Array3<f64> {
         let (rings, columns) = self.counts.dim();
