@@ -1,5 +1,4 @@
-//! The sampling criteria of section 6.2 compared with photons; sweeps vary every length and angle
-//! that occurs in the criteria.
+//! Sweeps over every length and angle in the sampling criteria of section 6.2, against photons.
 
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -101,8 +100,7 @@ impl GlossyBench {
             }
             Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
             Lit::Slit(d) => {
-                // The width of the slit is 2 % of its distance from the surface, which is an
-                // angle below half of the lobe's standard deviation.
+                // The slit's angle of 0.02 is below half of the lobe's standard deviation.
                 let (half, from) = (0.01 * d, 1.01 * d);
                 (
                     format!(
