@@ -14,15 +14,11 @@ use crate::density::{scaled, to_power};
 use crate::guide::{LightGuide, SampleGuide};
 use crate::method::{AdaptiveRun, POWER, by_error, sums, values};
 use crate::metric::Metric;
+use crate::objects::ObjectSums;
 use crate::reconstruct::ShadedSample;
-use std::collections::BTreeMap;
 
 /// The share of the samples that are taken first, evenly distributed.
 const EVEN_SHARE: f64 = 1.0 / 3.0;
-
-/// The weight, in samples, with which the factor of all objects enters that of each, so that an
-/// object with few samples has about the factor of all.
-const SHARED: f64 = 4.0;
 
 /// The smallest factor of an object, relative to the factor of all objects.
 const MIN_FACTOR: f64 = 1e-3;
@@ -90,49 +86,25 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// Sums over samples.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    count: f64,
-    /// e² n².
-    error: f64,
-    /// n_c².
-    criterion: f64,
-}
-
-impl Sums {
-    fn add(&mut self, [error, criterion]: [f64; 2]) {
-        self.count += 1.0;
-        self.error += error;
-        self.criterion += criterion;
-    }
-}
-
-/// Sums that give the ratio k of measured squared errors to those by the criterion, up to a common
-/// factor.
+/// The ratios k of measured squared errors to those by the criterion, up to a common factor, from
+/// sums of e² n² and n_c².
 #[derive(Debug, Default)]
-struct Factors {
-    all: Sums,
-    objects: BTreeMap<usize, Sums>,
-}
+struct Factors(ObjectSums<2>);
 
 impl Factors {
     fn add(&mut self, object: usize, squares: [f64; 2]) {
-        self.all.add(squares);
-        self.objects.entry(object).or_default().add(squares);
+        self.0.add(object, squares);
     }
 
     /// Returns the factor of an object, which is never zero, because the first samples may have
     /// missed the object's light.
     fn of(&self, object: usize) -> f64 {
-        let all = self.all;
-        if all.error <= 0.0 || all.criterion <= 0.0 {
+        let [error, criterion] = self.0.all();
+        if error <= 0.0 || criterion <= 0.0 {
             return 1.0;
         }
-        let own = self.objects.get(&object).copied().unwrap_or_default();
-        let shared = SHARED / all.count;
-        let factor = (own.error + shared * all.error) / (own.criterion + shared * all.criterion);
-        factor.max(MIN_FACTOR * all.error / all.criterion)
+        let [own_error, own_criterion] = self.0.of(object);
+        (own_error / own_criterion).max(MIN_FACTOR * error / criterion)
     }
 }
 

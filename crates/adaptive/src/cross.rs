@@ -55,7 +55,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
     found
 }
 
-/// The squared relative errors of the light after noise removal, as values of samples. `samples`
+/// Returns the squared relative errors of the light after noise removal, as values of samples. `samples`
 /// have the variance of their light.
 pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) -> Vec<ShadedSample> {
     let dark = dark(samples);
@@ -73,7 +73,7 @@ pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) ->
     errors.iter().map(of).collect()
 }
 
-/// The radiance below which errors are not relative: a hundredth of the mean.
+/// Returns the radiance below which errors are not relative: a hundredth of the mean.
 pub(crate) fn dark(samples: &[(ShadedSample, f64)]) -> f64 {
     let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
     0.01 * lights.sum::<f64>() / samples.len().max(1) as f64

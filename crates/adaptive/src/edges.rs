@@ -2,9 +2,9 @@
 //! stored, and each takes the light of the stored points that are like it.
 
 use crate::criterion::shaded;
-use crate::reconstruct::{bell, unlike};
+use crate::reconstruct::{LightMean, bell, unlike};
 use crate::shading::Shader;
-use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at};
+use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance};
 
 /// Rows and columns of further points in a pixel.
 const FINE: usize = 4;
@@ -18,7 +18,7 @@ const TURN: f64 = 0.1;
 /// The light at all stored points of the picture; `None` where nothing is shaded.
 pub(crate) type Values = [Option<[f64; 2]>];
 
-/// The mean radiance of a pixel.
+/// Computes the mean radiance of a pixel.
 pub(crate) fn radiance(
     visible: &Visible,
     shader: &Shader<'_>,
@@ -46,12 +46,10 @@ pub(crate) fn radiance(
     sum / count as f64
 }
 
-/// The radiance of a point.
+/// Returns the radiance of a point.
 fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
     match (place.surface, value) {
-        (Some(SeenSurface { factors, .. }), Some(value)) => {
-            place.emitted + factors[0] * value[0] + factors[1] * value[1]
-        }
+        (Some(surface), Some(value)) => place.emitted + surface.light(value),
         _ => place.emitted,
     }
 }
@@ -87,7 +85,7 @@ fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
         }
 }
 
-/// The mean light of the stored points in and around a pixel that are on the object of a point, by
+/// Returns the mean light of the stored points in and around a pixel that are on the object of a point, by
 /// their likeness to it.
 fn like(
     visible: &Visible,
@@ -96,25 +94,18 @@ fn like(
     point: [f64; 2],
     surface: &SeenSurface,
 ) -> Option<[f64; 2]> {
-    let mut sums = [0.0; 3];
-    let near = |k: usize| pixel[k].saturating_sub(1)..(pixel[k] + 2).min(visible.size[k]);
-    for row in near(1) {
-        for column in near(0) {
-            for (i, index) in visible.range([column, row]).enumerate() {
-                let Some((seen, value)) = shaded(&visible.places[index]).zip(values[index]) else {
-                    continue;
-                };
-                if seen.shape == surface.shape {
-                    let place = at([column, row], i);
-                    let square: f64 = (0..2).map(|k| (point[k] - place[k]).powi(2)).sum();
-                    // Half a pixel is the standard deviation.
-                    let weight = bell(4.0 * square + unlike(surface, seen));
-                    sums[0] += weight;
-                    sums[1] += weight * value[0];
-                    sums[2] += weight * value[1];
-                }
+    let mut mean = LightMean::default();
+    for near in visible.around(pixel, 1) {
+        for (i, index) in visible.range(near).enumerate() {
+            let Some((seen, value)) = shaded(&visible.places[index]).zip(values[index]) else {
+                continue;
+            };
+            if seen.shape == surface.shape {
+                let square = squared_distance(point, at(near, i));
+                // Half a pixel is the standard deviation.
+                mean.add(bell(4.0 * square + unlike(surface, seen)), value);
             }
         }
     }
-    (sums[0] > 0.0).then(|| [sums[1] / sums[0], sums[2] / sums[0]])
+    mean.mean()
 }

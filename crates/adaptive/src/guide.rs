@@ -9,12 +9,12 @@
 
 use crate::criterion::shaded;
 use crate::cross::{CrossError, dark};
+use crate::objects::ObjectSums;
 use crate::reconstruct::{ShadedSample, bell, unlike};
 use crate::shading::Shader;
 use crate::smooth::{EdgeFilter, PlaceValues, detailed};
-use crate::visible::{FOUR, SeenSurface, Visible, at};
+use crate::visible::{FOUR, SeenSurface, Visible, at, squared_distance};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Width in pixels of a tile. The paths of its points share a net.
 const TILE: usize = 4;
@@ -68,13 +68,12 @@ impl LightGuide {
         }
     }
 
-    /// The whole guide at a sample.
+    /// Returns the whole guide at a sample.
     pub(crate) fn at(&self, visible: &Visible, sample: &ShadedSample) -> SampleGuide {
         let pixel = visible.pixel_at(sample.at);
         let near = |(i, index): (usize, usize)| {
             let seen = shaded(&visible.places[index])?;
-            let place = at(pixel, i);
-            let square: f64 = (0..2).map(|k| (sample.at[k] - place[k]).powi(2)).sum();
+            let square = squared_distance(sample.at, at(pixel, i));
             let weight = bell(square + unlike(&sample.surface, seen));
             (seen.shape == sample.surface.shape).then_some((weight, self.values[index]))
         };
@@ -128,13 +127,13 @@ impl LightGuide {
         left.collect()
     }
 
-    /// The share of the guide that is used at a point of the picture.
+    /// Returns the share of the guide that is used at a point of the picture.
     pub(crate) fn used(&self, index: usize, surface: &SeenSurface) -> [f64; 2] {
         let shares = self.shares.of(surface.shape);
         [0, 1].map(|part: usize| shares[part] * self.values[index][part])
     }
 
-    /// Samples without the share of the guide that is used.
+    /// Returns samples without the share of the guide that is used.
     pub(crate) fn without(&self, visible: &Visible, samples: &[ShadedSample]) -> Vec<ShadedSample> {
         let less = |sample: &ShadedSample| {
             let guide = self.at(visible, sample).value;
@@ -146,22 +145,26 @@ impl LightGuide {
     }
 }
 
-/// Direct light by one path from each point.
+/// Computes direct light by one path from each point.
 fn direct(visible: &Visible, shader: &Shader<'_>) -> PlaceValues {
     let tiles = visible.size[0].div_ceil(TILE);
     let of = |index: usize| {
         let [column, row] = visible.pixel(index);
-        shaded(&visible.places[index])?;
+        let surface = shaded(&visible.places[index])?;
         let seen = shader.seen(at([column, row], index % FOUR))?;
         let tile = (row / TILE) * tiles + column / TILE;
         let point = morton([column % TILE, row % TILE]) * FOUR + index % FOUR;
-        Some(shader.direct(&seen, tile as u64, u32::try_from(point).ok()?))
+        Some(shader.direct(
+            &seen,
+            surface.factors,
+            (tile as u64, u32::try_from(point).ok()?),
+        ))
     };
     let all = (0..visible.places.len()).into_par_iter();
     all.map(|index| of(index).unwrap_or_default()).collect()
 }
 
-/// The number of a pixel in a tile, in the order of Morton 1966: each quarter of the tile, and each
+/// Returns the number of a pixel in a tile, in the order of Morton 1966: each quarter of the tile, and each
 /// quarter of a quarter, has consecutive numbers.
 fn morton([column, row]: [usize; 2]) -> usize {
     (0..TILE.ilog2()).fold(0, |number, bit| {
@@ -173,39 +176,23 @@ fn morton([column, row]: [usize; 2]) -> usize {
 /// the first samples. The noise of a guide does not fall with the number of samples.
 const SMALLER: f64 = 1.0 / 6.0;
 
-/// The weight of all objects in the share of each, in samples.
-const SHARED: f64 = 4.0;
-
-/// For base and lobe: the product of both errors, the square of the guide's, and its variance.
-type Products = [[f64; 3]; 2];
-
-/// The shares of the guide that objects use.
+/// The shares of the guide that objects use, from sums for base and lobe: the product of both
+/// errors, the square of the guide's error, and the variance of the guide.
 #[derive(Debug, Default)]
-struct GuideShares {
-    count: f64,
-    all: Products,
-    objects: BTreeMap<usize, Products>,
-}
+struct GuideShares([ObjectSums<3>; 2]);
 
 impl GuideShares {
-    fn add(&mut self, shape: usize, products: Products) {
-        self.count += 1.0;
-        let own = self.objects.entry(shape).or_default();
-        for part in 0..2 {
-            for (k, product) in products[part].into_iter().enumerate() {
-                own[part][k] += product;
-                self.all[part][k] += product;
-            }
+    fn add(&mut self, shape: usize, products: [[f64; 3]; 2]) {
+        for (sums, products) in self.0.iter_mut().zip(products) {
+            sums.add(shape, products);
         }
     }
 
-    /// The shares s that minimise the error plain − s · guide of all samples, noise included.
+    /// Returns the shares s that minimise the error plain − s · guide of all samples, noise
+    /// included.
     fn of(&self, shape: usize) -> [f64; 2] {
-        let own = self.objects.get(&shape).copied().unwrap_or_default();
-        let shared = SHARED / self.count.max(1.0);
-        [0, 1].map(|part: usize| {
-            let [both, square, noise] =
-                [0, 1, 2].map(|k: usize| own[part][k] + shared * self.all[part][k]);
+        self.0.each_ref().map(|sums| {
+            let [both, square, noise] = sums.of(shape);
             let square = (square - noise).max(0.0) + noise / SMALLER;
             if square > 0.0 {
                 (both / square).clamp(0.0, 1.0)

@@ -19,6 +19,7 @@ mod edges;
 mod guide;
 mod method;
 mod metric;
+mod objects;
 mod reconstruct;
 mod shading;
 mod smooth;

@@ -23,8 +23,7 @@ pub(crate) struct ShadedSample {
 impl ShadedSample {
     /// Returns the radiance for values of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
-        let [base, lobe] = self.surface.factors;
-        base * value[0] + lobe * value[1]
+        self.surface.light(value)
     }
 }
 
@@ -227,6 +226,27 @@ impl<'a> Band<'a> {
                 }
             }
         }
+    }
+}
+
+/// A weighted mean of values of base and lobe.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LightMean {
+    weight: f64,
+    sums: [f64; 2],
+}
+
+impl LightMean {
+    pub(crate) fn add(&mut self, weight: f64, value: [f64; 2]) {
+        self.weight += weight;
+        for (sum, value) in self.sums.iter_mut().zip(value) {
+            *sum += weight * value;
+        }
+    }
+
+    /// Returns the mean, or `None` if nothing has been added.
+    pub(crate) fn mean(&self) -> Option<[f64; 2]> {
+        (self.weight > 0.0).then(|| self.sums.map(|sum| sum / self.weight))
     }
 }
 

@@ -54,20 +54,26 @@ impl Shader<'_> {
         Some((sample, variance))
     }
 
-    /// The surface at a position of the picture.
+    /// Returns the surface at a position of the picture.
     pub(crate) fn seen(&self, at: PixelPosition) -> Option<SurfaceHit> {
         self.paths.view(&self.camera.look(at, [0.0; 2])).surface
     }
 
-    /// What is visible at a position of the picture.
+    /// Finds what is visible at a position of the picture.
     pub(crate) fn place(&self, at: PixelPosition) -> SeenPlace {
         SeenPlace::new(self.paths, self.camera, self.cutoffs, at)
     }
 
-    /// The direct light of base and lobe by one path, without texture factors.
-    pub(crate) fn direct(&self, seen: &SurfaceHit, number: u64, index: u32) -> [f64; 2] {
+    /// Computes the direct light of base and lobe by one path, without these texture factors. The
+    /// path has the point `index` of the net `number`.
+    pub(crate) fn direct(
+        &self,
+        seen: &SurfaceHit,
+        factors: [f64; 2],
+        (number, index): (u64, u32),
+    ) -> [f64; 2] {
         let parts = self.paths.direct(seen, self.seed, OF_GUIDE + number, index);
-        without(parts, self.paths.factors(seen))
+        without(parts, factors)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Smoothing of noisy values at all visible points of a picture.
 
 use crate::criterion::shaded;
-use crate::reconstruct::{bell, unlike};
+use crate::reconstruct::{LightMean, bell, unlike};
 use crate::visible::{FOUR, Visible};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -24,39 +24,32 @@ impl EdgeFilter {
     /// Smooths values. Each of the points of a pixel uses only those points of other pixels that
     /// have its number, so the errors of the points of a pixel are independent.
     pub(crate) fn smoothed(&self, visible: &Visible, values: &[[f64; 2]]) -> PlaceValues {
+        let variance = (self.width * self.step as f64).powi(2);
         let of = |index: usize| {
             let surface = shaded(&visible.places[index])?;
             let pixel = visible.pixel(index);
             let [columns, rows] = [0, 1].map(|k: usize| self.near(pixel[k], visible.size[k]));
-            let mut sums = [0.0; 3];
+            let mut mean = LightMean::default();
             for row in rows {
                 for column in columns.clone() {
                     let other = visible.range([column, row]).start + index % FOUR;
                     let Some(seen) = shaded(&visible.places[other]) else {
                         continue;
                     };
-                    if seen.shape != surface.shape {
-                        continue;
+                    if seen.shape == surface.shape {
+                        let off = [pixel[0].abs_diff(column), pixel[1].abs_diff(row)];
+                        let near = (off[0] * off[0] + off[1] * off[1]) as f64 / variance;
+                        mean.add(bell(near + unlike(surface, seen)), values[other]);
                     }
-                    let off = [pixel[0].abs_diff(column), pixel[1].abs_diff(row)];
-                    let square = (off[0] * off[0] + off[1] * off[1]) as f64;
-                    let near = square / (self.width * self.step as f64).powi(2);
-                    let weight = bell(near + unlike(surface, seen));
-                    let [base, lobe] = values[other];
-                    sums = [
-                        sums[0] + weight,
-                        sums[1] + weight * base,
-                        sums[2] + weight * lobe,
-                    ];
                 }
             }
-            Some([sums[1] / sums[0], sums[2] / sums[0]])
+            mean.mean()
         };
         let all = (0..visible.places.len()).into_par_iter();
         all.map(|index| of(index).unwrap_or_default()).collect()
     }
 
-    /// Coordinates of neighbours within the picture.
+    /// Returns the coordinates of neighbours within the picture.
     fn near(&self, at: usize, size: usize) -> std::iter::StepBy<Range<usize>> {
         let far = self.radius * self.step;
         let first = if at >= far { at - far } else { at % self.step };
@@ -71,32 +64,23 @@ const AROUND: usize = 2;
 /// 1 − noise/square, where the noise is found from the differences of the points of a pixel.
 pub(crate) fn detailed(visible: &Visible, sharp: &[[f64; 2]], smooth: &[[f64; 2]]) -> PlaceValues {
     let powers = visible.pixels(|pixel| {
-        let shaded = visible
-            .range(pixel)
-            .filter(|i| shaded(&visible.places[*i]).is_some());
-        let places: Vec<usize> = shaded.collect();
+        let places = visible.range(pixel);
+        let places = places.filter(|i| shaded(&visible.places[*i]).is_some());
+        let places: Vec<usize> = places.collect();
         [0, 1].map(|part: usize| {
-            power(
-                &places
-                    .iter()
-                    .map(|i| sharp[*i][part] - smooth[*i][part])
-                    .collect::<Vec<_>>(),
-            )
+            let details = places.iter().map(|i| sharp[*i][part] - smooth[*i][part]);
+            power(&details.collect::<Vec<_>>())
         })
     });
-    let [w, h] = visible.size;
-    let shares = visible.pixels(|[column, row]| {
-        let near = |at: usize, size: usize| at.saturating_sub(AROUND)..(at + AROUND + 1).min(size);
+    let shares = visible.pixels(|pixel| {
         let mut sums = [DetailPower::default(); 2];
-        for y in near(row, h) {
-            for x in near(column, w) {
-                for (sum, power) in sums.iter_mut().zip(powers[y * w + x]) {
-                    sum.noise += power.noise;
-                    sum.square += power.square;
-                }
+        for [column, row] in visible.around(pixel, AROUND) {
+            for (sum, power) in sums.iter_mut().zip(powers[row * visible.size[0] + column]) {
+                sum.noise += power.noise;
+                sum.square += power.square;
             }
         }
-        sums.map(|sum| sum.share())
+        sums.map(DetailPower::share)
     });
     let of = |i: usize| {
         [0, 1].map(|part: usize| {
@@ -115,7 +99,7 @@ struct DetailPower {
 }
 
 impl DetailPower {
-    /// The share of the detail to keep. The factor of two is for caution: the variance comes from
+    /// Returns the share of the detail to keep. The factor of two is for caution: the variance comes from
     /// few points.
     fn share(self) -> f64 {
         if self.square > 0.0 {

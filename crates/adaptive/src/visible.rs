@@ -25,6 +25,11 @@ pub(crate) fn at(pixel: [usize; 2], i: usize) -> [f64; 2] {
     [0, 1].map(|k: usize| pixel[k] as f64 + OFFSETS[i][k])
 }
 
+/// Returns the squared distance of two positions, in pixels.
+pub(crate) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (0..2).map(|k| (a[k] - b[k]).powi(2)).sum()
+}
+
 /// Visible points, four for each pixel.
 #[derive(Debug)]
 pub(crate) struct Visible {
@@ -42,7 +47,7 @@ pub(crate) struct SeenPlace {
 }
 
 impl SeenPlace {
-    /// What is visible at a position of the picture.
+    /// Finds what is visible at a position of the picture.
     pub(crate) fn new(paths: &Paths, camera: &Camera, cutoffs: &Cutoffs, at: [f64; 2]) -> Self {
         let view = paths.view(&camera.look(at, [0.0; 2]));
         Self {
@@ -74,6 +79,11 @@ pub(crate) struct SeenSurface {
 }
 
 impl SeenSurface {
+    /// Returns the radiance for values of base and lobe, with the factors of the surface.
+    pub(crate) fn light(&self, [base, lobe]: [f64; 2]) -> f64 {
+        self.factors[0] * base + self.factors[1] * lobe
+    }
+
     pub(crate) fn new(paths: &Paths, seen: &SurfaceHit, cutoffs: &Cutoffs) -> Self {
         let reflects = paths.reflects(seen);
         let has_lobe = matches!(reflects, Reflects::Lobe(_) | Reflects::Mirror);
@@ -126,7 +136,7 @@ impl Visible {
         first..first + FOUR
     }
 
-    /// The pixel of a point, given its index.
+    /// Returns the pixel of a point, given the point's index.
     pub(crate) fn pixel(&self, index: usize) -> [usize; 2] {
         let pixel = index / FOUR;
         [pixel % self.size[0], pixel / self.size[0]]
@@ -146,6 +156,18 @@ impl Visible {
     pub(crate) fn pixel_index(&self, at: [f64; 2]) -> usize {
         let [column, row] = self.pixel_at(at);
         row * self.size[0] + column
+    }
+
+    /// Returns the pixels up to `radius` to each side of a pixel, in rows from the top.
+    pub(crate) fn around(
+        &self,
+        pixel: [usize; 2],
+        radius: usize,
+    ) -> impl Iterator<Item = [usize; 2]> + use<> {
+        let near =
+            |k: usize| pixel[k].saturating_sub(radius)..(pixel[k] + radius + 1).min(self.size[k]);
+        let columns = near(0);
+        near(1).flat_map(move |row| columns.clone().map(move |column| [column, row]))
     }
 
     /// Computes a value for each pixel.

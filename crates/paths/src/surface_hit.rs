@@ -135,7 +135,7 @@ impl Paths {
         ([base, mean - base], variance)
     }
 
-    /// An estimate by one path of the direct light that base and lobe scatter to the eye,
+    /// Estimates by one path the direct light that base and lobe scatter to the eye,
     /// W m⁻² sr⁻¹. Points with the same `number` share a net, of which this is point `index`.
     #[must_use]
     pub fn direct(&self, seen: &SurfaceHit, seed: u64, number: u64, index: u32) -> [f64; 2] {
@@ -144,7 +144,7 @@ impl Paths {
         self.by_one_path(seen, self.depth.saturating_sub(1), &mut numbers)
     }
 
-    /// The radiance of base and lobe by one path, which ends as if `before` surfaces were between
+    /// Estimates the radiance of base and lobe by one path, which ends as if `before` surfaces were between
     /// the point and the eye.
     fn by_one_path(
         &self,

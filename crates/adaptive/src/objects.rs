@@ -1,0 +1,49 @@
+//! Sums over the first samples of each object, which also use a little of the sums over all objects.
+
+use std::collections::BTreeMap;
+
+/// The weight, in samples, with which the mean over all objects enters the sums of each object. So
+/// an object with few samples has about the ratios of all objects.
+const SHARED: f64 = 4.0;
+
+/// Sums of `N` numbers for each object and for all.
+#[derive(Debug)]
+pub(crate) struct ObjectSums<const N: usize> {
+    count: f64,
+    all: [f64; N],
+    objects: BTreeMap<usize, [f64; N]>,
+}
+
+impl<const N: usize> Default for ObjectSums<N> {
+    fn default() -> Self {
+        Self {
+            count: 0.0,
+            all: [0.0; N],
+            objects: BTreeMap::new(),
+        }
+    }
+}
+
+impl<const N: usize> ObjectSums<N> {
+    /// Adds the numbers of a sample on an object.
+    pub(crate) fn add(&mut self, object: usize, numbers: [f64; N]) {
+        self.count += 1.0;
+        let own = self.objects.entry(object).or_insert([0.0; N]);
+        for (i, number) in numbers.into_iter().enumerate() {
+            own[i] += number;
+            self.all[i] += number;
+        }
+    }
+
+    /// Returns the sums over all objects.
+    pub(crate) fn all(&self) -> [f64; N] {
+        self.all
+    }
+
+    /// Returns the sums of an object, with the mean over all objects added as [`SHARED`] samples.
+    pub(crate) fn of(&self, object: usize) -> [f64; N] {
+        let own = self.objects.get(&object).copied().unwrap_or([0.0; N]);
+        let shared = SHARED / self.count.max(1.0);
+        std::array::from_fn(|i| own[i] + shared * self.all[i])
+    }
+}
