@@ -15,7 +15,7 @@ pub struct BandwidthRow {
     pub point: Vec<f64>,
     /// The plane's name.
     pub plane: String,
-    /// κ [1/m], θ₀ and θ₁ [°], d and d′ [m], the bandwidth of the lobe [cycles per radian], B of
+    /// κ \[1/m\], θ₀ and θ₁ \[°\], d and d′ \[m\], the bandwidth of the lobe \[cycles per radian\], B of
     /// Eq. 20 and the same as printed, B′ of Eq. 21 and the same as printed [cycles per unit slope].
     /// With a measurement also the exact bandwidth, the measured one and its standard error. `None`
     /// stands for a number that the plane does not have.
