@@ -734,7 +734,7 @@ AxisName = Union[Literal["X"], Literal["Y"]]
 """An axis orthogonal to the central ray."""
 
 Blockers = Union["BlockersJitteredSquares", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
-"""Black blockers. All but meshes lie in one plane orthogonal to the central ray."""
+"""Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]
 """The bulb of a spot, orthogonal to the central ray."""

@@ -116,12 +116,12 @@ fn holds(node: &Value) -> String {
     let each = many.map_or(node, |many| &many[0]);
     let count = many.map_or(String::new(), |many| format!("{} numbers: ", many.len()));
     match (each["x-range"].as_str(), type_of(node)) {
-        (Some(range), _) => format!(" In the brackets: {count}{range}."),
+        (Some(range), _) => format!(" Value in the brackets: {count}{range}."),
         (None, Some(name)) => format!(
-            " In the brackets: a list of [{name}](#{}).",
+            " Value in the brackets: a list of [{name}](#{}).",
             name.to_lowercase()
         ),
-        (None, None) => " In the brackets: a text in quotes.".to_owned(),
+        (None, None) => " Value in the brackets: a text in quotes.".to_owned(),
     }
 }
 

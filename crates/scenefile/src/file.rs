@@ -62,7 +62,7 @@ pub struct SceneFile {
     pub run: RunFile,
 }
 
-/// Black blockers. All but meshes lie in one plane orthogonal to the central ray.
+/// Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Blockers", deny_unknown_fields)]
 #[schemars(transform = told("blockers", r#"Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)"#))]
