@@ -21,7 +21,8 @@ struct Collapse<'a> {
 ///
 /// Panics if a leaf has more than [`MAX_LEAF`] boxes.
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // The largest possible number of nodes. The system provides memory only when it is written to.
+    // The largest possible number of nodes. The operating system provides memory only when the
+    // program writes to the memory.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
     nodes.push(Node::EMPTY);
@@ -97,8 +98,8 @@ fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     costs
 }
 
-/// Returns how many of `boxes` the first of two children gets when the total cost is smallest, and
-/// this cost.
+/// Returns the number of `boxes` that the first of two children gets when the total cost is
+/// smallest, and this cost.
 fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
     let cost = |of_first: usize| first[of_first - 1] + second[boxes - of_first - 1];
     let mut best = (1, cost(1));

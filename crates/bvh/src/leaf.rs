@@ -38,7 +38,8 @@ impl LeafRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
-        // The axes are permuted so that the largest component comes last; it is scaled to 1.
+        // The axes are permuted so that the largest component of the direction comes last; this
+        // component is scaled to 1.
         let axes = if size.x > size.y && size.x > size.z {
             [1, 2, 0]
         } else if size.y > size.z {
@@ -75,7 +76,7 @@ impl Leaf {
         }
     }
 
-    /// Returns the triangles that a ray may meet, one bit for each.
+    /// Returns the triangles that a ray may meet, as a mask with one bit for each triangle.
     #[inline(always)]
     fn candidates<S: Simd>(&self, simd: S, sight: &LeafRay) -> u32 {
         let a = self.across(simd, sight, 0);

@@ -6,8 +6,8 @@
 //! tree with eight boxes in a node (`wide`), whose leaves hold a few boxes, or triangles that are
 //! tested together ([`WideHierarchy`]).
 //!
-//! The builder panics on boxes with NaN. No valid scene has such boxes, and they are never passed
-//! to the builder: a primitive without a box in f32 is a candidate for every ray.
+//! The builder panics on boxes with NaN. No valid scene has boxes with NaN, and the builder never
+//! receives such boxes: a primitive without a box in f32 is a candidate for every ray.
 
 mod binary_hierarchy;
 mod build;

@@ -247,8 +247,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin. No light reaches a coordinate of
-/// `beyond`.
+/// The part of a half-plane that light can reach, with a margin. Light reaches no coordinate of
+/// modulus `beyond` or more.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {

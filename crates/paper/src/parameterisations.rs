@@ -10,7 +10,7 @@ use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 
 /// Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles. The
-/// paper states that this error is not significant.
+/// paper states that treating slopes as angles causes no significant error.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slopes = Seen::at(&taken.shots[0], "slopes")?;
     let angles = Seen::at(&taken.shots[0], "angles")?;
@@ -130,7 +130,7 @@ mod tests {
         let share = (found / slopes.found.predicted.radial_power().sum()).sqrt();
         let report = &angles.found.report;
         let chain = report.first_order.as_ref().unwrap().chain.error;
-        // The prediction by angles has a further error, that of its nets.
+        // The prediction by angles also has the error of its Sobol' nets.
         let wanted = libm::hypot(chain, report.quadrature_error.unwrap());
         assert!((share / wanted - 1.0).abs() < 0.05, "{share}, {wanted}"); // the error of nets is an estimate
     }

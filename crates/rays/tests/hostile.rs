@@ -1,7 +1,8 @@
-//! Tests thousands of mutated files: none makes the reader panic, and memory stays within the bound
-//! of the crate.
+//! Tests that thousands of mutated files do not make the reader panic, and that memory stays
+//! within the bound of the crate.
 //!
-//! This test is a program of its own, so that the peak memory of the process is that of reading.
+//! This test is a program of its own, so that the peak memory of the process is the memory that
+//! reading takes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -52,7 +52,8 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// The scene, with the fields reset that may differ in a scene saved by the explorer.
+/// Returns the scene with fixed values in all fields that may differ in a scene saved by the
+/// explorer.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
         if let BlockersFile::JitteredSquares { name, .. } | BlockersFile::Shapes { name, .. } =

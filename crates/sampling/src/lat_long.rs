@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// A picture of all directions, with a sampler of directions by radiance.
 ///
-/// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel by
-/// its light, then a position within its tent. So the density is interpolated like the radiance,
-/// with each pixel weighted by the circumference of its row.
+/// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel
+/// in proportion to its light, then a position within the pixel's tent. The density is therefore
+/// interpolated like the radiance, with each pixel weighted by the circumference of its row.
 #[derive(Clone, Debug)]
 pub struct LatLongSampler {
     map: Arc<LatLong>,
@@ -56,7 +56,7 @@ impl LatLongSampler {
         }
     }
 
-    /// Samples a direction that light comes from.
+    /// Samples a direction from which light comes.
     #[must_use]
     pub fn sample(&self, r: [f64; 4]) -> DVec3 {
         let row = self.rows.sample(r[0]);

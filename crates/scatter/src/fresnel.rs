@@ -4,7 +4,8 @@
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the share that is reflected at an angle of incidence whose cosine, 0 to 1, is given.
+/// Returns the reflected share of light at an angle of incidence, given by its cosine from 0 to
+/// 1.
 #[inline]
 #[must_use]
 pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
@@ -24,7 +25,7 @@ fn dielectric(index: f64, cosine: f64) -> f64 {
     if inside <= 0.0 {
         return 1.0;
     }
-    // This is the index times the cosine of the angle of refraction.
+    // This root is the index times the cosine of the angle of refraction.
     let refracted = inside.sqrt();
     let s = (cosine - refracted) / (cosine + refracted);
     let p = (squared * cosine - refracted) / (squared * cosine + refracted);

@@ -15,7 +15,7 @@ pub struct Microfacets {
     pub alpha: [f64; 2],
 }
 
-/// The smallest z of a visible normal before stretching: normals at the horizon are kept above it.
+/// The smallest z of a visible normal before stretching, which keeps normals above the horizon.
 const MIN_HEIGHT: f64 = 1e-12;
 
 impl Microfacets {
@@ -41,16 +41,16 @@ impl Microfacets {
         (value, normal.dot(wo).min(1.0))
     }
 
-    /// Samples the mirror direction of wo at a normal that is visible from wo. Near grazing some of
-    /// these directions lie below the surface.
+    /// Samples the mirror direction of wo at a normal that is visible from wo. Near grazing incidence, some sampled
+    /// directions lie below the surface.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: [f64; 2]) -> DVec3 {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// Returns the density of [`Self::sample`], over the whole sphere. It is the density of the
-    /// normal, divided by 4 h · ωo (Walter et al., Eq. 14).
+    /// Returns the density of [`Self::sample`], over the whole sphere. The density of directions is the density of
+    /// the normal, divided by 4 h · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
     pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -112,7 +112,7 @@ impl Microfacets {
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // Beyond this, erfc is below erfc(6), which is below rounding error.
+                // For larger arguments, erfc is below erfc(6), which is below rounding error.
                 if a > 6.0 {
                     return 1.0;
                 }

@@ -103,7 +103,8 @@ pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     )
 }
 
-/// Returns (measured − predicted) / sigma, or NaN if there is no error because no photon arrived.
+/// Returns (measured − predicted) / sigma, or NaN where there is no error estimate because no
+/// photon arrived.
 pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });

@@ -21,8 +21,8 @@ pub fn available_memory() -> u64 {
     all.min().unwrap_or(u64::MAX)
 }
 
-/// Resolves a scene file for this machine. Its meshes are in `folder`, and messages name the file
-/// as `shown`.
+/// Resolves a scene file for this machine. The meshes of the scene are in `folder`, and messages
+/// name the scene file as `shown`.
 pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Result<Scene, Failure> {
     resolve(name, file, folder, available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");

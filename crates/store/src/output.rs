@@ -24,8 +24,8 @@ pub struct OutputFile {
 
 impl OutputFile {
     /// Checks that the file can be written, before any work is done. An existing file at the path
-    /// is kept, unless `force` is set and the file is regular. The path must not be among `inputs`
-    /// in any case.
+    /// is kept, unless `force` is set and the file is regular. The path must not be among
+    /// `inputs`, even with `force`.
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         Self::of_kind(path, force, inputs, None)
     }

@@ -89,7 +89,7 @@ fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,
 ) -> Result<(PredictedPlane, Vec<u8>), Failure> {
-    // Every field is listed by name, so that a new one cannot be forgotten.
+    // Every field is listed by name, so that a new field cannot be forgotten.
     let Prediction {
         class,
         steps,

@@ -1,9 +1,10 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
 //! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of an
-//! earlier result is removed if the index of that result lists it and it still has the listed hash.
-//! All other files in the folder belong to somebody else and are kept (docs/files.md).
+//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of
+//! an earlier result is removed if the index of that result lists the file, and the file still
+//! has the listed hash. All other files in the folder belong to somebody else and are kept
+//! (docs/files.md).
 
 mod claim;
 mod commit;
@@ -110,7 +111,7 @@ impl Finished {
 
 impl Results {
     /// Claims a folder, before any work is done. Creates and locks the folder, and removes the
-    /// remains of a dead process. Refuses if an input, or a file that etendue did not write, is in
+    /// remains of a dead process. Fails if an input, or a file that etendue did not write, is in
     /// the place of a file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
@@ -194,8 +195,8 @@ impl Results {
         Ok(())
     }
 
-    /// Writes a JSON file whose bytes may differ from run to run. The index does not list it; it
-    /// ends with its own hash.
+    /// Writes a JSON file whose bytes may differ from run to run. The index does not list this
+    /// file, which ends with its own hash.
     pub fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
         let bytes = sealed::sealed(json);
         self.put(name, &mut |file| file.write_all(&bytes)).map(drop)

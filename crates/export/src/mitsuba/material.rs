@@ -132,8 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// Returns n and k. A dielectric becomes a metal without absorption, which reflects in the same
-/// way.
+/// Returns the index of refraction n and the index of absorption k. A dielectric becomes a metal
+/// without absorption, which reflects in the same way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,

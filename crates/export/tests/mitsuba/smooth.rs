@@ -161,8 +161,8 @@ fn patterns_become_pictures() {
     let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
-    // The values begin with the lowest row, which is the last row of the picture. Its centre is
-    // half a pixel before the end of a period, where the cosine is nearly 1.
+    // The values begin with the lowest row, which is the last row of the picture. The centre of
+    // this row is half a pixel before the end of a period, where the cosine is nearly 1.
     let expected = 0.25 * (1.0 + 0.9 * f64::cos(std::f64::consts::TAU * 0.5 / 512.0));
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();

@@ -146,7 +146,7 @@ const MOST_SPECTRA: u32 = 65_536;
 const NAME: usize = 128;
 
 impl Tm25Header {
-    /// What each of the texts of 4.7.3 describes.
+    /// The subject of each text of section 4.7.3 of the standard.
     pub const TEXTS: [&str; 9] = [
         "light source",
         "manufacturer",
@@ -177,7 +177,7 @@ impl Tm25Header {
             .unwrap_or_default()
     }
 
-    /// Returns the header, the number of rays, and the offset of the first.
+    /// Returns the header, the number of rays, and the offset of the first ray.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
         let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
@@ -277,7 +277,7 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// Reads 4.7.4: tables, and zeros up to a multiple of 32 bytes.
+    /// Reads section 4.7.4 of the standard: tables, and zeros up to a multiple of 32 bytes.
     fn read_spectra(
         &mut self,
         cursor: &mut ByteCursor<'_>,

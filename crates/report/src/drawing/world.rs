@@ -1,4 +1,4 @@
-//! Draws a scene whose path turns: to scale, in the plane of D and X at the light.
+//! Draws a scene whose path turns, to scale, in the plane of D and X at the light.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
@@ -37,7 +37,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
         let half = plane.window.x.half_width();
         [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
     });
-    // The path continues beyond the last surface, even if there is no plane.
+    // The path continues beyond the last surface, even if there is no plane behind it.
     let way = scene.path.first_hit().min(last.length);
     let farthest = planes.iter().map(|plane| plane.distance);
     let end = farthest.fold(last.start + 0.3 * way, f64::max);

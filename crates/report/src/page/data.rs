@@ -52,7 +52,7 @@ struct PlaneData<'a> {
     field_unit: String,
     /// The radial spectrum for ρ ≥ 0, like the slices.
     radial: Grids,
-    /// A slice for each azimuth; `None` if they are too large.
+    /// A slice for each azimuth; `None` if the slices are too large.
     slices: Option<Vec<Grids>>,
 }
 

@@ -313,9 +313,9 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
 }
 
 /// Lines along which theory predicts the light. After light has travelled a distance d, its
-/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, it also lies
-/// along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve these
-/// lines. A diffuse surface keeps only ν = 0, and d is counted from there.
+/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, the spectrum
+/// also lies along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve
+/// these lines. A diffuse surface keeps only ν = 0, and d is counted from this surface.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {

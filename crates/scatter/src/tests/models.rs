@@ -75,9 +75,9 @@ where
     }
 }
 
-/// Returns the largest weight for sampling by visible normals. For GGX it is Smith's masking of one
-/// direction, plus rounding error. Beckmann's normals are sampled by GGX, so their weight is larger
-/// by the ratios of D, 4/e, and of G₁, √π.
+/// Returns the largest weight for sampling by visible normals. For GGX, this weight is Smith's
+/// masking of one direction, plus rounding error. Beckmann's normals are sampled by GGX, so their
+/// weight is larger by the ratios of D, 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
     match facets.distribution {
         MicrofacetDistribution::Beckmann => 2.61,
@@ -151,8 +151,8 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
         is_nonlinear,
     };
     let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
-    // The weight is that of coat or base divided by its share of samples, which is approximately
-    // its share of the light.
+    // The weight is the light of the coat or of the base divided by its share of the samples,
+    // which approximates its share of the light.
     model(name, 4.0, plastic)
 }
 
