@@ -8,7 +8,7 @@ use obvhs::bvh2::Bvh2;
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// A binary tree, and the [`costs`] that decide which of its nodes become boxes.
+/// A binary tree with the [`costs`] that decide which nodes become boxes of an eight-wide node.
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,
@@ -60,10 +60,10 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     (Wide::new(nodes, deepest), leaves)
 }
 
-/// Returns, for each node of the binary tree, the cost of rays below the node if it becomes at
-/// most 1, 2 … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening
-/// (Ylitie, Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed
-/// wide BVHs*, section 3.1).
+/// Returns the cost of rays below each node of the binary tree, if this node becomes at most 1, 2
+/// … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening (Ylitie,
+/// Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide
+/// BVHs*, section 3.1).
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());

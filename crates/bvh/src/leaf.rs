@@ -1,8 +1,9 @@
 //! Tests a few triangles together in f32, to find the triangles that a ray may meet.
 //!
 //! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
-//! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
-//! rejected only if the ray is on different sides of its edges by more than all rounding errors.
+//! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). A triangle is rejected
+//! only if the ray is on different sides of the triangle's edges by more than all rounding
+//! errors.
 
 use crate::single::single;
 use crate::wide::Visit;
@@ -83,7 +84,7 @@ impl Leaf {
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
         let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
-        // A bound on the error of any of the products, due to the errors of its two coordinates.
+        // A bound on the error of each product, due to the errors of the two coordinates.
         let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
         let error = size * sight.tolerance;
         // Comparisons with NaN are false, so NaN does not lead to rejection.

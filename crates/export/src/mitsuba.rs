@@ -77,8 +77,8 @@ pub enum NotInMitsuba {
     },
 }
 
-/// Returns the files of a scene for Mitsuba 3. They are `scene.xml`, its meshes and pictures, and
-/// `planes.json` with the virtual planes, for which Mitsuba has no element.
+/// Returns the files of a scene for Mitsuba 3. The files are `scene.xml`, the scene's meshes and
+/// pictures, and `planes.json` with the virtual planes, for which Mitsuba has no element.
 ///
 /// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
 /// surface.

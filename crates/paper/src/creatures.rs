@@ -1,4 +1,5 @@
-//! Figs. 16 and 17: a picture from few shading samples, and the criteria that place them.
+//! Figs. 16 and 17: a picture from few shading samples, and the criteria that place these
+//! samples.
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
@@ -234,7 +235,7 @@ impl ComparedPictures {
         }
     }
 
-    /// Relative luminance: radiance divided by that of white, at most 1.
+    /// Relative luminance: radiance divided by the radiance of white, at most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }

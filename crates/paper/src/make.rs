@@ -72,7 +72,8 @@ struct FigureIndex<'a> {
     /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// The factor by which the frequencies along each axis are denser than those of the scene.
+    /// The factor by which the figure's frequencies along each axis are denser than the scene's
+    /// frequencies.
     finer: usize,
     /// The hash of each scene, with the number of photons for this quality and the scene's own
     /// frequencies.

@@ -62,9 +62,9 @@ fn panels(
 
 /// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
 ///
-/// T is opposite to X, and B is Y. Angles are those of the direction from which light comes. The
-/// slice at (ρ, ν) in azimuth φ by slopes is thus that at (−ρ, ν) in azimuth −φ by angles, or at
-/// (ρ, −ν) in π − φ.
+/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. The
+/// slice by slopes at (ρ, ν) and azimuth φ is thus the slice by angles at (−ρ, ν) and azimuth −φ,
+/// or at (ρ, −ν) and azimuth π − φ.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
     let (azimuths, columns, rows) = by_slopes.dim();
@@ -80,7 +80,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// The norm of the difference divided by that of the spectrum.
+/// The norm of the difference divided by the norm of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -117,9 +117,9 @@ mod tests {
     use crate::scene_run::Shot;
     use etendue_pipeline::Silent;
 
-    /// The difference of the two planes is the error of the chain, which treats u as θ. This
-    /// difference would be as large as the spectra if different frequencies of the two planes were
-    /// subtracted.
+    /// The difference of the two planes is the error of the chain, which treats u as θ. The
+    /// difference would be as large as the spectra if different frequencies of the two planes
+    /// were subtracted.
     #[test]
     fn the_difference_of_the_planes_is_the_error_of_the_chain() {
         let subject = named("8").unwrap().subject().unwrap();

@@ -17,8 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The minimum time of a stored batch; a faster batch is not stored, because measuring it again
-/// is quick.
+/// The minimum duration of a batch that is stored; a faster batch is not stored, because
+/// measuring it again is quick.
 const MIN_AGE: Duration = Duration::from_secs(5);
 /// The interval at which an unfinished batch is stored.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
@@ -31,7 +31,7 @@ pub struct Checkpointing<'a> {
     pub resume: bool,
     /// The time after which no further part of a batch is begun.
     pub until: Option<Instant>,
-    /// Other processes that also measure.
+    /// The other processes that also measure batches.
     pub workers: Option<&'a Leader<'a>>,
 }
 

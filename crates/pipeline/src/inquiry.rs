@@ -132,8 +132,8 @@ fn both_pass(
 /// Returns two squared distances between the measurement of a failed plane and its prediction,
 /// without the part due to noise. The first squared distance weights all frequencies equally; the
 /// second weights frequencies as the test does, which favours frequencies with less noise. The
-/// noise of another tracer is distributed differently over frequencies, so the other tracer must
-/// be able to detect the smaller of the two squared distances.
+/// noise of another tracer is distributed differently over frequencies. The other tracer must
+/// therefore be able to detect the smaller of the two squared distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);

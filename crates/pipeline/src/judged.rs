@@ -19,7 +19,7 @@ pub struct Judged {
 
 impl Judged {
     /// Compares all planes, and investigates the planes that fail. If light fields are saved to a
-    /// result folder, they are compared too.
+    /// result folder, these light fields are also compared.
     pub fn of(
         case: &MeasuredScene,
         fields: Option<&mut Results>,

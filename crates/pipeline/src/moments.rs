@@ -12,8 +12,8 @@ fn options() -> FieldOptions {
     }
 }
 
-/// Returns the options of the grid on which a plane is measured. If all groups fit into half of
-/// the memory, they are kept, and the photons need not be traced twice.
+/// Returns the options of the grid on which a plane is measured. All groups are kept if they fit
+/// into half of the memory; the photons then need not be traced twice.
 pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     let kept = FieldOptions {
         keep: true,

@@ -27,7 +27,7 @@ const MAX_FACTOR: f64 = 8.0;
 ///
 /// Each measurement starts again from the first photon, so its result equals that of a run with
 /// the same number of photons. The possible numbers of photons are fixed beforehand, and only
-/// noise decides which of them is the last, so p-values are not biased.
+/// noise decides which number is the last, so p-values are not biased.
 ///
 /// # Errors
 /// When no photon reaches any plane, or when more than `most` photons would be needed.

@@ -18,7 +18,7 @@ pub enum FilePosition {
 pub struct Fault {
     /// Position of the fault.
     pub place: FilePosition,
-    /// The value found at this position, and what is allowed there.
+    /// The value found at the position of the fault, and what is allowed there.
     pub message: String,
 }
 

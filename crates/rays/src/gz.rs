@@ -8,8 +8,7 @@ use std::borrow::Cow;
 use std::io::{Read, Write};
 
 /// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packing reduces
-/// files of rays to about a half of their length; test files with repeated rays shrink to a
-/// tenth.
+/// files of rays to about half of their length, and test files with repeated rays to a tenth.
 pub const MOST_RATIO: usize = 64;
 
 /// Number of bytes to which any packed file may unpack, regardless of its length.

@@ -38,8 +38,8 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// Returns a file with a few bytes, numbers or its length changed, more often in the header than in
-/// rays.
+/// Returns a file in which a few bytes, numbers or the length are changed, more often in the
+/// header than in rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.below(4) {
@@ -121,8 +121,8 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // The file is so large that the bound depends mostly on its length, and not on the bytes that
-    // any file may take.
+    // The file is so large that the bound depends mostly on the length of the file, and not on
+    // the bytes that any file may take.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());

@@ -11,8 +11,8 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// The part after # in the address of the page that shows a scene; `None` if the explorer does not
-/// support it.
+/// The part after # in the address of the page that shows a scene; `None` if the explorer does
+/// not support the scene.
 ///
 /// A scene is supported if the explorer, set to the numbers of this scene, would save the same
 /// scene; planes, names and the extent of surfaces may differ.

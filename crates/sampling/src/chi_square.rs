@@ -1,5 +1,5 @@
-//! Pearson's χ² test of samples, counted in cells, against the integrals of their density; for
-//! tests.
+//! Pearson's χ² test of samples, for tests: the counts of samples in cells are compared with the
+//! integrals of their density.
 
 use etendue_field::Frame;
 use glam::DVec3;
@@ -146,7 +146,8 @@ impl SphereCells {
         angles.sort_by(f64::total_cmp);
         let mut rings = vec![0.0];
         rings.extend((1..RINGS).map(|i| angles[i * angles.len() / RINGS]));
-        // These rings resolve the tail, and the edge of a lobe, where the density may jump.
+        // The rings resolve the tail of a lobe, and the edge of a lobe, where the density may
+        // jump.
         rings.extend([255, 4095].map(|i| angles[i * angles.len() / (i + 1)]));
         rings.extend([0.5 * PI, PI]);
         rings.sort_by(f64::total_cmp);

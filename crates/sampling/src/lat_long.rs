@@ -42,8 +42,8 @@ impl LatLongSampler {
             .map(|(values, sine)| DiscreteDistribution::new(values.iter().map(|v| sine * v)))
             .collect();
         let rows = columns.iter().enumerate().map(|(row, columns)| {
-            // A row extends half a row on either side of its centre, or to the pole if that is
-            // nearer.
+            // A row extends half a row on either side of its centre, or to the pole if the pole
+            // is nearer.
             let center = row as f64 + 0.5;
             let share = (center - top).min(0.5) + (bottom - center).min(0.5);
             share * columns.total()

@@ -1,5 +1,6 @@
 //! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface;
-//! `index` is the refractive index of the far side divided by that of the side of wo.
+//! `index` is the refractive index of the far side divided by the refractive index of the side of
+//! wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.
 

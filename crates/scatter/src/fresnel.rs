@@ -50,15 +50,15 @@ fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
 pub(crate) struct Interface {
     /// The share of light that is reflected.
     pub(crate) reflected: f64,
-    /// Index of the far side divided by that of the near side.
+    /// Index of the far side divided by the index of the near side.
     index: f64,
     /// Cosines on the near and the far side.
     cosines: [f64; 2],
 }
 
 impl Interface {
-    /// Builds an interface for an angle of incidence with this cosine, above 0; the index of the
-    /// far side is `index` times that of the near side.
+    /// Builds an interface for an angle of incidence whose cosine, above 0, is given. The index
+    /// of the far side is `index` times the index of the near side.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);

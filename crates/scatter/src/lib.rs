@@ -1,5 +1,5 @@
-//! BSDFs for the tracers of bench scenes and of worlds. Each BSDF has its value, the sampling of
-//! directions, and the density of sampling.
+//! BSDFs for the tracers of bench scenes and of worlds. Each BSDF provides its value, a sampler
+//! of directions, and the density of the sampler.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z: light
 //! comes from `wi` and leaves along `wo`. `wo` is given and `wi` is sampled, as for a ray from a

@@ -55,7 +55,7 @@ pub enum SceneError {
         line: usize,
         /// Column of the fault in characters, counted from 1.
         column: usize,
-        /// A description of the fault, and of what is allowed.
+        /// A description of the fault, and of what is allowed instead.
         message: String,
     },
     /// An override names a field that does not exist, or has a value of the wrong kind.

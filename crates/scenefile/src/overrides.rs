@@ -119,7 +119,7 @@ fn refusal(node: &Value, name: &str) -> String {
     format!("no field `{name}` here{meant}; allowed: {allowed}{another}")
 }
 
-/// Parses a value in the notation of a scene file or of JSON; whole numbers such as 1e6 become
+/// Parses a value in the notation of a scene file or of JSON. Whole numbers such as 1e6 become
 /// integers, and a value in neither notation becomes text. Returns `None` if the brackets of the
 /// value are nested deeper than `deepest`.
 fn parsed(text: &str, deepest: usize) -> Option<Value> {

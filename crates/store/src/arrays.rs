@@ -39,7 +39,7 @@ pub struct SliceArrays {
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
     /// Standard deviation of |measured| alone, which differs from `sigma` if the prediction also
-    /// has noise; `None` if it equals `sigma`.
+    /// has noise; `None` if both are equal.
     pub measured_sigma: Option<Array3<f64>>,
     /// Frequencies ρ, cycles per metre.
     pub rho: Array1<f64>,

@@ -105,7 +105,7 @@ impl CheckpointStore {
         self.put(batch, None)
     }
 
-    /// Stores the first parts of a batch, unless more of them are stored.
+    /// Stores the first parts of a batch, unless more parts of this batch are stored.
     pub fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
         let is_new = match self.progress(batch.index) {
             None => true,

@@ -30,8 +30,8 @@ impl OutputFile {
         Self::of_kind(path, force, inputs, None)
     }
 
-    /// Checks the same as [`Self::claim`], for a file that bears a mark. A file that this program
-    /// wrote and that has not changed since is replaced without `force`.
+    /// Performs the same checks as [`Self::claim`], for a file that bears a mark. A file that
+    /// this program wrote and that has not changed since is replaced without `force`.
     pub fn claim_sealed(
         path: &Path,
         mut force: bool,

@@ -143,8 +143,8 @@ impl Results {
         Ok(results)
     }
 
-    /// Claims a folder `name` inside `out`. The user chooses `out`, and below it nothing is written
-    /// through a link.
+    /// Claims a folder `name` inside `out`. The user chooses `out`; below `out`, nothing is
+    /// written through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {

@@ -232,9 +232,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails if a folder holds a result of another scene, because a result must not replace that of
-/// another scene with the same name. Settings of the measurement are ignored. `arguments` is the
-/// style in which the message names `force`.
+/// Fails if a folder holds a result of another scene, because a result must not replace the
+/// result of another scene with the same name. Settings of the measurement are ignored.
+/// `arguments` is the style in which the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

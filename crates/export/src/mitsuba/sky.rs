@@ -1,8 +1,8 @@
 //! Environments as Mitsuba's environment pictures.
 //!
-//! Columns are intervals of longitude in both formats. Rows are intervals of latitude in Étendue's
-//! pictures and samples in Mitsuba's, whose first row is the upper pole and whose last row is the
-//! lower pole.
+//! Columns are intervals of longitude in both formats. Étendue's rows are intervals of latitude.
+//! Mitsuba's rows are samples of latitude, from the upper pole in the first row to the lower pole
+//! in the last row.
 
 use etendue_field::{Environment, EnvironmentMap};
 use glam::DVec3;

@@ -91,8 +91,8 @@ fn every_lobe_has_its_word_and_its_numbers() {
         // A flat uniform surface needs no triangles.
         assert_eq!(of_type(&xml, "disk").len(), 1);
     }
-    // A dielectric reflects like a metal without absorption; without a factor, it reflects
-    // everything.
+    // A dielectric reflects like a metal without absorption; without a Fresnel factor, a surface
+    // reflects all light.
     let glass = parsed(&reflects(
         "Plane",
         "brdf: (lobe: Ggx(0.2), fresnel: Dielectric(1.5))",
@@ -258,7 +258,7 @@ fn environments_become_maps() {
     let most = values.iter().copied().fold(0.0_f32, f32::max);
     assert!((most - 3.0).abs() < 1e-4); // half a pixel beside the peak
     let dark = values.iter().filter(|v| **v == 0.0).count();
-    // Half of all directions are dark. Longitude is uniform, so half of the pixels are dark too,
+    // Half of all directions are dark. Longitude is uniform, so half of the pixels are also dark,
     // within a column or two.
     assert!(dark.abs_diff(values.len() / 2) < 3 * rows, "{dark}");
     let xml = Document::parse(text(&export, "scene.xml")).unwrap();

@@ -315,7 +315,7 @@ impl ResultPair<'_> {
 }
 
 /// Returns the number of photons of equal weight per batch whose sum would vary as much as the
-/// light of this sample. Returns `None` if this number is so large that no batch would be empty;
+/// light of this sample. Returns `None` if this number is so large that no batch would be empty.
 /// `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];

@@ -71,8 +71,8 @@ impl<'a> Leader<'a> {
         }
     }
 
-    /// Measures batches of a scene; each batch continues after its finished parts. Returns the
-    /// finished batches, and the unfinished batches that `watch` has stopped.
+    /// Measures batches of a scene, and continues each batch after its finished parts. Returns
+    /// the finished batches, and the unfinished batches that `watch` has stopped.
     pub(crate) fn measure(
         &self,
         packing: Packing<'_>,
@@ -179,9 +179,9 @@ impl<'a> Leader<'a> {
         Ok(all)
     }
 
-    /// Processes the remaining pieces: `own` processes them in this process, and other processes
-    /// receive them on request. `give` returns the pieces to send to other processes, and `take`
-    /// receives their results.
+    /// Processes the remaining pieces: `own` processes pieces in this process, and other
+    /// processes receive pieces on request. `give` returns the pieces to send to other processes,
+    /// and `take` receives their results.
     fn share<T>(
         &self,
         key: &str,

@@ -10,7 +10,7 @@ pub(crate) enum WorkerMessage {
     Ready { key: String, abreast: usize },
     /// The process has finished or returned the pieces `pieces`, whose bytes follow the message.
     Done { pieces: Vec<Piece> },
-    /// The process cannot carry out its order.
+    /// The process cannot carry out the order that it received.
     Failed { message: String },
 }
 

@@ -19,8 +19,8 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
 
 /// Packs a unit vector as version 3 does, by adaptive projection (Kittelmann et al. 2017, section
 /// 3.2): the component of largest modulus is omitted except for its sign. If the omitted component
-/// is x or y, 1/z takes its place. Since 1/z is larger than 1 in modulus, it shows which component
-/// was omitted.
+/// is x or y, 1/z takes its place. The modulus of 1/z is larger than 1, which shows which
+/// component was omitted.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
     if z.abs() >= x.abs().max(y.abs()) {

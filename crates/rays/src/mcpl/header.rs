@@ -202,7 +202,7 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     Ok(count)
 }
 
-/// Reads bytes preceded by their number.
+/// Reads a byte string that is preceded by its length.
 fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)

@@ -39,9 +39,9 @@ impl McplFile {
     /// Reads an unpacked file.
     ///
     /// # Errors
-    /// The first violation of the format. Files that were not closed are refused too: their header
-    /// states no particles although records follow. Files with enough bytes after the last record
-    /// for another record are also refused.
+    /// The first violation of the format. Files that were not closed are also refused: their
+    /// header states no particles although records follow. Files with enough bytes after the last
+    /// record for another record are also refused.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();
@@ -128,7 +128,7 @@ impl McplFile {
         bytes
     }
 
-    /// Returns the rays of the file in metres. The power of a ray is the weight of its particle,
+    /// Returns the rays of the file in metres. The power of a ray is the weight of the particle,
     /// in W if the comment [`WATTS`] states this. Particles other than photons, and photons of
     /// energy 0, have no wavelength.
     #[must_use]

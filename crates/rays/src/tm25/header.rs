@@ -84,7 +84,7 @@ pub struct Tm25Header {
     /// Total radiant flux, in W; NaN if it is not stated.
     pub radiant_flux: f32,
     /// Date and time, in the notation of ISO 8601, in 28 bytes that end with zeros; all bytes are
-    /// zero if the file does not state it.
+    /// zero if the file states no date.
     pub date: [u8; 28],
     /// The place where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
     pub start_position: i32,
@@ -102,7 +102,7 @@ pub struct Tm25Header {
     pub texts: [String; 9],
     /// Spectral tables: wavelength in nm, and weight.
     pub spectra: Vec<Vec<[f32; 2]>>,
-    /// Names of columns beyond those of the standard.
+    /// Names of columns that the standard does not define.
     pub extra_columns: Vec<String>,
     /// Additional text.
     pub additional_text: String,

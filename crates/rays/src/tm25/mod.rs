@@ -6,7 +6,7 @@
 //! rays are f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
 //! A file that is read and written again has the same bytes, except for bytes after the end of a
-//! text, and for invalid characters. Such a difference causes a note.
+//! text, and for invalid characters. Each of these differences causes a note.
 //!
 //! Three deviations are accepted with a note. The total flux in the header may differ from the sum over the rays
 //! (LightTools writes 1). Directions may have a length other than 1 (the set has unit vectors). Fields on which no

@@ -21,7 +21,7 @@ use etendue_store::Results;
 use ndarray::{Array2, Axis};
 use std::cmp::Ordering;
 
-/// The strip along the path; returns it as SVG.
+/// Draws the strip along the path, and returns the strip as SVG.
 pub fn path(
     results: &mut Results,
     case: &MeasuredScene,
@@ -305,7 +305,8 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // After a mirror, light lies along a line of the spectrum; after a lobe, it does not.
+            // After a mirror, light lies along a line of the spectrum; after a lobe, light does
+            // not lie along a line.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },

@@ -90,7 +90,7 @@ fn white_furnace() {
     });
 }
 
-/// Tests surfaces that conserve energy, and facets so smooth that shadowing loses little of it.
+/// Tests surfaces that conserve energy, and facets so smooth that shadowing loses little energy.
 #[test]
 fn nothing_is_lost() {
     for angle in ANGLES {

@@ -78,7 +78,7 @@ impl Results {
         })
     }
 
-    /// Completes the moves that a dead process began, and removes what it left.
+    /// Completes the moves that a dead process began, and removes files that the dead process left.
     pub(super) fn recover(&self) -> Result<MovedFiles, Failure> {
         let moved = match self.ready_index() {
             Some(index) => self.move_all(index)?,
@@ -99,7 +99,7 @@ impl Results {
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
-            // This folder is now empty, unless a file could not be moved back or an earlier
+            // The folder is now empty, unless a file could not be moved back or an earlier
             // process had moved a file there.
             remove_empty(&self.aside(""));
             return Err(error);
@@ -153,7 +153,7 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `force`, a file there that etendue did not write is
+    /// Moves a new file to its name; with `force`, a file that etendue did not write is first
     /// moved aside.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
