@@ -119,7 +119,7 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
     rows
 }
 
-/// Headings with letters, (a) first.
+/// The headings with letters, beginning with (a).
 pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
     let letters = ('a'..='z').zip(heads);
     letters

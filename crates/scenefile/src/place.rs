@@ -51,7 +51,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                     .next_if(|next| next.kind == ValueKind::Colon)
                     .is_some() =>
             {
-                // In JSON names are quoted.
+                // In JSON, names are quoted.
                 level.key = Some(text[token.start..token.end].trim_matches('"'));
                 continue;
             }
@@ -133,7 +133,7 @@ impl OpenBracket<'_> {
         let at = self.at?;
         let step = steps.get(at);
         match self.key {
-            // In JSON a variant is written as a field.
+            // In JSON, a variant is written as a field.
             Some(key) if key.starts_with(char::is_uppercase) => Some(at),
             Some(key) => (step == Some(&key)).then_some(at + 1),
             None if self.named => (self.index == 0).then_some(at),

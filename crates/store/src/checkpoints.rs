@@ -237,7 +237,7 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
 /// The progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchProgress {
-    /// The sum contains this many of the first parts of the batch.
+    /// The number of the batch's first parts that the stored sum contains.
     Parts(u32),
     /// The batch is complete.
     Done,

@@ -1,10 +1,10 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
-//! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of
-//! an earlier result is removed if the index of that result lists the file, and the file still
-//! has the listed hash. All other files in the folder belong to somebody else and are kept
-//! (docs/files.md).
+//! New files wait in a subfolder until all new files are complete, so an earlier result stays in
+//! place until then. An index, such as `summary.json`, lists the files with their hashes and is
+//! moved last. A file of an earlier result is removed if the index of that result lists the file,
+//! and the file still has the listed hash. All other files in the folder belong to somebody else
+//! and are kept (docs/files.md).
 
 mod claim;
 mod commit;
@@ -51,7 +51,7 @@ const LOCK: &str = ".etendue.lock";
 /// The message if nothing can be written below a folder.
 pub const LINKED: &str = "a link or a file is in the place of a folder";
 
-/// How long another process may hold a folder before a message is given.
+/// The time for which another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// The files that a command will write, and the files that it reads.
@@ -153,7 +153,8 @@ impl Results {
         Self::claim(&folder, plan)
     }
 
-    /// Claims a folder, but waits while another process writes there, and warns if that takes long.
+    /// Claims a folder, but waits while another process writes there, and warns if the wait is
+    /// long.
     pub fn claim_in_turn(folder: &Path, plan: Plan, warn: &dyn Fn(&str)) -> Result<Self, Failure> {
         let mut begun = Some(Instant::now());
         loop {
@@ -217,8 +218,8 @@ impl Results {
         }
         let path = self.staged(name);
         let mut write = || {
-            // If this process is being interrupted, the folder is removed and must not be created
-            // again.
+            // If this process is being interrupted, the folder has been removed and must not be
+            // created again.
             let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
@@ -337,7 +338,7 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
-/// Returns the hash of a file in the index of a complete result.
+/// Returns the hash of a file, as listed in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }

@@ -222,7 +222,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// Returns the summary of a run of exactly this scene, by the same method and version.
+/// Returns the summary of a run, if the run had exactly this scene, method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;

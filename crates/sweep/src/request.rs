@@ -17,7 +17,7 @@ pub struct SweepRequest {
     pub together: bool,
     /// Number of photons of each point, which replaces the number of photons in the scene.
     pub photons: Option<u64>,
-    /// Seed, which replaces the seed in the scene.
+    /// Seed of the photons, which replaces the seed in the scene.
     pub seed: Option<u64>,
     /// Method of measurement.
     pub method: Method,

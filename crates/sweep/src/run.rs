@@ -1,4 +1,4 @@
-//! Runs a sweep. Missing points are run first; then the table and the curves are written.
+//! Runs a sweep. The missing points are run first, and then the table and the curves are written.
 
 use crate::pictures;
 use crate::points::SweepPoints;

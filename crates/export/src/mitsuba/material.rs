@@ -143,7 +143,7 @@ fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
 }
 
 /// A lobe times the Fresnel factor of the angle of incidence. Mitsuba has no such plugin:
-/// `tests/peers/etendue_bsdfs.py` adds one, without which the scene does not load.
+/// `tests/peers/etendue_bsdfs.py` adds this plugin, without which the scene does not load.
 fn factored(fresnel: &Fresnel, lobe: String) -> String {
     match index(fresnel) {
         None => lobe,

@@ -15,7 +15,7 @@ const AROUND: usize = 4096;
 /// Returns the number of pixels per row, and the radiance row by row.
 ///
 /// A pixel map is represented exactly, because the nodes of the new picture include all nodes of
-/// the map. Light against the central ray is set to 0.
+/// the map. The radiance of light that travels against the central ray is set to 0.
 pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     let [width, rows] = match &environment.map {
         EnvironmentMap::Lobes(_) => [AROUND, AROUND / 2 + 1],

@@ -182,7 +182,7 @@ fn blends_are_of_two_lobes() {
     );
     let xml = Document::parse(text(&tiles, "scene.xml")).unwrap();
     let [blend] = of_type(&xml, "blendbsdf").try_into().unwrap();
-    // Weight 0 selects the first BRDF, which is the other lobe.
+    // Weight 0 of Mitsuba's blend selects the first BRDF, which is the other lobe.
     let lobes: Vec<f64> = of_type(&xml, "phong")
         .iter()
         .map(|n| number(n, "exponent"))

@@ -21,7 +21,7 @@ pub(crate) enum Task {
     Batches,
     /// Planes to predict.
     Planes,
-    /// Points of a sweep to run.
+    /// The points of a sweep that are to be run.
     Points,
 }
 

@@ -26,8 +26,8 @@ pub struct McplHeader {
     pub universal_weight: Option<f64>,
     /// The program that wrote the file, as bytes, usually UTF-8.
     pub source: Vec<u8>,
-    /// Comments, as bytes, usually UTF-8. Comments that begin with `stat:sum:` have a meaning,
-    /// see [`StatSum`].
+    /// Comments, as bytes, usually UTF-8. Comments that begin with `stat:sum:` hold sums, see
+    /// [`StatSum`].
     pub comments: Vec<Vec<u8>>,
     /// The blobs of the file: keys and their data.
     pub blobs: Vec<(Vec<u8>, Vec<u8>)>,

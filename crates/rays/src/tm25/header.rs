@@ -4,7 +4,7 @@ use super::text;
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// The way in which the spectral information of rays is stored, 4.7.1.9.
+/// The way in which the spectral information of rays is stored (section 4.7.1.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
     /// 0: there is no spectral information.
@@ -19,7 +19,7 @@ pub enum SpectrumType {
     SpectrumPerRay,
 }
 
-/// The numbers that rays have in addition to position and direction, 4.7.2.
+/// The numbers that rays have in addition to position and direction (section 4.7.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
     /// Radiant flux, W.
@@ -86,7 +86,7 @@ pub struct Tm25Header {
     /// Date and time, in the notation of ISO 8601, in 28 bytes that end with zeros; all bytes are
     /// zero if the file states no date.
     pub date: [u8; 28],
-    /// The place where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
+    /// The place where rays begin, by the codes 0 (unknown) to 7 of section 4.7.1.8.
     pub start_position: i32,
     /// The way in which the spectral information is stored.
     pub spectrum_type: SpectrumType,
@@ -137,12 +137,12 @@ impl Default for Tm25Header {
     }
 }
 
-/// Number of characters of a text of 4.7.3.
+/// Number of characters of a text of section 4.7.3.
 const TEXT: usize = 1000;
 /// The largest number of spectra in a file. The number is limited because an empty spectrum takes
 /// more bytes in memory than in the file.
 const MOST_SPECTRA: u32 = 65_536;
-/// Number of characters of a column name, 4.7.5.
+/// Number of characters of a column name (section 4.7.5).
 const NAME: usize = 128;
 
 impl Tm25Header {

@@ -8,7 +8,8 @@ use glam::DVec3;
 
 /// The length in metres at which infinite objects are cut off; it is larger than any drawn scene.
 const ENDLESS_METRES: f64 = 1e4;
-/// Angle of a turn below which a path counts as straight.
+/// A turn of the path counts as straight if the modulus of its cosine differs from 1 by less than
+/// this number.
 const STRAIGHT: f64 = 1e-9;
 
 /// The scene to scale; `None` if the path stays on one line.

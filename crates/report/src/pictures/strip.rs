@@ -179,7 +179,7 @@ impl BothSlices {
         })
     }
 
-    /// Replaces the mean over azimuths by both slices.
+    /// Replaces the mean over azimuths by the slices at 0 and 90°.
     fn show<'a>(&'a self, column: &mut StripColumn<'a>) {
         let spectrum = column.spectrum.clone();
         let with = |values: &'a Array2<f64>| Picture {
@@ -191,7 +191,8 @@ impl BothSlices {
         let finer = self.finer.as_ref().map(|both| both.each_ref().map(with));
         let [finer, other_finer] = finer.map_or([None, None], |both| both.map(Some));
         column.finer = finer;
-        // If there are two lines through the origin, the first belongs to the plane of incidence.
+        // If there are two lines through the origin, the first line belongs to the plane of
+        // incidence.
         let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
         let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
         if let [own, other] = shears[..] {
@@ -343,7 +344,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 
 /// Lines along which the chain predicts the light of a picture, in the plane of incidence and
 /// across it. At the light, a projector's spectrum lies along ρ and a beam's along ν. The map of
-/// the chain moves content at Ω to A⁻ᵀ Ω.
+/// the chain moves the content of the spectrum at Ω to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];

@@ -21,7 +21,7 @@ pub(super) struct MovedFiles {
     pub(super) gone: Vec<String>,
     /// Files that etendue did not write.
     pub(super) replaced: Vec<String>,
-    /// All moves so far, to be undone on failure.
+    /// All moves so far, which are undone on failure.
     done: Vec<[PathBuf; 2]>,
     /// The style in which messages name arguments.
     arguments: ArgumentStyle,
@@ -63,7 +63,7 @@ impl MovedFiles {
 }
 
 impl Results {
-    /// Puts all files in place.
+    /// Moves all new files to their names.
     pub(super) fn commit(&self) -> Result<MovedFiles, Failure> {
         let index = self.plan.index;
         let ready = self.ready(index);
@@ -120,7 +120,7 @@ impl Results {
     fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
-        // From here on the folder holds no valid result until the new index is in place.
+        // From this step on, the folder holds no valid result until the new index is in place.
         let place = self.folder.join(index);
         if listed(&place).is_some() {
             moved.file(place, self.aside(index))?;
