@@ -41,7 +41,7 @@ pub(super) fn any(schema: &mut Schema) {
     within(-MAX_NUMBER, MAX_NUMBER)(schema);
 }
 
-/// Allows all positive numbers, as for sizes, widths, frequencies and strengths; by default,
+/// Allows positive numbers, as for sizes, widths, frequencies and strengths; by default,
 /// every number has this range.
 pub(crate) fn positive(node: &mut Value) {
     bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
