@@ -21,13 +21,14 @@ pub(crate) enum TreeKind {
     Collapsed,
 }
 
-/// Larger sets of boxes are built in parts of this size, each by one thread. The builder needs
-/// about 150 bytes for each box, but only for the parts that are being built.
+/// The maximum number of boxes that one thread builds; larger sets of boxes are built in parts of
+/// this size. The builder needs about 150 bytes for each box, but only for the parts that are
+/// being built.
 const PART: usize = 1 << 15;
 
-/// The largest number of boxes for which the tree is optimised by reinsertion. For so few boxes,
-/// this takes a tenth of a second and makes rays up to twice as fast. With more boxes, reinsertion
-/// takes seconds and makes rays a few per cent faster.
+/// The largest number of boxes for which the tree is optimised by reinsertion. For this number of
+/// boxes or fewer, reinsertion takes a tenth of a second and makes rays up to twice as fast. For
+/// more boxes, reinsertion takes seconds and makes rays a few per cent faster.
 const MAX_REINSERTED: usize = 1 << 13;
 
 /// Cost of opening a node, in units of a triangle test; a leaf tests several triangles at a time.
@@ -114,7 +115,8 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         }
         let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
         let part = std::mem::take(&mut parts[part]);
-        // The root of the part replaces the leaf; the other nodes of the part are appended.
+        // The root of a part replaces a leaf of the tree; the other nodes of the part are
+        // appended.
         let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
         let mut moved = part.nodes.iter().map(|node| {
             let by = if node.is_leaf() { boxes } else { nodes };
@@ -130,8 +132,8 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
-    // The boxes of parts overlap, so some nodes would be better elsewhere in the tree; reinsertion
-    // moves them.
+    // The boxes of different parts overlap, so some nodes would be better elsewhere in the tree;
+    // reinsertion moves these nodes.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);

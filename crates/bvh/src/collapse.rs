@@ -8,7 +8,7 @@ use obvhs::bvh2::Bvh2;
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// A binary tree, and the [`costs`] that decide which of its nodes become boxes.
+/// A binary tree with the [`costs`] that decide which nodes become boxes of an eight-wide node.
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,
@@ -21,7 +21,8 @@ struct Collapse<'a> {
 ///
 /// Panics if a leaf has more than [`MAX_LEAF`] boxes.
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // The largest possible number of nodes. The system provides memory only when it is written to.
+    // The largest possible number of nodes. The operating system provides memory only when the
+    // program writes to the memory.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
     nodes.push(Node::EMPTY);
@@ -59,10 +60,10 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     (Wide::new(nodes, deepest), leaves)
 }
 
-/// Returns, for each node of the binary tree, the cost of rays below the node if it becomes at
-/// most 1, 2 … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening
-/// (Ylitie, Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed
-/// wide BVHs*, section 3.1).
+/// Returns the cost of rays below each node of the binary tree, if this node becomes at most 1, 2
+/// … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening (Ylitie,
+/// Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide
+/// BVHs*, section 3.1).
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());
@@ -97,8 +98,8 @@ fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     costs
 }
 
-/// Returns how many of `boxes` the first of two children gets when the total cost is smallest, and
-/// this cost.
+/// Returns the number of `boxes` that the first of two children gets when the total cost is
+/// smallest, and this cost.
 fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
     let cost = |of_first: usize| first[of_first - 1] + second[boxes - of_first - 1];
     let mut best = (1, cost(1));

@@ -1,8 +1,9 @@
 //! Tests a few triangles together in f32, to find the triangles that a ray may meet.
 //!
 //! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
-//! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
-//! rejected only if the ray is on different sides of its edges by more than all rounding errors.
+//! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). A triangle is rejected
+//! only if the ray is on different sides of the triangle's edges by more than all rounding
+//! errors.
 
 use crate::single::single;
 use crate::wide::Visit;
@@ -38,7 +39,8 @@ impl LeafRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
-        // The axes are permuted so that the largest component comes last; it is scaled to 1.
+        // The axes are permuted so that the largest component of the direction comes last; this
+        // component is scaled to 1.
         let axes = if size.x > size.y && size.x > size.z {
             [1, 2, 0]
         } else if size.y > size.z {
@@ -75,14 +77,14 @@ impl Leaf {
         }
     }
 
-    /// Returns the triangles that a ray may meet, one bit for each.
+    /// Returns the triangles that a ray may meet, as a mask with one bit for each triangle.
     #[inline(always)]
     fn candidates<S: Simd>(&self, simd: S, sight: &LeafRay) -> u32 {
         let a = self.across(simd, sight, 0);
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
         let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
-        // A bound on the error of any of the products, due to the errors of its two coordinates.
+        // A bound on the error of each product, due to the errors of the two coordinates.
         let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
         let error = size * sight.tolerance;
         // Comparisons with NaN are false, so NaN does not lead to rejection.

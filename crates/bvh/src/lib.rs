@@ -2,12 +2,12 @@
 //!
 //! A hierarchy is in f32 and only finds candidates; the caller computes the intersections in f64.
 //! Boxes are padded by more than rounding errors, so no candidate is missed. obvhs builds a tree
-//! with two boxes in a node. Rays traverse the tree directly ([`BinaryHierarchy`]), or through a
-//! tree with eight boxes in a node (`wide`), whose leaves hold a few boxes, or triangles that are
-//! tested together ([`WideHierarchy`]).
+//! with two boxes in a node. Rays traverse this tree directly ([`BinaryHierarchy`]), or traverse
+//! a tree with eight boxes in a node (`wide`). The leaves of the wide tree hold a few boxes, or
+//! triangles that are tested together ([`WideHierarchy`]).
 //!
-//! The builder panics on boxes with NaN. No valid scene has such boxes, and they are never passed
-//! to the builder: a primitive without a box in f32 is a candidate for every ray.
+//! The builder panics on boxes with NaN. No valid scene has boxes with NaN, and the builder never
+//! receives such boxes: a primitive without a box in f32 is a candidate for every ray.
 
 mod binary_hierarchy;
 mod build;

@@ -13,12 +13,12 @@ pub(crate) struct Space {
     size: f64,
     /// The padding of boxes.
     pub(crate) padding: f64,
-    /// The factor that scales coordinates to those of `leaf`, which are at most about 1.
+    /// The factor that scales coordinates to at most about 1, as `leaf` needs them.
     pub(crate) unit: f64,
 }
 
-/// Padding relative to `Space::size`. A rounding error in f32 is 6e-8 of the size, and a ray adds a
-/// few of them.
+/// Padding relative to `Space::size`. A rounding error in f32 is 6e-8 of the size, and each ray
+/// adds a few rounding errors.
 const PADDING: f64 = 1e-5;
 
 /// Additional padding relative to the largest coordinate at which a ray begins: several rounding
@@ -73,9 +73,10 @@ impl Space {
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns the distance along a ray at which to begin. This distance is `from`, unless the
-    /// point there is far from all boxes. In that case it is the distance at which the ray comes
-    /// near the boxes, because f32 would lose precision over a longer distance.
+    /// Returns the distance along a ray at which the traversal begins. The traversal begins at
+    /// the distance `from`, unless the point there is far from all boxes. If this point is far
+    /// from all boxes, the traversal begins where the ray comes near the boxes, because f32 would
+    /// lose precision over a longer distance.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
@@ -85,7 +86,8 @@ impl Space {
         }
         let comes_near = |at: f64, d: f64| (-at - (2.0 * self.size).copysign(d)) / d;
         let near = [0, 1, 2].map(|axis| comes_near(start[axis], direction[axis]));
-        // NaN and infinite distances are ignored: the ray does not come nearer along their axes.
+        // Axes with NaN or infinite distances are ignored, because the ray does not come nearer
+        // to the boxes along these axes.
         let near = near.into_iter().filter(|t| t.is_finite());
         near.fold(from, f64::max)
     }

@@ -40,8 +40,8 @@ pub(crate) struct NodeRay {
     until: f32,
 }
 
-/// The smallest absolute component of a direction. Smaller components are replaced by this number,
-/// which does not move a ray noticeably and has a finite reciprocal.
+/// The smallest absolute component of a direction. Smaller components are replaced by this
+/// smallest component, which does not move a ray noticeably and has a finite reciprocal.
 const MIN_COMPONENT: f32 = 1e-20;
 
 /// A child still to be visited, and the distance along the ray at which its box begins.
@@ -174,7 +174,8 @@ impl Node {
         self.children[place] = child;
     }
 
-    /// Returns the boxes that a ray meets, one bit for each, and the distances at which they begin.
+    /// Returns the boxes that a ray meets, as a mask with one bit for each box, and the distances
+    /// at which the boxes begin.
     #[inline(always)]
     fn meets<S: Simd>(&self, simd: S, ray: &NodeRay, until: f32) -> (u32, [f32; WIDTH]) {
         let [x, y, z] = ray.first;

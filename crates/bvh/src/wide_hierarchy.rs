@@ -31,8 +31,8 @@ enum TreeLeaves {
 }
 
 impl WideHierarchy {
-    /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners. `origins`
-    /// is the largest coordinate of any ray's start.
+    /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners.
+    /// `origins` is the largest coordinate of the starting points of rays.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
@@ -78,8 +78,8 @@ impl WideHierarchy {
 
     /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
     /// back. Distances are multiples of the length of `direction`, which is at least 1. `meet`
-    /// returns the distance beyond which boxes or triangles can be skipped; before any hit, this
-    /// distance is `until`.
+    /// returns the distance beyond which boxes or triangles can be skipped, which is `until`
+    /// before the first hit.
     #[inline]
     pub fn along(
         &self,

@@ -77,8 +77,8 @@ pub enum NotInMitsuba {
     },
 }
 
-/// Returns the files of a scene for Mitsuba 3. They are `scene.xml`, its meshes and pictures, and
-/// `planes.json` with the virtual planes, for which Mitsuba has no element.
+/// Returns the files of a scene for Mitsuba 3. The files are `scene.xml`, the scene's meshes and
+/// pictures, and `planes.json` with the virtual planes, for which Mitsuba has no element.
 ///
 /// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
 /// surface.
@@ -247,8 +247,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin. No light reaches a coordinate of
-/// `beyond`.
+/// The part of a half-plane that light can reach, with a margin. Light reaches no coordinate of
+/// modulus `beyond` or more.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {

@@ -1,4 +1,5 @@
-//! Figs. 16 and 17: a picture from few shading samples, and the criteria that place them.
+//! Figs. 16 and 17: a picture from few shading samples, and the criteria that place these
+//! samples.
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
@@ -34,10 +35,10 @@ const FILES: [(&str, &[u8]); 4] = [
     ),
 ];
 
-/// Pixels for each shading sample, as in the paper.
+/// Number of pixels per shading sample, as in the paper.
 const SPARSE: usize = 20;
 
-/// Paths of each shading sample.
+/// Number of paths per shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
 /// The difference of a pixel, relative to white, beyond which its color no longer changes.
@@ -47,7 +48,7 @@ struct CreatureScene {
     paths: Paths,
     camera: Camera,
     samples: usize,
-    /// Paths of each pixel of the reference.
+    /// Number of paths per pixel of the reference.
     reference: u32,
 }
 
@@ -96,7 +97,7 @@ impl CreatureScene {
     }
 
     /// Returns the values of pixels as an array [column, row] whose first row is the lowest, as
-    /// figures need it.
+    /// figures require.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
         let mut rows = Array2::from_shape_vec((h, w), values).map_err(Failure::cannot_run)?;
@@ -141,8 +142,8 @@ struct CreatureRow<'a> {
     panels: &'a [PicturePanel<'a>],
     quantity: AxisQuantity,
     scale: Scale,
-    /// Whether all pictures share the range of colors of the quantity; otherwise the range of each
-    /// picture is that of its values.
+    /// Whether all pictures share the quantity's range of colors; otherwise, each picture has the
+    /// range of its own values.
     shared: bool,
 }
 
@@ -234,7 +235,7 @@ impl ComparedPictures {
         }
     }
 
-    /// Relative luminance: radiance divided by that of white, at most 1.
+    /// Relative luminance: radiance divided by the radiance of white, at most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
@@ -245,7 +246,7 @@ impl ComparedPictures {
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// The mean of `squares`, such as (x − r)², divided by r² + ε².
+    /// The mean of `squares`, such as (x − r)², each divided by r² + ε².
     fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
         let reference = &self.reference.mean;
         let count = reference.len() as f64;
@@ -262,7 +263,7 @@ impl ComparedPictures {
         self.relative(both.map(|(x, r)| (x - r).powi(2)))
     }
 
-    /// The relative mean square error of the reference that its noise causes.
+    /// The relative mean square error of the reference due to its noise.
     fn noise(&self) -> f64 {
         self.relative(self.reference.variance.iter().copied())
     }

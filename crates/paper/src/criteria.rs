@@ -16,7 +16,8 @@ struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// The values of the field at the two ends of the lines, at which photons are also measured.
+    /// The values of the field at both ends of the lines; photons are also measured at these
+    /// values.
     ends: [f64; 2],
     values: &'static [f64],
     /// Converts a value of the field to the quantity on the axis.
@@ -105,8 +106,8 @@ fn panel(
     })
 }
 
-/// The bandwidth by the criterion, corrected and as printed. It is the bandwidth behind an edge if
-/// the scene has an edge.
+/// The bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
+/// function returns the bandwidth behind the edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
         [criterion.blocker(), criterion.printed_blocker()]

@@ -1,8 +1,8 @@
 //! Makes the figures of Durand et al. 2005, measured and predicted, and figures of a user's scenes.
 //!
-//! [`subjects`] resolves a [`FigureRequest`] to figures; [`make_all`] runs their scenes, draws them
-//! and writes each with its data and recipe. The content of each figure of the paper is listed in
-//! `recipe.rs`.
+//! [`subjects`] resolves a [`FigureRequest`] to figures. [`make_all`] runs the scenes of the
+//! figures, draws the figures, and writes each figure with its data and recipe. The content of
+//! each figure of the paper is listed in `recipe.rs`.
 
 #![allow(
     clippy::missing_errors_doc,

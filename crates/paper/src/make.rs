@@ -72,7 +72,8 @@ struct FigureIndex<'a> {
     /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// The factor by which the frequencies along each axis are denser than those of the scene.
+    /// The factor by which the figure's frequencies along each axis are denser than the scene's
+    /// frequencies.
     finer: usize,
     /// The hash of each scene, with the number of photons for this quality and the scene's own
     /// frequencies.
@@ -168,7 +169,7 @@ pub(crate) fn make(
     };
     write(&mut results, subject, &taken)?;
     let all = shots.iter().enumerate().flat_map(|(i, shot)| {
-        // For a user's scenes only the planes shown count.
+        // For a user's scenes, only the planes that the figure shows are included.
         let shown = subject.planes.get(i);
         let reports = shot.planes.iter().map(|plane| &plane.report);
         let reports = reports.filter(move |report| shown.is_none_or(|name| *name == report.name));
@@ -237,8 +238,8 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    // No table is written for a strip. A table would have a row for each cell, and the arrays
-    // store the cells more compactly.
+    // No table is written for a strip. A table of a strip would have a row for each cell, and the
+    // arrays store the cells more compactly.
     if subject.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
     }

@@ -10,7 +10,7 @@ use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 
 /// Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles. The
-/// paper states that this error is not significant.
+/// paper states that treating slopes as angles causes no significant error.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slopes = Seen::at(&taken.shots[0], "slopes")?;
     let angles = Seen::at(&taken.shots[0], "angles")?;
@@ -62,9 +62,9 @@ fn panels(
 
 /// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
 ///
-/// T is opposite to X, and B is Y. Angles are those of the direction from which light comes. The
-/// slice at (ρ, ν) in azimuth φ by slopes is thus that at (−ρ, ν) in azimuth −φ by angles, or at
-/// (ρ, −ν) in π − φ.
+/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. The
+/// slice by slopes at (ρ, ν) and azimuth φ is thus the slice by angles at (−ρ, ν) and azimuth −φ,
+/// or at (ρ, −ν) and azimuth π − φ.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
     let (azimuths, columns, rows) = by_slopes.dim();
@@ -80,7 +80,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// The norm of the difference divided by that of the spectrum.
+/// The norm of the difference divided by the norm of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -117,9 +117,9 @@ mod tests {
     use crate::scene_run::Shot;
     use etendue_pipeline::Silent;
 
-    /// The difference of the two planes is the error of the chain, which treats u as θ. This
-    /// difference would be as large as the spectra if different frequencies of the two planes were
-    /// subtracted.
+    /// The difference of the two planes is the error of the chain, which treats u as θ. The
+    /// difference would be as large as the spectra if different frequencies of the two planes
+    /// were subtracted.
     #[test]
     fn the_difference_of_the_planes_is_the_error_of_the_chain() {
         let subject = named("8").unwrap().subject().unwrap();
@@ -130,7 +130,7 @@ mod tests {
         let share = (found / slopes.found.predicted.radial_power().sum()).sqrt();
         let report = &angles.found.report;
         let chain = report.first_order.as_ref().unwrap().chain.error;
-        // The prediction by angles has a further error, that of its nets.
+        // The prediction by angles also has the error of its Sobol' nets.
         let wanted = libm::hypot(chain, report.quadrature_error.unwrap());
         assert!((share / wanted - 1.0).abs() < 0.05, "{share}, {wanted}"); // the error of nets is an estimate
     }

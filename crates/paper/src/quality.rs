@@ -18,7 +18,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// The name in commands.
+    /// Returns the name of the quality in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -41,7 +41,7 @@ impl Quality {
 
     /// The number of frequencies along each axis for each frequency of the scene. The window is
     /// bounded, so the spectrum between the scene's frequencies is well defined, and the picture
-    /// can show it with smaller cells.
+    /// can show this spectrum with smaller cells.
     pub(crate) fn finer(self) -> usize {
         match self {
             Self::Draft => 2,

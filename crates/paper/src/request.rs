@@ -41,8 +41,8 @@ pub struct FigureRequest {
     /// Fields of the scenes that were set to values. The command in `figure.json` repeats these
     /// settings; the scenes already have the values.
     pub set: Vec<(String, String)>,
-    /// The plane at which scenes are shown. The default is the last plane of each of several
-    /// scenes, or all planes of a single scene.
+    /// The plane at which scenes are shown. By default, several scenes are shown at their last
+    /// planes, and a single scene is shown at all planes.
     pub plane: Option<String>,
     /// A file with the style of figures.
     pub style: Option<PathBuf>,

@@ -29,7 +29,7 @@ impl<'a> Seen<'a> {
         both.map(|(plane, found)| Self { plane, found })
     }
 
-    /// The plane of this name.
+    /// Returns the plane with the given name.
     pub(crate) fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
         let missing = || Failure::cannot_run(format!("{} has no plane {name}", shot.scene.name));
         Self::all(shot)
@@ -119,7 +119,7 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
     rows
 }
 
-/// Headings with letters, (a) first.
+/// The headings with letters, beginning with (a).
 pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
     let letters = ('a'..='z').zip(heads);
     letters

@@ -59,8 +59,8 @@ impl Shot {
     }
 }
 
-/// A scene of the repository with some fields set, and with a number of photons derived from its
-/// own.
+/// A scene of the repository with some fields set, and with a number of photons derived from the
+/// scene's own number.
 pub(crate) fn resolved(
     name: &str,
     text: &str,

@@ -6,8 +6,8 @@ use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
-/// An operator of Table 1. The first text is its name, a line break and its formula; the others
-/// are the scene and the plane before and after it.
+/// An operator of Table 1. The first text is the operator's name, a line break and its formula;
+/// the other texts are the scene, the plane before and the plane after the operator.
 type Step = (&'static str, [[&'static str; 2]; 2]);
 
 /// Largest width of a picture, so that both parts fit a page.

@@ -65,7 +65,7 @@ pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     })
 }
 
-/// Returns the requested scenes, and fails if figures of the paper are requested too.
+/// Returns the requested scenes, and fails if figures of the paper are also requested.
 fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     let sources = request.wanted.iter().map(|wanted| match wanted {
         Wanted::Scene(source) => Ok(source),

@@ -10,9 +10,10 @@ use rayon::prelude::*;
 
 /// Makes a failed plane undecided if too few of the photons aimed at its window reach it.
 ///
-/// Photons are aimed at all windows in equal shares. If photons aimed at a window rarely reach it,
-/// for example behind a curved mirror, the measurement may contain only photons that were aimed at
-/// other windows. In that case the estimated error is far too small.
+/// The tracer aims an equal share of the photons at each window. If photons aimed at a window
+/// rarely reach it, for example behind a curved mirror, the measurement of this plane may contain
+/// only photons that were aimed at other windows. The estimated error of such a measurement is
+/// far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {
@@ -41,8 +42,8 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     }
 }
 
-/// Returns the number of photons, out of `photons`, that reach the window of a plane when all are
-/// aimed at it.
+/// Returns how many of `photons` photons reach the window of a plane if all of them are aimed at
+/// this window.
 fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
     let mut alone = scene.seen_at(&[plane]);
     alone.run.photons = photons;

@@ -20,12 +20,12 @@ pub struct MeasuredScene {
     pub method: Method,
     /// The measurement of all planes.
     pub measurement: Measurement,
-    /// A prediction for each plane, in their order.
+    /// A prediction for each plane, in the order of the planes.
     pub predictions: Vec<Prediction>,
 }
 
 impl MeasuredScene {
-    /// Measures a scene and predicts it.
+    /// Measures and predicts a scene.
     pub fn of(
         scene: Scene,
         theories: Vec<Applicability>,

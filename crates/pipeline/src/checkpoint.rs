@@ -1,5 +1,5 @@
-//! Stores a measurement on disk, so that a later process can continue it. Batches are stored when
-//! they are finished, and every few seconds before.
+//! Stores a measurement on disk, so that a later process can continue it. A batch is stored when
+//! it is finished, and every few seconds before.
 
 use crate::method::source;
 use crate::reporter::{Progress, Reporter, Work};
@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Batches that take less time than this are not stored, because measuring them again is quick.
+/// The minimum duration of a batch that is stored; a faster batch is not stored, because
+/// measuring it again is quick.
 const MIN_AGE: Duration = Duration::from_secs(5);
 /// The interval at which an unfinished batch is stored.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
@@ -25,18 +26,18 @@ const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 /// The time limit of a measurement, and the other processes that take part.
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
-    /// Whether to continue from stored batches, and to share the work with other processes that
-    /// continue from the same batches.
+    /// Whether to continue from stored batches, and to share the work with all processes that
+    /// continue from these batches.
     pub resume: bool,
-    /// The time after which no more parts of batches are begun.
+    /// The time after which no further part of a batch is begun.
     pub until: Option<Instant>,
-    /// Other processes that also measure.
+    /// The other processes that also measure batches.
     pub workers: Option<&'a Leader<'a>>,
 }
 
 /// Measures all batches of a scene. Returns `None` if another process that shares the work has
-/// finished the run, as `is_done` reports. If the time limit is reached before, stores finished
-/// batches and returns a failure with a message.
+/// finished the run, as `is_done` reports. If the time limit is reached before all batches are
+/// finished, stores the finished batches and returns a failure with a message.
 pub fn measured(
     scene: &Scene,
     method: Method,
@@ -64,7 +65,7 @@ pub fn measured(
         kept.remove();
     }
     loop {
-        // If another process has finished the run, it has deleted the batches.
+        // If another process has finished the run, this process has deleted the stored batches.
         if checkpointing.resume && is_done() {
             drop(bar);
             return Ok(None);
@@ -95,13 +96,14 @@ pub fn measured(
     Ok(Some(all))
 }
 
-/// Returns the approximate number of photons of a batch that are traced.
+/// Returns the approximate number of photons of a batch that have been traced.
 fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
     let parts = u64::from(source.parts(batch.index));
     source.emitted(batch.index) / parts * u64::from(batch.parts)
 }
 
-/// Returns the error of a run that exceeded its time limit, stating what is stored.
+/// Returns the error of a run that exceeded its time limit; the error states which batches are
+/// stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
@@ -114,7 +116,8 @@ fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     ))
 }
 
-/// Stores batches when they are finished, and unfinished ones at intervals.
+/// A watcher of a measurement that stores finished batches, and at intervals also unfinished
+/// batches.
 struct Keeper<'a> {
     kept: &'a CheckpointStore,
     is_done: &'a (dyn Fn() -> bool + Sync),
@@ -125,13 +128,13 @@ struct Keeper<'a> {
     /// The time at which each unfinished batch was last stored.
     partial: Mutex<BTreeMap<u32, Instant>>,
     is_late: AtomicBool,
-    /// Whether storing has failed, after which nothing more is stored.
+    /// Whether storing a batch has failed; after a failure, no more batches are stored.
     is_full: AtomicBool,
 }
 
 impl Keeper<'_> {
-    /// Reads stored batches, if the run continues from them. Returns the batches that remain to be
-    /// measured, each with its finished parts.
+    /// Reads the stored batches, if the run continues from stored batches. Returns the batches
+    /// that remain to be measured, each with its finished parts.
     fn missing(
         &self,
         all: &mut Measurement,
@@ -161,7 +164,7 @@ impl Keeper<'_> {
         Ok(missing)
     }
 
-    /// Checks whether enough time has passed for storing anything.
+    /// Checks whether the run has lasted long enough for batches to be worth storing.
     fn keeps(&self) -> bool {
         let Checkpointing {
             resume,
@@ -172,7 +175,8 @@ impl Keeper<'_> {
         is_eager || self.begun.elapsed() > MIN_AGE
     }
 
-    /// Calls `write` to store a batch. If storing fails, the run continues without it.
+    /// Calls `write` to store a batch. If storing a batch fails, the run continues without the
+    /// stored batch.
     fn keep(&self, write: impl FnOnce() -> Result<(), Failure>) {
         if self.is_full.load(Ordering::Relaxed) {
             return;
@@ -191,7 +195,8 @@ impl Keeper<'_> {
         );
     }
 
-    /// Checks whether an unfinished batch has not been stored for a while; marks it as stored now.
+    /// Checks whether an unfinished batch has not been stored for a while; if so, marks the batch
+    /// as stored now.
     fn is_due(&self, batch: u32) -> bool {
         let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
         let last = partial.entry(batch).or_insert(self.begun);

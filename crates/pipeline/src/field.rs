@@ -16,7 +16,7 @@ use etendue_store::sealed::json;
 use ndarray::{Array1, Array4};
 use serde::Serialize;
 
-/// The file names of a plane.
+/// The names of the files that are written for each plane.
 pub const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
 
 /// The content of `field.json`.
@@ -25,13 +25,15 @@ struct FieldIndex {
     axes: [&'static str; 4],
     units: [&'static str; 5],
     cells: [usize; 4],
-    /// Centres of the first cells and widths of all cells: cell i is at `first` + i · `width`.
+    /// The centre of the first cell and the width of all cells along each axis: the centre of
+    /// cell i is `first` + i · `width`.
     first: [f64; 4],
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// The relative difference ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up
-    /// to half of Nyquist, and the values with which it is compared.
+    /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of
+    /// the same photons, at shared frequencies up to half of Nyquist, with the values to compare
+    /// it with.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -39,13 +41,14 @@ struct FieldIndex {
 struct AliasingNumbers {
     frequencies: usize,
     difference: f64,
-    /// The expected value if the spectrum beyond Nyquist is as strong as just below it.
+    /// The expected difference, if the spectrum beyond Nyquist is as strong as the spectrum just
+    /// below Nyquist.
     expected: f64,
-    /// The upper bound, which holds for any photons.
+    /// The upper bound of the difference, which holds for any photons.
     bound: f64,
 }
 
-/// Fails before anything is traced if a plane's grid does not fit into memory.
+/// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
 pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
     let memory = machine::available_memory();
     for plane in &scene.planes {
@@ -69,13 +72,13 @@ pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
 #[derive(Debug)]
 struct Field {
     measured: FieldMeasurement,
-    /// Is `None` if there is no prediction, or if memory is too small to hold all groups for the
-    /// comparison.
+    /// The comparison with the prediction; `None` if there is no prediction, or if memory is too
+    /// small to hold all groups for the comparison.
     compared: Option<FullRadialComparison>,
 }
 
 impl Field {
-    /// Traces the photons of plane `index` again and puts them on a grid.
+    /// Traces the photons again, and puts the photons that cross the plane `index` on a grid.
     fn new(case: &MeasuredScene, index: usize, reporter: &dyn Reporter) -> Result<Self, Failure> {
         let plane = &case.scene.planes[index];
         let grid = FieldGrid::new(&plane.window, &plane.grid);
@@ -84,7 +87,7 @@ impl Field {
             spectra: true,
             ..FieldOptions::default()
         };
-        // The prediction is divided into the same number of groups.
+        // The prediction is divided into the same number of groups as the measurement.
         let groups = options.groups.min(case.measurement.batches().len());
         let needed = grid.bytes().saturating_mul(groups as u64);
         let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
@@ -115,8 +118,8 @@ impl Field {
     }
 }
 
-/// Traces a plane by a method: once if the groups are kept, otherwise once for the sum and once for
-/// the groups.
+/// Traces the photons of a plane by a method: once if the grids of groups are kept, otherwise
+/// once for the sum and once for the groups.
 fn on_grid(
     (case, method): (&MeasuredScene, Method),
     index: usize,
@@ -124,8 +127,8 @@ fn on_grid(
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
     let scene = case.scene.seen_at(&[index]);
-    // Photons are aimed at all planes of a scene. The photons on the grid must be those of the
-    // measurement, so the whole scene is traced.
+    // The tracer aims photons at all planes of a scene. The photons on the grid must be those of
+    // the measurement, so the scene is traced with all of its planes.
     let (source, at) = if method == case.method {
         (source(&case.scene, method)?, index)
     } else {
@@ -142,8 +145,8 @@ fn on_grid(
     measured.map_err(Failure::cannot_run)
 }
 
-/// Measures the light field of each plane, compares it with the prediction, and writes it if there
-/// is a result to write to.
+/// Measures the light field of each plane, compares the field with the prediction, and writes the
+/// field if there is a result folder.
 pub fn compare(
     mut results: Option<&mut Results>,
     case: &MeasuredScene,
@@ -164,8 +167,8 @@ pub fn compare(
     Ok(())
 }
 
-/// The number of tests of each plane whose light field is saved: one of its slices, and one of its
-/// full radial spectrum.
+/// The number of tests of each plane whose light field is saved: a test of the slices, and a test
+/// of the full radial spectrum.
 pub const TESTS: usize = 2;
 
 /// The share of Nyquist up to which the grid is compared with the slices.

@@ -1,4 +1,4 @@
-//! A follower process, which does the work that the leading process requests.
+//! Runs a follower process, which does the work that the leading process requests.
 
 use crate::job::Job;
 use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
@@ -9,8 +9,8 @@ use etendue_store::Failure;
 use etendue_store::framing::{joined, split};
 use std::time::{Duration, Instant};
 
-/// Measures batches and predicts planes of a scene at the request of the leading process, until it
-/// is dismissed.
+/// Measures batches and predicts planes of a scene at the request of the leading process, until
+/// the leading process dismisses this process.
 pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     let mut source: Option<Box<dyn PhotonSource>> = None;
     let mut done = |order: &Order, bytes: &[u8]| match order.task {
@@ -31,8 +31,8 @@ pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     obey(workers, &key([job.scene()]), &mut done)
 }
 
-/// Computes points of a sweep over these scenes at the request of the leading process; `run`
-/// returns the bytes of a point.
+/// Computes points of a sweep at the request of the leading process; `scenes` has the scene of
+/// each point, and `run` returns the bytes of a point.
 pub fn follow_points(
     workers: &dyn Workers,
     scenes: &[Scene],
@@ -48,12 +48,12 @@ pub fn follow_points(
 /// Tells the leading process why this process cannot continue; the leading process reports the
 /// reason and ends the run.
 pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
-    // The leading process may already have ended.
+    // The leading process may have ended before it receives the message.
     let _ = workers.send(0, &joined(&WorkerMessage::Failed { message }, &[]));
     let _ = workers.receive();
 }
 
-/// Returns a finished piece of work.
+/// Returns a finished piece of work with its bytes.
 fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     let piece = Piece {
         number,
@@ -63,7 +63,7 @@ fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     (piece, bytes)
 }
 
-/// Measures batches until it is time to send them back.
+/// Measures batches until the time when they must be sent back.
 fn measured(
     job: &Job,
     source: &dyn PhotonSource,
@@ -84,7 +84,7 @@ fn measured(
     done.chain(begun).collect()
 }
 
-/// Lets a measurement continue until this time.
+/// A [`Watch`] that lets a measurement continue until this time.
 struct Until(Instant);
 
 impl Watch for Until {
@@ -95,7 +95,7 @@ impl Watch for Until {
     }
 }
 
-/// The result of an order, with its bytes.
+/// The results of an order, with their bytes.
 type Done = Result<Vec<Packed>, Failure>;
 
 /// Carries out each order by calling `done`, until an empty order arrives.

@@ -1,4 +1,4 @@
-//! Investigates planes that fail, with another tracer.
+//! Investigates planes that fail, by measuring them with another tracer.
 
 use crate::case::MeasuredScene;
 use crate::judge::Judge;
@@ -30,19 +30,19 @@ pub(crate) fn inquire(
     failed.into_iter().filter_map(judged).collect()
 }
 
-/// Checks whether a plane fails against its prediction, and not only against its chain of affine
-/// maps.
+/// Checks whether a plane fails against its prediction, and not only against its first-order
+/// chain of affine maps.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
 
-/// The number of standard errors that a disagreement must have for a test at 1 % to detect it nine
-/// times in ten: 2.33 + 1.28.
+/// The minimum size of a disagreement, in standard errors, that a test at the level of 1 %
+/// detects nine times in ten: 2.33 + 1.28.
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares another tracer's measurement of plane `i` with photons and with theory. The plane
-    /// has the number `at` in this measurement.
+    /// Compares another tracer's measurement of the plane `i` with the photons and with theory.
+    /// In the other tracer's measurement, this plane has the number `at`.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -58,8 +58,8 @@ impl Inquiry {
         Ok(Self::new(methods, failed, (&tracers, &theory), rays))
     }
 
-    /// `failed` is the comparison of a measurement with its prediction. Another tracer with `rays`
-    /// rays is compared with the measurement, and with the prediction.
+    /// `failed` is the comparison of a measurement with its prediction. Another tracer that has
+    /// traced `rays` rays is compared with the measurement and with the prediction.
     fn new(
         methods: [Method; 2],
         failed: &PlaneReport,
@@ -97,8 +97,8 @@ impl Inquiry {
     }
 }
 
-/// Returns the conclusion for a measurement and a prediction that disagree with each other,
-/// although another tracer with `rays` rays agrees with both.
+/// Returns the conclusion if a measurement and a prediction disagree with each other, but another
+/// tracer with `rays` rays agrees with both of them.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,
@@ -116,7 +116,8 @@ fn both_pass(
     );
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
-    // The standard error of a square falls at least as fast as one over the number of rays.
+    // The standard error of a squared distance falls at least in inverse proportion to the number
+    // of rays.
     let needed = rays * DETECTABLE * error / least;
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
@@ -128,10 +129,11 @@ fn both_pass(
     }
 }
 
-/// Returns the squared distances of a failed plane from its prediction, beyond noise. The first
-/// weights all frequencies equally; the second weights them as the test does, which gives
-/// frequencies with less noise more weight. The noise of another tracer is distributed differently
-/// over frequencies, so the other tracer must be able to detect the smaller of the two distances.
+/// Returns two squared distances between the measurement of a failed plane and its prediction,
+/// without the part due to noise. The first squared distance weights all frequencies equally; the
+/// second weights frequencies as the test does, which favours frequencies with less noise. The
+/// noise of another tracer is distributed differently over frequencies. The other tracer must
+/// therefore be able to detect the smaller of the two squared distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);
@@ -160,8 +162,8 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// Returns a plane whose photons, backward rays and prediction come from lights with these
-    /// radiances.
+    /// Returns a plane whose photons, backward rays and prediction come from lights with the
+    /// given radiances.
     fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
@@ -182,7 +184,7 @@ mod tests {
         (case, compared)
     }
 
-    /// Returns the findings for a plane with these radiances.
+    /// Returns the findings for a plane with the given radiances.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();
@@ -209,8 +211,8 @@ mod tests {
         assert!(all.starts_with("no two of"), "{all}");
     }
 
-    /// Photons are 0.55 % off their prediction. The test checks whether rays that agree with both
-    /// had the power to detect this difference.
+    /// The photons differ from their prediction by 0.55 %. The test checks whether rays that
+    /// agree with the photons and with the prediction could have detected this difference.
     #[test]
     fn rays_too_few_to_tell_are_no_sign_of_chance() {
         let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
@@ -222,7 +224,7 @@ mod tests {
             excess_squared_error: Some(squared_error),
             ..report.clone()
         };
-        // The difference of 0.55 % is half of the noise of these rays, which is 1.1 %.
+        // The difference of 0.55 % is half of the noise of the backward rays, which is 1.1 %.
         let found = |chi2, squared_error| {
             let failed = with(Verdict::Fail, chi2, 0.011, 1e-6);
             let passed = with(Verdict::Pass, 1.0, 0.015, squared_error);

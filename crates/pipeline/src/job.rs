@@ -18,12 +18,12 @@ use etendue_store::predictions;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Settings of a measurement that override those of the scene.
+/// Settings of a measurement that override the settings of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Number of photons, which replaces that of the scene.
+    /// Number of photons, which replaces the number of photons in the scene.
     pub photons: Option<u64>,
-    /// Seed of the photons, which replaces that of the scene.
+    /// Seed of the photons, which replaces the seed in the scene.
     pub seed: Option<u64>,
     /// The method of measurement.
     pub method: Method,
@@ -39,10 +39,11 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads the scene of a file, or of a text that takes the place of the file.
+    /// Reads the scene from a file, or from a text that replaces the file.
     ///
     /// # Errors
-    /// When the scene cannot be read or is not valid; the error lists all faults with their lines.
+    /// When the scene cannot be read or is not valid; the error lists all faults with their line
+    /// numbers.
     pub fn read(source: &SceneSource, options: &Options) -> Result<Self, Failure> {
         let scene = load::scene(source, |run| {
             run.photons = options.photons.unwrap_or(run.photons);
@@ -52,7 +53,7 @@ impl Job {
         Self::of(scene, options.method, inputs)
     }
 
-    /// Returns the job of a resolved scene, which was read from these files.
+    /// Returns the job of a resolved scene; `inputs` are the files from which the scene was read.
     pub fn of(scene: Scene, method: Method, inputs: Vec<PathBuf>) -> Result<Self, Failure> {
         method::check(&scene, method)?;
         Ok(Self {
@@ -75,10 +76,10 @@ impl Job {
         &self.theories
     }
 
-    /// Returns the source of the scene's photons.
+    /// Returns the source of the photons of the scene.
     ///
     /// # Errors
-    /// When the method finds no light.
+    /// When the method of measurement finds no light.
     pub fn source(&self) -> Result<Box<dyn PhotonSource>, Failure> {
         source(&self.scene, self.method)
     }
@@ -99,8 +100,8 @@ impl Job {
         self.packing().packed(batch)
     }
 
-    /// Returns the batch with this number from the bytes of [`Self::packed`]. It is identical to
-    /// the batch that `source` emits.
+    /// Returns the batch with this number, decoded from the bytes of [`Self::packed`]. The batch
+    /// is identical to the batch that `source` emits.
     ///
     /// # Errors
     /// When the bytes belong to another scene, seed or number of photons.
@@ -113,7 +114,7 @@ impl Job {
         self.packing().unpacked(source, number, bytes)
     }
 
-    /// Returns the prediction of a plane that theory predicts, as bytes for another process.
+    /// Returns the prediction of a plane to which a theory applies, as bytes for another process.
     pub fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
         let number = plane as usize;
         let found = self.scene.planes.get(number).zip(self.theories.get(number));
@@ -133,7 +134,7 @@ impl Job {
     /// Measures some batches, on the threads of the current pool.
     ///
     /// # Errors
-    /// When the method finds no light.
+    /// When the method of measurement finds no light.
     pub fn measure(&self, batches: &[u32], watch: &dyn Watch) -> Result<Measurement, Failure> {
         let source = source(&self.scene, self.method)?;
         let mut batches = batches.iter().copied().map(PartialBatch::new);
@@ -143,7 +144,7 @@ impl Job {
     /// Predicts all planes, on the threads of the current pool.
     ///
     /// # Errors
-    /// When another method takes the place of theory, and finds no light.
+    /// When another method of measurement replaces theory at a plane, and finds no light.
     pub fn predict(&self) -> Result<Vec<Prediction>, Failure> {
         predicted(&self.scene, &self.theories, self.method, None, &Silent)
     }
@@ -151,7 +152,7 @@ impl Job {
     /// Compares the measurement with the predictions.
     ///
     /// # Errors
-    /// When the measurement has too few batches for errors.
+    /// When the measurement has too few batches to estimate errors.
     pub fn compare(
         &self,
         measurement: Measurement,
@@ -224,7 +225,7 @@ impl Outcome {
         &self.judged
     }
 
-    /// Returns the files that the scene was read from.
+    /// Returns the files from which the scene was read.
     #[must_use]
     pub fn inputs(&self) -> &[PathBuf] {
         &self.inputs

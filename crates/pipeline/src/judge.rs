@@ -1,5 +1,5 @@
-//! Independent measurements by other methods, against which a measurement is judged plane by
-//! plane.
+//! Makes independent measurements by other methods, against which a measurement is tested plane
+//! by plane.
 
 use crate::measure::measured;
 use crate::method::judge_of;
@@ -19,8 +19,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the other methods against which `method` is judged at
-    /// these planes. Returns one measurement for each method.
+    /// Measures some planes of a scene by the methods against which a measurement by `method` is
+    /// tested at these planes. Returns one measurement for each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],

@@ -1,4 +1,4 @@
-//! The results of a scene that has been measured and predicted.
+//! Collects the results of a scene that has been measured and predicted.
 
 use crate::case::MeasuredScene;
 use crate::inquiry::inquire;
@@ -13,13 +13,13 @@ use etendue_store::{Failure, Results};
 pub struct Judged {
     /// The comparison of each plane, in the order of the scene.
     pub planes: Vec<PlaneComparison>,
-    /// The verdict, with the numbers behind it.
+    /// The verdict, with the numbers from which it follows.
     pub summary: Summary,
 }
 
 impl Judged {
-    /// Compares all planes, and investigates those that fail. Light fields of the planes are
-    /// compared too, if they are saved to a result.
+    /// Compares all planes, and investigates the planes that fail. If light fields are saved to a
+    /// result folder, these light fields are also compared.
     pub fn of(
         case: &MeasuredScene,
         fields: Option<&mut Results>,

@@ -1,6 +1,6 @@
-//! Carries out a run from scene to verdict, as a library. A run measures, predicts, judges by
-//! another tracer, investigates failures, adds photons until noise is low enough, stores batches,
-//! and uses several processes.
+//! Carries out a run from scene to verdict, as a library. A run measures a scene, predicts the
+//! spectra, tests planes against another tracer, and investigates failures. A run also adds
+//! photons until the noise is low enough, stores batches, and uses several processes.
 //!
 //! The library does not depend on arguments or a terminal. Progress is reported to a [`Reporter`].
 //! The entry point is [`Job`].

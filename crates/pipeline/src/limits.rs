@@ -1,4 +1,5 @@
-//! Compares the work and memory of a command with what is available, before it begins.
+//! Compares the work and the memory that a command needs with the available resources, before the
+//! command begins.
 
 use etendue_compare::{Applicability, Memory, too_much_work};
 use etendue_field::Light;
@@ -7,7 +8,7 @@ use etendue_store::Failure;
 use etendue_store::machine;
 
 /// Fails if a run of the scene on `threads` threads would take too long, or would not fit into the
-/// memory of this machine. `theories` are the theories of the scene's planes.
+/// memory of this machine. `theories` has the theory that applies to each plane of the scene.
 pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
     check_work(scene, theories)?;
     check_memory(scene, theories, threads)
@@ -22,7 +23,7 @@ pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failu
     }
 }
 
-/// Fails if a plane could not be compared with anything, because it has no theory and backward
+/// Fails if a plane could be compared with nothing, because no theory applies to it and backward
 /// rays do not find the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     if !matches!(scene.light, Light::Rays { .. }) {

@@ -9,16 +9,16 @@ use etendue_store::{ArgumentStyle, Failure, Plan, Results};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// A scene file, and the fields set in it.
+/// A scene file, and fields to set in it.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    /// The file, in RON or JSON. The meshes and pictures of the scene are in the same folder as
-    /// the file.
+    /// The path of the scene file, in RON or JSON. The paths of meshes and pictures are relative
+    /// to the folder of the scene file.
     pub path: PathBuf,
-    /// A text that is read instead of the file; `path` then gives only the name and the folder of
-    /// the scene.
+    /// A text that is read instead of the scene file; `path` then gives only the name and the
+    /// folder of the scene.
     pub text: Option<String>,
-    /// Fields with the values to which [`SceneFile::with`] sets them.
+    /// Fields of the scene, with the values to which [`SceneFile::with`] sets them.
     pub set: Vec<(String, String)>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
@@ -41,13 +41,13 @@ impl SceneSource {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// Returns the name of the scene, the file name without its extension.
+    /// Returns the name of the scene, which is the file name without its extension.
     fn name(&self) -> Cow<'_, str> {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// Returns the name of the scene in messages: the path of its file, or the name of the scene
-    /// if there is no file.
+    /// Returns the name of the scene for messages: the path of the scene file, or the name of the
+    /// scene if there is no file.
     fn shown(&self) -> String {
         match self.text {
             Some(_) => self.name().into_owned(),
@@ -55,7 +55,7 @@ impl SceneSource {
         }
     }
 
-    /// Returns the given text or, if there is none, the content of the file.
+    /// Returns the given text or, if no text is given, the content of the scene file.
     fn read(&self) -> Result<Cow<'_, str>, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.into());
@@ -69,8 +69,8 @@ impl SceneSource {
     }
 }
 
-/// Reads, overrides and resolves a scene; `options` applies overrides that have arguments of their
-/// own.
+/// Reads, overrides and resolves a scene; `options` applies the overrides that have their own
+/// arguments.
 pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result<Scene, Failure> {
     let arguments = source.arguments;
     let shown = source.shown();
@@ -90,13 +90,13 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     }
     let memory = machine::available_memory();
     let scene = resolve(&source.name(), file, source.folder(), memory);
-    // Lines are not reported for a text that is in no file.
+    // If the scene is a text without a file, messages do not state line numbers.
     let text = source.text.is_none().then_some(&*text);
     scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
 }
 
-/// Returns the faults of a scene, one line each: the place in the text, or the argument that set
-/// the value.
+/// Returns the faults of a scene, one line each, with the position in the text or the argument
+/// that set the faulty value.
 fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
     let lines = error.in_text(text, set);
     let lines = lines.lines().map(|line| format!("{shown}: {line}"));
@@ -111,8 +111,8 @@ pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     named.chain(file).collect()
 }
 
-/// Claims the folder of a stage that will write these files. Copies the scene's meshes and
-/// pictures to this folder, because the next stage looks for them beside the index.
+/// Claims the folder of a stage that will write the given files. Copies the scene's meshes and
+/// pictures to this folder, because the next stage reads them from there.
 pub fn stage(
     out: &Path,
     index: &'static str,

@@ -1,4 +1,4 @@
-//! The sources of photons for each method of measurement.
+//! Provides the source of photons for each method of measurement.
 
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
@@ -14,7 +14,7 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
     })
 }
 
-/// Fails, before anything is written, when a scene cannot be measured by `method`.
+/// Fails, before any file is written, if a scene cannot be measured by `method`.
 pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
         Method::Backward => Backward::new(scene).map(drop).map_err(Failure::bad_input),
@@ -22,8 +22,8 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     }
 }
 
-/// Returns the method against which another method is judged at a plane. It is as independent as
-/// the scene allows.
+/// Returns the method against which a measurement by `method` is tested at a plane. The returned
+/// method is as independent of `method` as the scene allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
         Method::Photons if finds(scene, plane) => Method::Backward,
@@ -32,12 +32,12 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     }
 }
 
-/// Returns the text of the prediction step of a plane without theory: rays traced by this
-/// method are the prediction.
+/// Returns the text that describes the prediction of a plane without theory: rays traced by
+/// `method` serve as the prediction.
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
-        // Backward rays would not find the light here.
+        // At this plane, backward rays would not find the light.
         Method::Even => {
             ", which are traced after emission in the same way as photons: errors of this tracing are not detected"
         }

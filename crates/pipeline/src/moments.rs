@@ -12,8 +12,8 @@ fn options() -> FieldOptions {
     }
 }
 
-/// Returns the options for the grid of a plane. All groups are kept if they fit into half of the
-/// memory; the photons then need not be traced twice.
+/// Returns the options of the grid on which a plane is measured. All groups are kept if they fit
+/// into half of the memory; the photons then need not be traced twice.
 pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     let kept = FieldOptions {
         keep: true,
@@ -27,7 +27,7 @@ pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     }
 }
 
-/// Fails before anything is traced if the grid of a plane does not fit into memory.
+/// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
 pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
     let memory = machine::available_memory();
     for plane in planes {

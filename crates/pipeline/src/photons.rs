@@ -18,16 +18,16 @@ use std::io;
 pub enum Save {
     /// Every photon that crossed a plane, in coordinates of the plane.
     Photons,
-    /// The same photons as rays in world coordinates, in MCPL.
+    /// The photons that crossed a plane, as rays in world coordinates, in MCPL.
     Mcpl,
-    /// The same rays in IES TM-25.
+    /// The photons that crossed a plane, as rays in world coordinates, in IES TM-25.
     Tm25,
     /// The light field on a 4D grid, and its full radial spectrum.
     Field,
 }
 
 impl Save {
-    /// Returns the name in commands.
+    /// Returns the name of the data in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -52,8 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// Returns the name of the file with the photons of a plane, the name of its format in commands,
-/// and the number of bytes of a photon in it.
+/// Returns three properties of the file with the photons of a plane: the name of the file, the
+/// name of its format in commands, and the number of bytes of a photon.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),
@@ -67,13 +67,14 @@ fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
 #[derive(Serialize)]
 struct PhotonsIndex {
     columns: [&'static str; 5],
-    /// First row of each batch, and the number of rows at the end.
+    /// First row of each batch, followed by the total number of rows.
     batch_offsets: Vec<u64>,
-    /// Photons emitted in each batch.
+    /// Number of photons emitted in each batch.
     emitted: Vec<u64>,
 }
 
-/// Returns the largest possible size of the files, reached if every photon crosses every plane.
+/// Describes the largest possible size of the files, which is reached if every photon crosses
+/// every plane.
 pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
     let (_, option, row) = file_of(save)?;
     let planes = scene.planes.len();
@@ -93,9 +94,9 @@ fn size(bytes: u64) -> String {
     }
 }
 
-/// Traces the same photons again, one plane after the other, and streams them to disk, so that
-/// memory holds only one block. A TM-25 file begins with the flux of the photons, so they are
-/// traced once more to compute it.
+/// Traces the same photons again, plane by plane, and streams them to disk, so that memory holds
+/// only one block of photons. A TM-25 file begins with the flux of the photons, so the photons
+/// are traced once more to compute this flux.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
     let Some((name, ..)) = file_of(save) else {
         return Ok(());
@@ -150,8 +151,8 @@ struct OfPlane<'a> {
 }
 
 impl OfPlane<'_> {
-    /// Calls `take` with the photons, block by block in batch order. Returns the number of photons
-    /// before each batch, and the total.
+    /// Calls `take` with the photons, block by block in the order of batches. Returns the number
+    /// of photons before each batch, and the total.
     fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
         let mut offsets = vec![0];
         let mut done = 0;

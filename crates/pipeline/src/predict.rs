@@ -9,8 +9,8 @@ use etendue_scene::Scene;
 use etendue_store::{Failure, Method, predictions};
 use std::collections::BTreeMap;
 
-/// Predicts all planes of a scene for a measurement by `method`. At a plane without a theory, a
-/// measurement by another method takes the place of the prediction.
+/// Predicts all planes of a scene for a measurement by `method`. If no theory applies to a plane,
+/// a measurement by another method replaces the prediction.
 pub fn predicted(
     scene: &Scene,
     theories: &[Applicability],

@@ -1,26 +1,26 @@
-//! Progress reports of a run.
+//! Defines how a run reports its progress.
 
-/// Receives the progress reports of a run: a command prints them, a library may ignore them. The
-/// methods are called from any thread.
+/// A receiver of the progress reports of a run: a command prints the reports, and a library may
+/// ignore them. The methods of a reporter are called from any thread.
 pub trait Reporter: Sync {
-    /// Reports what happens next, or what was found.
+    /// Reports what the run will do next, or what it has found.
     fn note(&self, text: &str);
 
     /// Reports a warning that the user should read before trusting the result.
     fn warn(&self, text: &str);
 
-    /// Reports that work begins.
+    /// Reports that a piece of work begins.
     fn begin(&self, work: Work) -> Box<dyn Progress + '_>;
 }
 
-/// Work that takes a while.
+/// Work whose progress is shown.
 #[derive(Clone, Copy, Debug)]
 pub enum Work {
     /// A number of photons to trace.
     Photons(u64),
     /// A number of items to process in turn.
     Steps {
-        /// The activity, such as "predicting".
+        /// The activity on the items, such as "predicting".
         verb: &'static str,
         /// Number of items.
         total: usize,
@@ -31,18 +31,19 @@ pub enum Work {
     Stage(&'static str),
 }
 
-/// Work in progress. The work ends when this value is dropped.
+/// Work in progress, which ends when this value is dropped.
 ///
 /// A program that wants to stop may unwind from `advance` and from [`Reporter::begin`]: both are
 /// called often, and never while a result is half written.
 pub trait Progress: Send + Sync {
-    /// Reports that this many further photons or items are done; zero only shows that work goes on.
+    /// Reports that `steps` further photons or items are done; the number zero only shows that
+    /// the work continues.
     fn advance(&self, steps: u64);
 
-    /// Reports the total number done.
+    /// Reports that a total of `steps` photons or items are done.
     fn set(&self, steps: u64);
 
-    /// Reports the name of the current item.
+    /// Reports the name of the item that is being processed.
     fn name(&self, step: &str);
 }
 

@@ -1,4 +1,4 @@
-//! `summary.json`, and the seconds of each stage.
+//! Defines the content of `summary.json`, and measures the seconds of each stage.
 
 use crate::case::MeasuredScene;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
@@ -17,8 +17,8 @@ use std::time::Instant;
 pub struct Summary {
     /// Name of the scene.
     pub scene: String,
-    /// BLAKE3 hash of the scene: of its file, defaults and overrides included, and of the files it
-    /// names.
+    /// BLAKE3 hash of the scene, which covers the scene file with defaults and overrides, and the
+    /// files that the scene names.
     pub scene_hash: String,
     /// The scene as it was run, defaults and overrides included.
     pub scene_file: SceneFile,
@@ -28,7 +28,7 @@ pub struct Summary {
     pub seed: u64,
     /// Method of measurement.
     pub method: Method,
-    /// How photons were aimed.
+    /// How photons left the light: aimed at windows, or in proportion to the emission.
     pub emission: Emission,
     /// Photons emitted.
     pub photons: u64,
@@ -36,15 +36,15 @@ pub struct Summary {
     pub batches: usize,
     /// Ledger of flux, W; `None` when the method has no ledger.
     pub ledger: Option<Ledger>,
-    /// (emitted − absorbed − escaped − stopped) / emitted.
+    /// The relative imbalance of the ledger, (emitted − absorbed − escaped − stopped) / emitted.
     pub ledger_imbalance: Option<f64>,
-    /// Verdict on all planes together.
+    /// Verdict for all planes together.
     pub verdict: Verdict,
-    /// Probability that the verdict is a failure although nothing is wrong.
+    /// The probability that a correct scene fails.
     pub alpha: f64,
     /// A report for each plane, in the order of the scene.
     pub planes: Vec<PlaneReport>,
-    /// Findings of the other tracer on planes that fail.
+    /// Findings on planes that fail, from measurements by another tracer.
     pub inquiries: Vec<Inquiry>,
 }
 
@@ -53,9 +53,9 @@ pub struct Summary {
 pub struct Inquiry {
     /// Name of the plane.
     pub plane: String,
-    /// Verdict and p-value of photons against backward rays.
+    /// Verdict and p-value of the comparison of photons with the other tracer.
     pub tracers: (Verdict, Option<f64>),
-    /// Verdict and p-value of the other tracer against the prediction.
+    /// Verdict and p-value of the comparison of the other tracer with the prediction.
     pub other: (Verdict, Option<f64>),
     /// The conclusion, in words.
     pub finding: String,
@@ -107,7 +107,7 @@ impl Summary {
         }
     }
 
-    /// Returns the file's bytes; `files` maps each file to its BLAKE3 hash.
+    /// Returns the bytes of `summary.json`; `files` maps each result file to its BLAKE3 hash.
     pub fn json(&self, files: &BTreeMap<String, String>) -> Vec<u8> {
         #[derive(Serialize)]
         struct WithFiles<'a> {
@@ -122,7 +122,7 @@ impl Summary {
     }
 }
 
-/// The seconds of each stage.
+/// A measurement of the seconds that each stage takes.
 #[derive(Debug)]
 pub struct Stopwatch {
     last: Instant,

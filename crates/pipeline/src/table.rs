@@ -1,4 +1,4 @@
-//! The tables of a run's results.
+//! Formats the tables of a run's results.
 
 use crate::summary::Summary;
 use etendue_compare::{
@@ -52,7 +52,7 @@ pub fn text(summary: &Summary) -> String {
     lines.join("\n")
 }
 
-/// Returns the message about a first-order chain that does not pass.
+/// Returns the message about a first-order chain that does not agree with the photons.
 pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
     let name = &plane.name;
@@ -78,7 +78,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     }
 }
 
-/// Returns the difference of measurement and prediction, plane by plane.
+/// Returns a table of the differences between measurement and prediction, plane by plane.
 pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let mut header = vec![
         "plane",
@@ -118,8 +118,8 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns the difference of the photons from the first-order chain, beyond noise, and its expected
-/// value.
+/// Returns the difference between the photons and the first-order chain, without the part due to
+/// noise, and the expected value of this difference.
 pub fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
         return "–".to_owned();
@@ -128,7 +128,7 @@ pub fn chain(plane: &PlaneReport) -> String {
     format!("{} ({error:.3} %)", percent(first_order.excess))
 }
 
-/// Returns the parameters of the chain as the photons measure them.
+/// Returns a table of the parameters of the chain, as measured by the photons.
 pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -153,7 +153,8 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the difference of measured and predicted full radial spectra, plane by plane.
+/// Returns a table of the differences between measured and predicted full radial spectra, plane
+/// by plane.
 fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -190,10 +191,11 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// Returns the measured value of a parameter and its smallest detectable change. The change is a
-/// share of the parameter if it is not zero, and otherwise has the parameter's unit. Both are – if
-/// even a change by the whole parameter would be undetectable; the value alone is – if its error
-/// is larger than the value.
+/// Returns the measured value of a parameter, and the smallest change of the parameter that the
+/// photons can detect. If the parameter is not zero, this change is a share of the parameter;
+/// otherwise the change has the parameter's unit. Both texts are – if even a change as large as
+/// the parameter would be undetectable; only the value is – if its error is larger than the
+/// value.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
@@ -213,8 +215,8 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     }
 }
 
-/// Aligns columns that are as wide as their widest cell and two spaces apart, with text to the left
-/// and numbers to the right.
+/// Aligns columns that are as wide as their widest cell and separated by two spaces; text is
+/// aligned to the left, and numbers to the right.
 pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
@@ -242,7 +244,7 @@ pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// Returns the verdict of a run in a sentence, with its reasons.
+/// Returns a sentence with the verdict of a run and its reasons.
 pub fn verdict_text(summary: &Summary) -> String {
     let with = |verdict: Verdict| -> Vec<&PlaneReport> {
         let planes = summary.planes.iter();
@@ -288,7 +290,7 @@ pub fn verdict_text(summary: &Summary) -> String {
     }
 }
 
-/// Returns the predicted slope with as many digits as the measured slope.
+/// Returns the predicted slope, with as many digits as the measured slope has.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
         (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),

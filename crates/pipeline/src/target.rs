@@ -12,25 +12,25 @@ use etendue_store::Method;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
-/// Number of photons of the first stage.
+/// Number of photons of the first measurement.
 const FIRST_PHOTONS: u64 = 1 << 20;
-/// The largest number of photons of a stage, unless the user sets another number.
+/// The maximum number of photons of a measurement, unless the user sets another maximum.
 const MAX_PHOTONS: u64 = 1 << 40;
-/// The factor by which the photons needed by the square-root law may exceed the limit, since nets
-/// may need fewer.
+/// The largest allowed ratio of the photons that the square-root law predicts to the maximum
+/// number of photons. With nets, fewer photons may suffice.
 const MAX_FACTOR: f64 = 8.0;
 
-/// Measures all batches of a scene with enough photons that noise is at most a share `target` of
-/// the spectrum at each plane. The number of photons is the first sufficient power of two, from 2²⁰
-/// on. The function sets the scene's number of photons to this number. The last possible stage has
-/// `most` photons, which need not be a power of two.
+/// Measures all batches of a scene, with so many photons that the noise at each plane is at most
+/// the share `target` of the spectrum. The number of photons is the smallest sufficient power of
+/// two that is at least 2²⁰. The function sets the number of photons in the scene to this power
+/// of two. The last possible measurement has `most` photons, which need not be a power of two.
 ///
-/// Each stage starts again from the first photon, so its result is that of a run with the same
-/// number of photons. The possible stages are fixed beforehand, and only noise decides which one
-/// is the last, so p-values are unaffected.
+/// Each measurement starts again from the first photon, so its result equals that of a run with
+/// the same number of photons. The possible numbers of photons are fixed beforehand, and only
+/// noise decides which number is the last, so p-values are not biased.
 ///
 /// # Errors
-/// When no photon reaches any plane, or more than `most` photons would be needed.
+/// When no photon reaches any plane, or when more than `most` photons would be needed.
 pub fn reached(
     scene: &mut Scene,
     method: Method,
@@ -55,7 +55,7 @@ pub fn reached(
         let noise_now = percent(Some(noise));
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
         // With nets, fewer photons than the square-root law predicts may suffice, so the next
-        // stage has the largest power of two below the predicted number.
+        // measurement has the largest power of two below the predicted number.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
         while next < most && 2.0 * next as f64 <= needed {
@@ -81,8 +81,8 @@ pub fn reached(
     }
 }
 
-/// Returns the noise of the run, and the noise of a run a hundred times as long, in words; `None`
-/// if there is no light.
+/// Describes the noise of the run, and the noise of a run that lasts a hundred times as long;
+/// returns `None` if there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes
@@ -97,7 +97,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// Returns a note, in words, on the noise of predictions, which `target` does not include.
+/// Describes the noise of predictions, which `target` does not include.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes
@@ -117,7 +117,8 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     )
 }
 
-/// Returns the lit plane with the most noise, and its noise as a share of the spectrum.
+/// Returns the name of the plane with the most noise among planes with light, and its noise as a
+/// share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();
     let lit = planes.filter_map(|(i, plane)| {

@@ -18,7 +18,7 @@ pub struct Converted {
 /// Writes a file in a format. A file that is converted to its own format is preserved completely.
 ///
 /// # Errors
-/// When the format cannot represent some rays, such as negative weights in TM-25 and NPY; every
+/// When the format cannot represent some rays, such as negative weights in TM-25 and NPY. Every
 /// written file can be read.
 pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     let packed = |bytes: Vec<u8>| match to {

@@ -18,7 +18,7 @@ pub enum FilePosition {
 pub struct Fault {
     /// Position of the fault.
     pub place: FilePosition,
-    /// The value found there, and what is allowed.
+    /// The value found at the position of the fault, and what is allowed there.
     pub message: String,
 }
 

@@ -5,15 +5,15 @@ use crate::tm25::Tm25File;
 use crate::{Fault, RaySet, gz, npy};
 use std::fmt;
 
-/// Reading a file and making its [`RaySet`] takes at most this many times the bytes of the file,
-/// unpacked, plus [`MEMORY_FREE`] bytes.
+/// The largest ratio of memory to the length of the unpacked file, apart from [`MEMORY_FREE`]
+/// bytes, while a file is read and its [`RaySet`] is made.
 ///
-/// The shortest record takes 28 bytes in memory and 64 bytes in the set. The unpacked content of a
-/// gzip file may take twice its length in memory.
+/// The shortest record of a ray takes 28 bytes in memory and 64 bytes in the set. The unpacked
+/// content of a gzip file may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
-/// Bytes that reading may take regardless of the length of the file. They are needed for at most
-/// 65,536 texts and as many tables.
+/// Bytes of memory that reading a file may take regardless of the length of the file. The free
+/// bytes are needed for at most 65,536 texts and 65,536 tables.
 pub const MEMORY_FREE: usize = 16 << 20;
 
 /// The format of a file.
@@ -30,7 +30,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns the format of a file with this name, by its extension in any case.
+    /// Returns the format that belongs to the extension of a file name, in upper or lower case.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_lowercase();
@@ -69,8 +69,8 @@ pub enum RayFile {
 }
 
 impl RayFile {
-    /// Reads a file, gzipped or not. The first bytes of the file determine its format; its name is
-    /// ignored.
+    /// Reads a file, gzipped or not. The first bytes of the file determine the format; the name
+    /// of the file is ignored.
     ///
     /// # Errors
     /// A [`Fault`] with its position and reason.

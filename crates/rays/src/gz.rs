@@ -7,11 +7,11 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packing reduces the
-/// length of rays to about a half; in test files with repeated rays, it reduces it to a tenth.
+/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packing reduces
+/// files of rays to about half of their length, and test files with repeated rays to a tenth.
 pub const MOST_RATIO: usize = 64;
 
-/// Bytes that a packed file may unpack to regardless of its length.
+/// Number of bytes to which any packed file may unpack, regardless of its length.
 pub const FREE: usize = 1 << 20;
 
 /// Checks whether a file begins like a gzip file.
@@ -44,7 +44,7 @@ pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     Ok(Cow::Owned(unpacked))
 }
 
-/// Packs bytes. The file states no name and no time, so the same bytes give the same file.
+/// Packs bytes. The gzip file states no name and no time, so equal contents give equal files.
 #[must_use]
 pub fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());

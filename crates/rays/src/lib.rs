@@ -1,15 +1,16 @@
 //! Reads and writes ray files: IES TM-25, MCPL (versions 2 and 3, plain or gzipped) and NPY.
 //!
-//! A file is read from bytes into a [`RayFile`], which keeps its whole content: written again, it
-//! has the same bytes (TM-25: the same values, see [`tm25`]). The common content of all formats is
-//! a [`RaySet`]: positions in metres, unit directions, power and wavelengths. A conversion between
-//! formats returns a [`Converted`], whose notes name everything that is dropped.
+//! A file is read from bytes into a [`RayFile`], which keeps the whole content of the file. A
+//! file that is read and written again has the same bytes (for TM-25 the same values, see
+//! [`tm25`]). The common content of all formats is a [`RaySet`]: positions in metres, unit
+//! directions, power and wavelengths. A conversion between formats returns a [`Converted`], whose
+//! notes name everything that is dropped.
 //!
 //! Files are not trusted. Each count is checked against the length of the file before memory is
-//! allocated. Reading takes at most [`MEMORY`] times the bytes of the file, unpacked, plus
-//! [`MEMORY_FREE`]; gzip may unpack to at most [`gz::MOST_RATIO`] times its length. NaN, infinite
-//! numbers and zero directions are refused, and each [`Fault`] gives the position of the byte or
-//! the number of the ray.
+//! allocated. Reading takes at most [`MEMORY`] times the length of the unpacked file, plus
+//! [`MEMORY_FREE`] bytes. A gzip file may unpack to at most [`gz::MOST_RATIO`] times its length.
+//! NaN, infinite numbers and zero directions are refused, and each [`Fault`] gives the position
+//! of the byte or the number of the ray.
 //!
 //! The crate `etendue-rays` does not access the disk and does not depend on light fields.
 //!

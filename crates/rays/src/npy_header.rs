@@ -152,7 +152,7 @@ mod tests {
             ..NpyHeader::new("<f8", &[2, 3])
         };
         assert_eq!(read(numpy), Some(header));
-        // Other programs write headers in this notation.
+        // Other programs write the header in this notation.
         let other = r#"{"shape": (5,), "fortran_order": False, "descr": "<f8"}"#;
         assert_eq!(read(other), Some(NpyHeader::new("<f8", &[5])));
     }

@@ -42,11 +42,11 @@ pub enum Wavelengths {
 
 /// Rays with their power.
 ///
-/// The power of a set is the sum of the powers of its rays. A ray carries the same power through
-/// any plane it crosses: no cosine is included.
+/// The power of a set of rays is the sum of the powers of its rays. A ray carries the same power
+/// through any plane it crosses: no cosine is included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaySet {
-    /// A point on each ray, metres, from which light continues.
+    /// A point on each ray, in metres, from which the light continues.
     pub positions: Vec<[f64; 3]>,
     /// Unit direction of each ray.
     pub directions: Vec<[f64; 3]>,

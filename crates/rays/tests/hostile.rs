@@ -1,7 +1,8 @@
-//! Tests thousands of mutated files: none makes the reader panic, and memory stays within the bound
-//! of the crate.
+//! Tests that thousands of mutated files do not make the reader panic, and that memory stays
+//! within the bound of the crate.
 //!
-//! This test is a program of its own, so that the peak memory of the process is that of reading.
+//! This test is a program of its own, so that the peak memory of the process is the memory that
+//! reading takes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -37,8 +38,8 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// Returns a file with a few bytes, numbers or its length changed, more often in the header than in
-/// rays.
+/// Returns a file in which a few bytes, numbers or the length are changed, more often in the
+/// header than in rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.below(4) {
@@ -120,8 +121,8 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // The file is so large that the bound depends mostly on its length, and not on the bytes that
-    // any file may take.
+    // The file is so large that the bound depends mostly on the length of the file, and not on
+    // the bytes that any file may take.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());

@@ -1,9 +1,10 @@
-//! Tests with public files, which are not part of this repository: those of mctools/mcpl (`*.mcpl`,
-//! `*.mcpl.gz`) and JuliusMuschaweck/TM25RaySetTools (`*.tm25ray`). The variable
-//! `ETENDUE_RAY_FILES` names a folder of them; docs/rays.md explains how to get them.
+//! Tests with public files, which are not part of this repository. The files are from
+//! mctools/mcpl (`*.mcpl`, `*.mcpl.gz`) and JuliusMuschaweck/TM25RaySetTools (`*.tm25ray`). The
+//! variable `ETENDUE_RAY_FILES` names a folder with these files; docs/rays.md explains how to get
+//! the files.
 //!
-//! Every file that is read is written with the same bytes; for a packed file, these are its
-//! unpacked bytes. Files that their makers mark as bad are refused.
+//! Every file that is read and written again has the same bytes; for a packed file, its unpacked
+//! bytes are compared. Files that their makers mark as bad are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -95,7 +95,8 @@ fn unusual_texts_and_fluxes_have_notes() {
     assert_eq!(file.notes().len(), 3, "{:?}", file.notes());
 }
 
-/// Every combination of the options of MCPL is read and written with the same bytes, also packed.
+/// Files with every combination of the options of MCPL are read and written with the same bytes,
+/// also if they are packed.
 #[test]
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {

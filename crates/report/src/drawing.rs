@@ -9,8 +9,9 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// The cut through X with the given planes, the cut through Y if it differs, and the scene to
-/// scale if its path turns. The path is unfolded: each surface is cut as light arrives at it.
+/// The cut through X with the given planes, the cut through Y if it differs from the cut through
+/// X, and the scene to scale if its path turns. The path is unfolded: each surface is cut as
+/// light arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,

@@ -11,8 +11,8 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// The part after # in the address of the page that shows a scene; `None` if the explorer does not
-/// support it.
+/// The part after # in the address of the page that shows a scene; `None` if the explorer does
+/// not support the scene.
 ///
 /// A scene is supported if the explorer, set to the numbers of this scene, would save the same
 /// scene; planes, names and the extent of surfaces may differ.
@@ -52,7 +52,8 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// The scene, with the fields reset that may differ in a scene saved by the explorer.
+/// Returns the scene with fixed values in all fields that may differ in a scene saved by the
+/// explorer.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
         if let BlockersFile::JitteredSquares { name, .. } | BlockersFile::Shapes { name, .. } =

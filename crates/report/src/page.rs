@@ -22,7 +22,7 @@ const MAX_PAGE_BYTES: u64 = 1 << 28;
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
-/// The data of the run in a folder, as written.
+/// Returns the data of the run in a folder, exactly as the page holds them.
 pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
@@ -44,17 +44,18 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
         .and_then(|(_, rest)| rest.split_once(AFTER));
     let (data, _) = inside.ok_or_else(|| fault("it does not contain the data of a run"))?;
     // A hash does not protect the page, because anyone can write a new index for a changed page.
-    // So the function also checks that the content is data.
+    // The function therefore also checks that the text is valid JSON.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())
 }
 
-/// A page of the data of several runs in JSON, each with its folder relative to the page.
+/// Returns a page with the data of several runs in JSON, each run with its folder relative to the
+/// page.
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
-        // In JSON this character occurs only in strings. The character is escaped, so that no name
-        // in a scene can end the data.
+        // In JSON, the character `<` occurs only in strings. The character is escaped, so that no
+        // name in a scene can end the data.
         let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };

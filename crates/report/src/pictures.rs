@@ -109,8 +109,8 @@ fn primal(
 }
 
 /// The radial spectrum of a plane. Where the window determines the values between the frequencies,
-/// measured and predicted are drawn without visible cells. The difference and the numbers are those
-/// at the scene's frequencies.
+/// measured and predicted are drawn without visible cells. The difference and the stored numbers
+/// are at the frequencies of the scene.
 fn spectrum(
     (note, sides): (&str, [&str; 2]),
     at: &VirtualPlane,

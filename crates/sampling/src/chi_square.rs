@@ -1,5 +1,5 @@
-//! Pearson's χ² test of samples, counted in cells, against the integrals of their density; for
-//! tests.
+//! Pearson's χ² test of samples, for tests: the counts of samples in cells are compared with the
+//! integrals of their density.
 
 use etendue_field::Frame;
 use glam::DVec3;
@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Number of points of the midpoint rule along a side of a cell.
 const FINE: u32 = 32;
-/// Number of rings of cells on a sphere, with equal shares of samples except for the last ones;
-/// each is divided into sectors.
+/// Number of rings of cells on a sphere; each ring is divided into sectors, and all rings but the
+/// last ones have equal shares of samples.
 const RINGS: usize = 16;
 const SECTORS: usize = 12;
 /// Cells with fewer expected samples than this are merged.
@@ -24,8 +24,8 @@ pub struct ChiSquare {
 }
 
 impl ChiSquare {
-    /// Compares the counts in some cells, from `all` random numbers, with the integrals of the
-    /// density over these cells.
+    /// Compares the counts of samples in some cells, drawn with `all` random numbers, with the
+    /// integrals of the density over these cells.
     fn new(counts: &[f64], shares: &[f64], all: f64) -> Self {
         let excess = shares.iter().sum::<f64>() - counts.iter().sum::<f64>() / all;
         let [mut chi2, mut cells] = [0.0; 2];
@@ -53,8 +53,8 @@ impl ChiSquare {
         }
     }
 
-    /// Checks against four and a half standard deviations of χ², which are exceeded in one
-    /// comparison of 300,000.
+    /// Checks that χ² is within four and a half standard deviations, which one comparison in
+    /// 300,000 exceeds by chance.
     ///
     /// The integral comes from the midpoint rule over cells of 32 × 32 points, some of which are
     /// cut by edges of the density. The share comes from some 100,000 samples.
@@ -146,7 +146,8 @@ impl SphereCells {
         angles.sort_by(f64::total_cmp);
         let mut rings = vec![0.0];
         rings.extend((1..RINGS).map(|i| angles[i * angles.len() / RINGS]));
-        // These rings resolve the tail, and the edge of a lobe, where the density may jump.
+        // The rings resolve the tail of a lobe, and the edge of a lobe, where the density may
+        // jump.
         rings.extend([255, 4095].map(|i| angles[i * angles.len() / (i + 1)]));
         rings.extend([0.5 * PI, PI]);
         rings.sort_by(f64::total_cmp);

@@ -36,7 +36,7 @@ impl Cone {
         let squared_sine = radius * radius / squared;
         (squared_sine < 1.0).then(|| Self {
             axis: way / squared.sqrt(),
-            // This form avoids cancellation for narrow cones.
+            // This form of 1 − cos avoids cancellation for narrow cones.
             fall: squared_sine / (1.0 + (1.0 - squared_sine).sqrt()),
         })
     }

@@ -1,6 +1,6 @@
 //! Sampling of items in proportion to their weights.
 
-/// Weights of items, as a cumulative sum that includes each item.
+/// Weights of items, as cumulative sums; each sum includes the weight of its own item.
 #[derive(Clone, Debug)]
 pub struct DiscreteDistribution {
     sums: Vec<f64>,

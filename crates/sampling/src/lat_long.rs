@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// A picture of all directions, with a sampler of directions by radiance.
 ///
-/// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel by
-/// its light, then a position within its tent. So the density is interpolated like the radiance,
-/// with each pixel weighted by the circumference of its row.
+/// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel
+/// in proportion to its light, then a position within the pixel's tent. The density is therefore
+/// interpolated like the radiance, with each pixel weighted by the circumference of its row.
 #[derive(Clone, Debug)]
 pub struct LatLongSampler {
     map: Arc<LatLong>,
@@ -42,8 +42,8 @@ impl LatLongSampler {
             .map(|(values, sine)| DiscreteDistribution::new(values.iter().map(|v| sine * v)))
             .collect();
         let rows = columns.iter().enumerate().map(|(row, columns)| {
-            // A row extends half a row on either side of its centre, or to the pole if that is
-            // nearer.
+            // A row extends half a row on either side of its centre, or to the pole if the pole
+            // is nearer.
             let center = row as f64 + 0.5;
             let share = (center - top).min(0.5) + (bottom - center).min(0.5);
             share * columns.total()
@@ -56,7 +56,7 @@ impl LatLongSampler {
         }
     }
 
-    /// Samples a direction that light comes from.
+    /// Samples a direction from which light comes.
     #[must_use]
     pub fn sample(&self, r: [f64; 4]) -> DVec3 {
         let row = self.rows.sample(r[0]);

@@ -54,7 +54,7 @@ fn in_triangle(point: DVec2) -> bool {
     point.min_element() > 0.0 && point.element_sum() < 1.0
 }
 
-/// Returns cones, each with a pole of cells that resolve it.
+/// Returns cones, each with a pole for cells that resolve the cone.
 fn cones() -> [(DVec3, Cone); 4] {
     let way = DVec3::new(1.0, 2.0, -1.5);
     [
@@ -136,7 +136,8 @@ fn pictures_are_drawn_by_their_light() {
     }
 }
 
-/// Weights do not vary much where pixels are small: the density is interpolated like the radiance.
+/// Weights of samples do not vary much where pixels are small, because the density is
+/// interpolated like the radiance.
 #[test]
 fn weights_of_pictures_are_bounded() {
     let values = (0..64 * 33).map(|i| if i % 97 == 0 { 100.0 } else { 1.0 });
@@ -176,7 +177,7 @@ fn things_are_drawn_by_their_weights() {
     assert_eq!(ends, [1, 4]);
 }
 
-/// The comparison of samples with densities detects each of these faults.
+/// The comparison of samples with densities detects each of the planted faults.
 #[test]
 fn planted_faults_are_seen() {
     let linear = |[a, b]: [f64; 2]| 0.9 * a * DVec2::from_angle(2.0 * PI * b);

@@ -53,8 +53,8 @@ pub fn polar(fall: f64, turn: f64) -> DVec3 {
     DVec3::new(sine * cos, sine * sin, 1.0 - fall)
 }
 
-/// Converts a direction from a frame with Z along `axis` to the coordinates of `axis`. The frame is
-/// turned by the smallest angle.
+/// Converts a direction from a frame with Z along `axis` to the coordinates of `axis`. The frame
+/// results from turning the coordinate axes by the smallest angle.
 #[inline]
 #[must_use]
 pub fn about(axis: DVec3, local: DVec3) -> DVec3 {

@@ -39,7 +39,7 @@ pub trait Bsdf {
 /// A sampled direction in which a path continues.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
-    /// The direction that light comes from.
+    /// The direction from which light comes.
     pub wi: DVec3,
     /// BSDF times |cos| of wi, divided by the density.
     pub weight: f64,

@@ -1,5 +1,6 @@
-//! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface; `index`
-//! is the index of the far side divided by that of the side of wo.
+//! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface;
+//! `index` is the refractive index of the far side divided by the refractive index of the side of
+//! wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.
 
@@ -19,7 +20,7 @@ pub struct SmoothDielectric {
 }
 
 impl SmoothDielectric {
-    /// Reflects or refracts; the shares of light are the probabilities.
+    /// Reflects or refracts light; the probability of each event is its share of the light.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: f64) -> BsdfSample {
@@ -70,7 +71,7 @@ impl RoughDielectric {
         let normal = (wo + eta * wi).try_normalize()?;
         let normal = if normal.z < 0.0 { -normal } else { normal };
         let [i, o] = [wi.dot(normal), wo.dot(normal)];
-        // Both directions must see the facet from their own side.
+        // The facet must be visible from both directions, for each from its own side.
         (o > 0.0 && i * wi.z > 0.0).then(|| Facet {
             normal,
             cosines: [i, o],
@@ -113,8 +114,8 @@ impl Bsdf for RoughDielectric {
         (1.0 - facet.reflected) * of_normal * self.index * self.index * i.abs() / (sum * sum)
     }
 
-    /// Mirrors or refracts at a facet, with the shares of light as probabilities; `None` if light
-    /// would meet another facet.
+    /// Mirrors or refracts a direction at a facet, with the shares of light as probabilities;
+    /// `None` if light would meet another facet.
     #[inline]
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
         let normal = self.facets.sample_normal(wo, [a, b]);

@@ -4,7 +4,8 @@
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the share that is reflected at an angle of incidence whose cosine, 0 to 1, is given.
+/// Returns the reflected share of light at an angle of incidence, given by its cosine from 0 to
+/// 1.
 #[inline]
 #[must_use]
 pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
@@ -24,7 +25,7 @@ fn dielectric(index: f64, cosine: f64) -> f64 {
     if inside <= 0.0 {
         return 1.0;
     }
-    // This is the index times the cosine of the angle of refraction.
+    // This root is the index times the cosine of the angle of refraction.
     let refracted = inside.sqrt();
     let s = (cosine - refracted) / (cosine + refracted);
     let p = (squared * cosine - refracted) / (squared * cosine + refracted);
@@ -49,15 +50,15 @@ fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
 pub(crate) struct Interface {
     /// The share of light that is reflected.
     pub(crate) reflected: f64,
-    /// Index of the far side divided by that of the near side.
+    /// Index of the far side divided by the index of the near side.
     index: f64,
     /// Cosines on the near and the far side.
     cosines: [f64; 2],
 }
 
 impl Interface {
-    /// Builds an interface for an angle of incidence with this cosine, above 0; the index of the
-    /// far side is `index` times that of the near side.
+    /// Builds an interface for an angle of incidence whose cosine, above 0, is given. The index
+    /// of the far side is `index` times the index of the near side.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);

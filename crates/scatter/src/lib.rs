@@ -1,13 +1,13 @@
-//! BSDFs for the tracers of bench scenes and of worlds. Each BSDF has its value, the sampling of
-//! directions, and the density of sampling.
+//! BSDFs for the tracers of bench scenes and of worlds. Each BSDF provides its value, a sampler
+//! of directions, and the density of the sampler.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z: light
 //! comes from `wi` and leaves along `wo`. `wo` is given and `wi` is sampled, as for a ray from a
-//! camera. A tracer of photons exchanges the two, which reciprocal BSDFs allow.
+//! camera. A tracer of photons exchanges `wi` and `wo`, which is allowed for reciprocal BSDFs.
 //!
 //! Values are per steradian and without the cosine of `wi`; densities are per solid angle of `wi`.
-//! Random numbers are in (0, 1). Patterns, textures and mixtures belong to the tracers: all numbers
-//! here refer to one point.
+//! Random numbers are in (0, 1). The tracers evaluate patterns, textures and mixtures; in this
+//! crate, all numbers refer to one point.
 
 mod bsdf;
 mod conductor;

@@ -15,7 +15,7 @@ pub struct Microfacets {
     pub alpha: [f64; 2],
 }
 
-/// The smallest z of a visible normal before stretching: normals at the horizon are kept above it.
+/// The smallest z of a visible normal before stretching, which keeps normals above the horizon.
 const MIN_HEIGHT: f64 = 1e-12;
 
 impl Microfacets {
@@ -41,16 +41,16 @@ impl Microfacets {
         (value, normal.dot(wo).min(1.0))
     }
 
-    /// Samples the mirror direction of wo at a normal that is visible from wo. Near grazing some of
-    /// these directions lie below the surface.
+    /// Samples the mirror direction of wo at a normal that is visible from wo. Near grazing incidence, some sampled
+    /// directions lie below the surface.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: [f64; 2]) -> DVec3 {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// Returns the density of [`Self::sample`], over the whole sphere. It is the density of the
-    /// normal, divided by 4 h · ωo (Walter et al., Eq. 14).
+    /// Returns the density of [`Self::sample`], over the whole sphere. The density of directions is the density of
+    /// the normal, divided by 4 h · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
     pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -65,8 +65,8 @@ impl Microfacets {
     /// Samples the mirror direction of wo at any normal, visible from wo or not, in proportion to D
     /// cos θ (Walter et al., Eqs. 28 f. and 35 f.).
     ///
-    /// For Beckmann, weights are closer to 1 than those of [`Self::sample`] if light comes from
-    /// near the normal, but they grow without bound towards grazing.
+    /// For Beckmann, weights are closer to 1 than the weights of [`Self::sample`] if light comes from near the
+    /// normal, but these weights grow without bound towards grazing.
     #[inline]
     #[must_use]
     pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -104,15 +104,15 @@ impl Microfacets {
         }
     }
 
-    /// Returns Smith's G₁: the share of the normals facing a direction that are visible from it
-    /// (Walter et al., Eqs. 26 f. and 34).
+    /// Returns Smith's G₁: among the normals that face a direction, the share of normals that are visible from this
+    /// direction (Walter et al., Eqs. 26 f. and 34).
     #[inline]
     pub(crate) fn g1(&self, direction: DVec3) -> f64 {
         let slope = self.slope(direction);
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // Beyond this, erfc is below erfc(6), which is below rounding error.
+                // For larger arguments, erfc is below erfc(6), which is below rounding error.
                 if a > 6.0 {
                     return 1.0;
                 }
@@ -125,8 +125,8 @@ impl Microfacets {
     /// Samples a normal with z > 0 that is visible from wo, for GGX (Heitz 2018, *Sampling the GGX
     /// distribution of visible normals*, Listing 1).
     ///
-    /// Beckmann's normals are sampled in the same way: D is at most 4/e times that of GGX, and G₁
-    /// at most √π times.
+    /// Beckmann's normals are sampled in the same way: D is at most 4/e times the D of GGX, and G₁ is at most √π
+    /// times the G₁ of GGX.
     #[inline]
     pub(crate) fn sample_normal(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         // The direction is transformed to the space in which the ellipsoid of normals is a

@@ -27,8 +27,7 @@ impl Phong {
         (self.exponent + 1.0) / TAU * power(cosine, self.exponent)
     }
 
-    /// Samples a direction by the lobe. Near grazing some of these directions lie below the
-    /// surface.
+    /// Samples a direction by the lobe. Near grazing incidence, some sampled directions lie below the surface.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -58,8 +57,8 @@ pub struct ModifiedPhong {
 }
 
 impl ModifiedPhong {
-    /// Returns the share of directions that are sampled by the lobe: that of ks in kd + ks. The
-    /// others are sampled in proportion to the cosine.
+    /// Returns the share of directions that are sampled by the lobe, ks / (kd + ks). The other directions are sampled
+    /// in proportion to the cosine.
     #[inline]
     fn specular_share(&self) -> f64 {
         let sum = self.diffuse + self.specular;

@@ -141,7 +141,7 @@ impl Bsdf for Plastic<'_> {
     }
 
     fn mirrored(&self, wo: DVec3, c: f64) -> Option<BsdfSample> {
-        // A smooth coat takes its share of the samples; the base has the rest of them.
+        // A smooth coat gets its share of the samples, and the base gets the remaining samples.
         let share = self.coat_share(wo);
         (self.coat.facets.is_none() && c < share).then(|| {
             let reflected = Interface::new(self.coat.index, wo.z).reflected;

@@ -1,4 +1,4 @@
-//! Displays text from outside in messages.
+//! Displays text from users and files in messages.
 
 use std::fmt::{self, Display, Write};
 
@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Write};
 ///
 /// Control and format characters (including those that change the direction of text), line
 /// separators, private-use characters and non-characters are escaped as `\u{..}`. A text that is
-/// too long ends in `…`; what follows is never formatted.
+/// too long ends in `…`, and its omitted part is never formatted.
 #[must_use]
 pub fn shown(value: impl Display, most: usize) -> String {
     let mut cut = ShortenedText {
@@ -30,7 +30,7 @@ pub fn number(x: f64) -> String {
     }
 }
 
-/// A text that accepts a limited number of further characters.
+/// A text that accepts a limited number of further characters, and marks an omission by `…`.
 struct ShortenedText {
     text: String,
     left: usize,
@@ -55,15 +55,14 @@ impl Write for ShortenedText {
     }
 }
 
-/// Checks whether a character is visible, is the plain space, or is a mark on the previous
-/// character.
+/// Checks whether a character is visible, a plain space, or a mark on the previous character.
 #[must_use]
 pub fn is_printable(c: char) -> bool {
     if c.is_ascii() {
         return !c.is_ascii_control();
     }
-    // Rust's debug escapes follow Unicode's categories. A mark is not escaped unless it is the
-    // first character.
+    // Rust's debug escapes follow Unicode's categories. Rust's debug format does not escape a
+    // mark unless it is the first character.
     let mut after = [b'a'; 5];
     let end = 1 + c.encode_utf8(&mut after[1..]).len();
     let text = std::str::from_utf8(&after[..end]);
@@ -98,7 +97,7 @@ mod tests {
     fn what_is_too_long_is_cut_and_not_formatted() {
         assert_eq!(shown("床床床", 3), "床床床");
         assert_eq!(shown("床床床床", 3), "床床床…");
-        // An escape is shown whole or not at all.
+        // An escape sequence is shown completely or not at all.
         assert_eq!(shown("ab\u{1b}", 7), "ab…");
         assert_eq!(shown("ab\u{1b}", 8), "ab\\u{1b}");
 

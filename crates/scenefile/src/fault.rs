@@ -4,7 +4,7 @@ use crate::limits;
 use crate::place::{find, steps};
 use std::fmt;
 
-/// A value that cannot be used: its field, the value, and what is allowed there.
+/// A value that cannot be used, with its field and a description of the allowed values.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Fault {
     /// Path of the field, such as `blockers[0].fill`.
@@ -17,7 +17,8 @@ pub struct Fault {
     pub memory: bool,
 }
 
-/// Returns a fault of a file: the place in it, the text found, and what is allowed.
+/// Returns a fault of a file, with its position, the text at this position, and what is allowed
+/// there.
 #[must_use]
 pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
     Fault {
@@ -46,17 +47,18 @@ impl fmt::Display for Fault {
 /// The reason why a scene file cannot be resolved to a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The text is not a scene file; the message gives line, column and what is allowed there.
+    /// The text is not a scene file; the message gives the line, the column and what is allowed
+    /// there.
     #[error("line {line}, column {column}: {message}")]
     Syntax {
         /// Line, from 1.
         line: usize,
-        /// Column in characters, from 1.
+        /// Column of the fault in characters, counted from 1.
         column: usize,
-        /// What is wrong and what is allowed.
+        /// A description of the fault, and of what is allowed instead.
         message: String,
     },
-    /// An override names no field, or has a value of the wrong kind.
+    /// An override names a field that does not exist, or has a value of the wrong kind.
     #[error("{path}: {message}")]
     Override {
         /// The path of the field, as the user wrote it.
@@ -64,15 +66,16 @@ pub enum SceneError {
         /// What is wrong.
         message: String,
     },
-    /// All values outside their range; the first ten are shown, with the total number.
+    /// All values outside their allowed range; a message shows the first ten of them, and their
+    /// total number.
     #[error("{}", list(.0))]
     Values(Vec<Fault>),
 }
 
 impl SceneError {
-    /// Returns the error in words, one line for each fault with its place. The place is a line and
-    /// column of the scene file. For a field that was set by an argument, it is this argument,
-    /// such as `--set run.photons=3`.
+    /// Returns the error in words, with one line for each fault and its position. The position of
+    /// a fault is a line and a column of the scene file. If an argument such as `--set
+    /// run.photons=3` has set the field, the position is this argument.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {
@@ -98,7 +101,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// Returns the first faults in words, and the number of further faults.
+/// Returns descriptions of the first faults, and the number of further faults.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

@@ -1,4 +1,4 @@
-//! Looks up the description and an example of each field of a scene file in the schema.
+//! Finds the description and an example of each field of a scene file in the schema.
 
 use crate::place::steps;
 use crate::schema::{element, referred, schema};
@@ -20,7 +20,8 @@ fn field(path: &str) -> [&'static str; 2] {
     }
 }
 
-/// Returns the node that these steps lead to, through any variants on the way.
+/// Returns the node of the schema to which the steps of a path lead, including steps through
+/// variants.
 fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     let [step, rest @ ..] = steps else {
         return Some(node);
@@ -40,7 +41,8 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     })
 }
 
-/// Returns the unit of the number at a path such as `blockers.0.pitch`; empty if none is stated.
+/// Returns the unit of the number at a path such as `blockers.0.pitch`; empty if the schema
+/// states no unit.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
     match field(path)[0] {
@@ -52,7 +54,7 @@ pub fn unit(path: &str) -> &'static str {
     }
 }
 
-/// Returns the description of how the field at a path may be written.
+/// Returns a description of the values that the field at a path accepts.
 pub(crate) fn wanted(path: &str) -> String {
     let [what, example] = field(path);
     format!("{what}, such as {example}")
@@ -102,7 +104,7 @@ mod tests {
             .collect()
     }
 
-    /// The paths of all fields, whether written or not.
+    /// Collects the paths of all fields below a node, whether or not the scene states them.
     fn fields(node: &Value, path: &str, found: &mut Vec<String>) {
         if !path.is_empty() {
             found.push(path.to_owned());
@@ -126,7 +128,7 @@ mod tests {
         }
     }
 
-    /// Checks that each field written in a scene accepts its example instead, and that the error
+    /// Checks that each field written in a scene accepts the field's example, and that the error
     /// for an impossible value names the field.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
@@ -137,7 +139,8 @@ mod tests {
             fields(&file, "", &mut paths);
             for path in paths {
                 let (around, _) = path.rsplit_once(['.', '[']).unwrap_or_default();
-                // A field that is not written is located at the enclosing field, if at all.
+                // If a field is not written in the text, `find` returns the position of the
+                // enclosing field or none.
                 let written = find(&text, &path);
                 let Some(place) = written.filter(|_| written != find(&text, around)) else {
                     continue;

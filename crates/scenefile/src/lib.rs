@@ -1,10 +1,10 @@
-//! Scene files as written: read from RON or JSON, described by a schema, and checked field by
-//! field.
+//! Reads and checks scene files as they are written: in RON or JSON, described by a schema, and
+//! checked field by field.
 //!
-//! The description, notation and range of each field are stated once, on the types of
-//! [`SceneFile`]. The schema, the hints of messages and the check of all numbers are derived from
-//! them. Whether values are consistent is checked by `etendue-scene`, which resolves a file to a
-//! scene.
+//! The types of [`SceneFile`] state the description, the notation and the range of each field,
+//! each of them once. The schema, the hints in messages and the checks of all numbers are derived
+//! from these types. The crate `etendue-scene`, which resolves a file to a scene, checks whether
+//! the values are consistent with each other.
 
 mod display;
 mod fault;

@@ -1,66 +1,72 @@
-//! The limits on the size of a scene file and on what messages show of it.
+//! Defines the limits on the size of a scene file, and on the text that messages show from it.
 //!
-//! Work is bounded before it begins: anything beyond a limit is not processed.
+//! Limits are checked before work begins, so anything beyond a limit is not processed.
 
-/// Largest number of bytes of a scene file, which is read into memory as a whole. The longest list
-/// of shapes takes about half of this.
+/// Maximum number of bytes of a scene file, which is read into memory as a whole. The longest
+/// allowed list of shapes takes about half of this number of bytes.
 pub const FILE_BYTES: u64 = 16 << 20;
 
-/// Largest number of bytes of a mesh or a picture, which is read into memory as a whole.
+/// Maximum number of bytes of a mesh or a picture, which is read into memory as a whole.
 pub const INPUT_BYTES: u64 = 1 << 30;
 
-/// Largest number of layers of blockers. Each name is searched among all layers.
+/// Maximum number of layers of blockers. This number is limited because each name is searched for
+/// among all layers.
 pub const LAYERS: usize = 1_000;
 
-/// Largest number of surfaces. Each leg of the path tests all surfaces.
+/// Maximum number of surfaces. This number is limited because each leg of the path tests all
+/// surfaces.
 pub const SURFACES: usize = 1_000;
 
-/// Largest number of planes, each of which has its own results folder.
+/// Maximum number of virtual planes, each of which has its own results folder.
 pub const PLANES: usize = 1_024;
 
-/// Largest number of surfaces that the path visits in turn. Each visit adds a leg.
+/// Maximum number of surfaces that the path visits, one after the other. This number is limited
+/// because each visit adds a leg to the path.
 pub const VISITS: usize = 64;
 
-/// Largest number of lobes of an environment. Each lobe is evaluated for each direction of light.
+/// Maximum number of lobes of an environment. This number is limited because each lobe is
+/// evaluated for each direction of light.
 pub const LOBES: usize = 10_000;
 
-/// Largest number of shapes of a layer of blockers, and of all layers together. Predictions for
-/// more visible shapes take many minutes.
+/// Maximum number of shapes of one layer of blockers, and of all layers together. If more shapes
+/// are visible, predictions take many minutes.
 pub const SHAPES: usize = 100_000;
 
-/// Largest product of the numbers of shapes of the light and of several layers, all of whose
-/// combinations a prediction may have to evaluate.
+/// Maximum of the product of the numbers of shapes of the light and of several layers; a
+/// prediction may have to evaluate all combinations of these shapes.
 pub const PRODUCTS: f64 = 1e6;
 
-/// Largest number of cells along a side, or of rings, of a generated mesh.
+/// Maximum number of cells along a side, or of rings, of a generated mesh.
 pub const CELLS: u32 = 2048;
 
-/// Largest number of triangles of all generated meshes together: slightly more than the finest
-/// generated mesh has. Meshes read from files do not count. Each triangle takes 72 bytes, and
-/// about as much again while the hierarchy over the triangles is built.
+/// Maximum number of triangles of all generated meshes together; it slightly exceeds the number
+/// of triangles of the finest generated mesh. Meshes that are read from files do not count
+/// towards this number. Each triangle takes 72 bytes, and about 72 more bytes while the hierarchy
+/// over the triangles is built.
 pub const MADE_TRIANGLES: u64 = 20_000_000;
 
-/// The largest number of a scene, and the inverse of the smallest size. Products of six such
-/// numbers, which occur in a power spectrum, stay far within the range of f64.
+/// The largest number in a scene file, and the reciprocal of the smallest size. Products of six
+/// numbers of this size, which occur in a power spectrum, stay far within the range of f64.
 pub const MAX_NUMBER: f64 = 1e9;
 
-/// Largest number of characters of the name of a scene, a plane, blockers or a surface, which may
-/// name a folder or appear in a picture.
+/// Maximum number of characters of the name of a scene, a plane, blockers or a surface; the name
+/// may become a folder name or appear in a picture.
 pub const NAME: usize = 64;
 
-/// Largest number of fields set on the command line. Each field is searched for in the whole
-/// scene.
+/// Maximum number of fields that arguments of the command set. This number is limited because
+/// each field is searched for in the entire scene.
 pub const OVERRIDES: usize = 100;
 
-/// Largest nesting depth of brackets in a value set on the command line; scenes have at most ten
-/// levels.
+/// Maximum nesting depth of brackets in a value that the command line sets; scenes have at most
+/// ten levels.
 pub const NESTING: usize = 32;
 
-/// Largest number of faults that a message lists; further faults are only counted.
+/// Maximum number of faults that a message lists; further faults are only counted.
 pub const FAULTS: usize = 10;
 
-/// Largest number of characters of a value, and of the path of a field, that a message shows.
+/// Maximum number of characters that a message shows of a value, and of the path of a field.
 pub const VALUE: usize = 200;
 
-/// Largest number of characters of what is allowed, or of a syntax error, that a message shows.
+/// Maximum number of characters that a message shows of a description of allowed values, or of a
+/// syntax error.
 pub const ALLOWED: usize = 1_000;

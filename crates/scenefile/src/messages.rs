@@ -18,13 +18,13 @@ pub(crate) fn path_of(path: &Path) -> String {
     written
 }
 
-/// Returns the reason why a value does not fit its field, or a field within it.
+/// Returns the reason why a value does not fit its field or a nested field.
 pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
     let field = path_of(error.path());
     let told = error.inner().to_string();
-    // The line and column are reported separately, so they are removed here.
+    // The line and the column are reported separately, so they are removed from this message.
     let told = told.split(" at line ").next().unwrap_or_default();
-    // If a name is unknown, the names in the message are that name and the known names.
+    // If a name is unknown, the message contains this name, followed by the known names.
     let mut names = told.split('`').skip(1).step_by(2);
     let meant = match names.next() {
         Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),

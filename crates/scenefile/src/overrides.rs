@@ -13,7 +13,8 @@ impl SceneFile {
     /// Names of variants (`Rectangle`, `JitteredSquares`) may be left out of the path.
     ///
     /// # Errors
-    /// [`SceneError::Override`] when the path names no field or the value does not fit it.
+    /// [`SceneError::Override`] when the path names no field, or when the value does not fit the
+    /// field.
     pub fn with(self, path: &str, value: &str) -> Result<Self, SceneError> {
         let fault = |message: String| SceneError::Override {
             path: shown(format_args!("{path}={value}"), limits::VALUE),
@@ -24,10 +25,11 @@ impl SceneFile {
         serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
 
-    /// Returns the scene file with several fields set in turn, each as by [`Self::with`].
+    /// Returns the scene file with several fields set one after the other, each as by
+    /// [`Self::with`].
     ///
     /// # Errors
-    /// [`SceneError::Override`] for the first field that cannot be set, or for more than
+    /// [`SceneError::Override`] for the first field that cannot be set, or if there are more than
     /// [`limits::OVERRIDES`] fields.
     pub fn with_all(self, fields: &[(String, String)]) -> Result<Self, SceneError> {
         if fields.len() > limits::OVERRIDES {
@@ -39,8 +41,8 @@ impl SceneFile {
         if let Some(file) = self.with_all_at_once(fields) {
             return Ok(file);
         }
-        // Fields are set in turn, so an error names the faulty setting, and later settings can
-        // change fields that an earlier setting has created.
+        // Fields are set one after the other, so an error names the faulty setting, and a later
+        // setting can change a field that an earlier setting has created.
         let mut fields = fields.iter();
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
@@ -88,7 +90,8 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Returns a message that there is no field `name` below a node, and which fields there are.
+/// Returns the message that a node has no field `name`; the message lists the fields that the
+/// node has.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
         Value::Array(items) => match items.len() {
@@ -116,9 +119,9 @@ fn refusal(node: &Value, name: &str) -> String {
     format!("no field `{name}` here{meant}; allowed: {allowed}{another}")
 }
 
-/// Returns a value in the notation of a scene file or of JSON; whole numbers such as 1e6 are
-/// integers, and anything else is text. Returns `None` if the brackets of the value are nested
-/// deeper than `deepest`.
+/// Parses a value in the notation of a scene file or of JSON. Whole numbers such as 1e6 become
+/// integers, and a value in neither notation becomes text. Returns `None` if the brackets of the
+/// value are nested deeper than `deepest`.
 fn parsed(text: &str, deepest: usize) -> Option<Value> {
     let text = text.trim();
     if let Ok(value) = serde_json::from_str(text) {
@@ -140,7 +143,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
     })
 }
 
-/// Returns the content of parentheses: named fields, several values, or one value.
+/// Parses the content of parentheses: named fields, several values, or one value.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
     let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();
@@ -159,7 +162,7 @@ fn fields(text: &str, deepest: usize) -> Option<Value> {
     }
 }
 
-/// Returns the parts of a list, separated at the commas outside of parentheses.
+/// Returns the elements of a list, separated at the commas that are outside of parentheses.
 fn separated(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;
     text.split(|c: char| {

@@ -1,4 +1,4 @@
-//! Reads scene files. If a file cannot be read, the error names the faulty field.
+//! Reads scene files; if a file cannot be read, the error names the faulty field.
 
 use crate::display::shown;
 use crate::hints::{example, has_fields, wanted};
@@ -11,10 +11,10 @@ use serde::Deserialize;
 use serde_path_to_error::Track;
 
 impl SceneFile {
-    /// Reads a scene file, in RON or, if it begins with a brace, in JSON.
+    /// Reads a scene file: in JSON if the file begins with a brace, otherwise in RON.
     ///
     /// # Errors
-    /// [`SceneError::Syntax`] with line, column and what is allowed there.
+    /// [`SceneError::Syntax`] with the line, the column and what is allowed there.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -62,13 +62,13 @@ fn json(text: &str) -> Result<SceneFile, SceneError> {
     })
 }
 
-/// Returns the path of a field below a path.
+/// Returns the path of the field `field` within the field at `path`.
 fn below(path: &str, field: &str) -> String {
     let dot = if path.is_empty() { "" } else { "." };
     format!("{path}{dot}{}", shown(field, limits::NAME))
 }
 
-/// Returns the error, in words, of a file with a fault at a path.
+/// Describes the error of a file that has a fault in the field at a path.
 fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     let [start, end] = [error.span.start, error.span.end].map(|at| [at.line, at.col]);
     let value = find(text, path);
@@ -94,7 +94,8 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     }
 }
 
-/// Returns the error in the names of variants and fields, and whether it concerns the whole value.
+/// Returns the error in terms of the names of variants and fields, and whether the error concerns
+/// the entire value.
 fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     Some(match code {
         Error::NoSuchEnumVariant {
@@ -140,7 +141,8 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     })
 }
 
-/// Checks whether an error inside a value concerns the whole value: a number, a name or a vector.
+/// Checks whether an error that was found inside a value concerns the entire value, which is a
+/// number, a name or a vector.
 fn is_shape(code: &Error, path: &str) -> bool {
     let is_cut = matches!(
         code,
@@ -152,7 +154,7 @@ fn is_shape(code: &Error, path: &str) -> bool {
     !is_cut && !has_fields(path)
 }
 
-/// Returns the text found at a place between fields, and what is allowed there.
+/// Returns the text found at a position between fields, and the text that is allowed there.
 fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let rest = text.lines().nth(line - 1).unwrap_or_default();
     let at = rest.char_indices().nth(column - 1);
@@ -184,11 +186,11 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
 
 /// Returns the beginning of a value, on one line.
 fn excerpt(value: &str) -> String {
-    // Only the beginning is used, because a word may be as long as the whole file.
+    // Only the beginning of the value is used, because a word may be as long as the entire file.
     let start: String = value.chars().take(4 * EXCERPT).collect();
     let words: Vec<&str> = start.split_whitespace().collect();
     shown(words.join(" "), EXCERPT)
 }
 
-/// The largest number of characters shown of a value.
+/// The maximum number of characters of a value that a message shows.
 const EXCERPT: usize = 60;

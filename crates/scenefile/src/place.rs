@@ -1,21 +1,21 @@
 //! Locates a field in the text of a scene file.
 //!
-//! The text is scanned once, token by token, and may be malformed: anything unrecognised counts as
-//! a word.
+//! The text is scanned once, token by token, and may be malformed: any unrecognised text counts
+//! as a word.
 
-/// A value in the text.
+/// A value in the text of a scene file, with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ScenePlace<'a> {
     /// Line, from 1.
     pub(crate) line: usize,
-    /// Column in characters, from 1.
+    /// Column of the value in characters, counted from 1.
     pub(crate) column: usize,
-    /// The value as written.
+    /// The value as it is written in the text.
     pub(crate) value: &'a str,
 }
 
-/// Returns the names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far
-/// as it is valid, without names of variants.
+/// Returns the names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, up to
+/// the first invalid name, and without names of variants.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let in_path = |c: char| c.is_alphanumeric() || "_.[]".contains(c);
     let end = path.find(|c| !in_path(c)).unwrap_or(path.len());
@@ -24,7 +24,8 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
     steps.filter(is_step).collect()
 }
 
-/// Returns the value at a path, or the innermost enclosing value that is written.
+/// Returns the value at a path or, if it is not written, the innermost enclosing value that is
+/// written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
     let mut found: Option<InnermostValue> = None;
@@ -50,7 +51,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                     .next_if(|next| next.kind == ValueKind::Colon)
                     .is_some() =>
             {
-                // In JSON names are quoted.
+                // In JSON, names are quoted.
                 level.key = Some(text[token.start..token.end].trim_matches('"'));
                 continue;
             }
@@ -81,8 +82,8 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
             found.end = token.end;
         }
     }
-    // If only the whole file encloses a field that is not written, no place is returned, because
-    // it would not help the user.
+    // If a field is not written and only the entire file encloses it, no position is returned,
+    // because it would not help the user.
     let found = found.filter(|found| found.steps > 0 || steps.is_empty())?;
     let before = &text[..found.start];
     Some(ScenePlace {
@@ -92,25 +93,27 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     })
 }
 
-/// The innermost value found so far.
+/// The innermost enclosing value found so far.
 struct InnermostValue {
-    /// The number of steps of the path that lead to it.
+    /// The number of steps of the path that lead to this value.
     steps: usize,
     start: usize,
     end: usize,
     depth: usize,
 }
 
-/// The text between two brackets.
+/// The text between an opening and a closing bracket.
 struct OpenBracket<'a> {
-    /// The number of steps of the path that lead to it; `None` if the path leads elsewhere.
+    /// The number of steps of the path that lead to the bracket; `None` if the bracket is not on
+    /// the path.
     at: Option<usize>,
-    /// Whether a name precedes the bracket, as in `Hann(0.5)`. In such brackets, a value without a
-    /// key is not an element of a list.
+    /// Whether a name precedes the bracket, as in `Hann(0.5)`. If a name precedes the bracket, a
+    /// value without a key is not an element of a list.
     named: bool,
     index: usize,
     key: Option<&'a str>,
-    /// The value that began after the last comma: the number of steps that lead to it.
+    /// The value that began after the last comma, as the number of steps of the path that lead to
+    /// it.
     value: Option<Option<usize>>,
 }
 
@@ -125,12 +128,12 @@ impl OpenBracket<'_> {
         }
     }
 
-    /// Returns the number of steps that lead to the next value.
+    /// Returns the number of steps of the path that lead to the next value.
     fn child(&self, steps: &[&str]) -> Option<usize> {
         let at = self.at?;
         let step = steps.get(at);
         match self.key {
-            // In JSON a variant is written as a field.
+            // In JSON, a variant is written as a field.
             Some(key) if key.starts_with(char::is_uppercase) => Some(at),
             Some(key) => (step == Some(&key)).then_some(at + 1),
             None if self.named => (self.index == 0).then_some(at),
@@ -145,7 +148,7 @@ enum ValueKind {
     Close,
     Comma,
     Colon,
-    /// A name, a number or a string.
+    /// A name, a number or a quoted string.
     Word,
 }
 
@@ -200,8 +203,8 @@ fn blank(text: &str) -> usize {
     }
 }
 
-/// Returns the length in bytes of a comment that may be nested, or of all the text where it is not
-/// closed.
+/// Returns the length in bytes of a comment, which may contain comments; if the comment is not
+/// closed, returns the length of the remaining text.
 fn block(text: &str) -> usize {
     let mut depth = 0;
     let bytes = text.as_bytes();

@@ -1,13 +1,13 @@
-//! The JSON schema of scene files, derived from their types.
+//! Derives the JSON schema of scene files from their types.
 
 use crate::SceneFile;
 use crate::file::positive;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-/// Returns the JSON schema of a scene as JSON, in which a variant is an object of one field.
-/// `title` describes a field, `x-ron` is an example in the notation of a scene file, and `x-range`
-/// gives the numbers it may hold.
+/// Returns the JSON schema of a scene file in JSON, in which a variant is an object with one
+/// field. `title` describes a field, `x-ron` is an example in the notation of a scene file, and
+/// `x-range` gives the allowed numbers of the field.
 #[must_use]
 pub fn schema() -> &'static Value {
     static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
@@ -41,14 +41,14 @@ fn complete(node: &mut Value, types: &Value) {
     }
 }
 
-/// Returns the name of the type of a node, which may be optional.
+/// Returns the name of the type of a node; the type may be optional.
 fn name_of_type(node: &Value) -> Option<&str> {
     let types = [node, node.get("anyOf").map_or(node, |any| &any[0])];
     let mut references = types.iter().filter_map(|node| node.get("$ref")?.as_str());
     references.next()?.rsplit('/').next()
 }
 
-/// Checks whether a node is a number, which may be optional.
+/// Checks whether the type of a node is a number; the type may be optional.
 fn is_number(node: &Value) -> bool {
     let is = |name: &Value| name == "number" || name == "integer";
     let names = node.get("type");
@@ -60,7 +60,7 @@ pub(crate) fn referred(node: &'static Value) -> &'static Value {
     name_of_type(node).map_or(node, |name| &schema()["$defs"][name])
 }
 
-/// Returns the node of a variant's content, within the node of its type.
+/// Returns the node of a variant's content; `node` is the node of the variant's type.
 pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
     let variants = referred(node)["oneOf"].as_array();
     let mut contents = variants
@@ -72,7 +72,7 @@ pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
         .unwrap_or(&Value::Null)
 }
 
-/// Returns the node of the element at a place of a list, within the node of the list.
+/// Returns the node of the element with the index `place`; `node` is the node of the list.
 pub(crate) fn element(node: &'static Value, place: usize) -> &'static Value {
     let node = referred(node);
     match node.get("prefixItems") {
@@ -86,7 +86,7 @@ mod tests {
     use super::schema;
     use serde_json::{Map, Value};
 
-    /// The fields below a node that have no description.
+    /// Collects the fields below a node that have no description.
     fn untold(node: &Value, found: &mut Vec<String>) {
         for (name, field) in node["properties"].as_object().into_iter().flatten() {
             let is_told = field["title"].is_string() && field["x-ron"].is_string();

@@ -1,10 +1,10 @@
-//! Suggests the name that was probably meant by an unknown one.
+//! Suggests the known name that was probably meant by an unknown name.
 
 use crate::limits;
 use strsim::osa_distance;
 
-/// Returns ` (did you mean …?)` with the known name most similar to this one, or an empty text if
-/// no known name is similar.
+/// Returns ` (did you mean …?)` with the known name that is most similar to `name`, or an empty
+/// text if no known name is similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(name, known) {
@@ -13,7 +13,7 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Returns the known name most similar to this one, or `None` if no known name is similar.
+/// Returns the known name that is most similar to `name`, or `None` if no known name is similar.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {
@@ -22,11 +22,11 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         start.flat_map(char::to_lowercase).collect()
     };
     let name = lower(name);
-    // One letter in three may be wrong, and in short names one letter.
+    // One letter in three may differ, and at least one letter.
     let most = (name.chars().count() / 3).max(1);
     let known = known.into_iter();
     let known = known.map(|other| (osa_distance(&name, &lower(other)), other));
-    // A known name is not suggested if all its characters would have to change.
+    // A known name is not suggested if all of its characters would have to change.
     let near = known.filter(|(distance, other)| {
         *distance <= most && *distance < other.chars().take(limits::NAME).count()
     });

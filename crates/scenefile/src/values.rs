@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt;
 
 impl SceneFile {
-    /// Returns a fault for each number outside the range that the schema gives for it.
+    /// Returns a fault for each number that is outside its field's range in the schema.
     #[must_use]
     #[expect(
         clippy::missing_panics_doc,
@@ -32,13 +32,13 @@ impl SceneFile {
     }
 }
 
-/// Traverses a scene file as if serialising it, together with its schema.
+/// A traversal of a scene file together with its schema, in the form of a serialiser.
 struct ValueWalk<'a> {
     faults: &'a mut Vec<Fault>,
     path: &'a mut String,
-    /// The schema node of the value at the path.
+    /// The schema node of the value that is being visited.
     node: &'static Value,
-    /// The index of the next element of a list.
+    /// The index of the next element of the list that is being visited.
     place: usize,
 }
 
@@ -87,14 +87,14 @@ impl ValueWalk<'_> {
 type Name = &'static str;
 type Walked = Result<(), fmt::Error>;
 
-/// Types that hold no number.
+/// Implements visits of types that contain no number.
 macro_rules! pass {
     ($($name:ident($($of:ty),*);)*) => {
         $(fn $name(self, $(_: $of),*) -> Walked { Ok(()) })*
     };
 }
 
-/// Types that hold other values.
+/// Implements visits of types that contain other values.
 macro_rules! enter {
     ($($name:ident($($of:ty),*);)*) => {
         $(fn $name(self, $(_: $of),*) -> Result<Self, fmt::Error> { Ok(self) })*

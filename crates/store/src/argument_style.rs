@@ -42,7 +42,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the message for a fault in the argument that sets fields of a scene.
+    /// Returns the message for a fault in an argument that sets fields of a scene.
     #[must_use]
     pub fn in_set(self, fault: impl Display) -> String {
         match self {

@@ -39,7 +39,7 @@ pub struct SliceArrays {
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
     /// Standard deviation of |measured| alone, which differs from `sigma` if the prediction also
-    /// has noise; `None` if it equals `sigma`.
+    /// has noise; `None` if both are equal.
     pub measured_sigma: Option<Array3<f64>>,
     /// Frequencies ρ, cycles per metre.
     pub rho: Array1<f64>,
@@ -103,7 +103,8 @@ pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     )
 }
 
-/// Returns (measured − predicted) / sigma, or NaN if there is no error because no photon arrived.
+/// Returns (measured − predicted) / sigma, or NaN where there is no error estimate because no
+/// photon arrived.
 pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });

@@ -1,11 +1,11 @@
 //! Stores batches of a run as they are measured, so that a run that ends early can be continued.
 //!
-//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. The
-//! file is moved there when it is complete, and its name holds the hash of its content. A batch
-//! has the same bytes from every process, except for rounding errors on another kind of processor.
-//! Processes can therefore share the work without a lock, and a process that dies does not delay
-//! the others. The sum of the first parts of an unfinished batch is also stored as a file, which a
-//! later sum replaces.
+//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. A
+//! file is moved into this folder when it is complete, and its name holds the hash of its
+//! content. A batch has the same bytes from every process, except for rounding errors on another
+//! kind of processor. Processes can therefore share the work without a lock, and a process that
+//! dies does not delay the others. The sum of the first parts of an unfinished batch is also
+//! stored as a file, which a later sum replaces.
 
 use crate::Failure;
 use crate::Method;
@@ -105,7 +105,7 @@ impl CheckpointStore {
         self.put(batch, None)
     }
 
-    /// Stores the first parts of a batch, unless more of them are stored.
+    /// Stores the first parts of a batch, unless more parts of this batch are stored.
     pub fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
         let is_new = match self.progress(batch.index) {
             None => true,
@@ -237,7 +237,7 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
 /// The progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchProgress {
-    /// The sum contains this number of the batch's first parts.
+    /// The number of the batch's first parts that the stored sum contains.
     Parts(u32),
     /// The batch is complete.
     Done,

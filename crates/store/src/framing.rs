@@ -10,7 +10,7 @@ pub fn joined(words: &impl Serialize, bytes: &[u8]) -> Vec<u8> {
     [&length, words.as_slice(), bytes].concat()
 }
 
-/// Returns the words and bytes of [`joined`].
+/// Splits the bytes of [`joined`] into words and bytes.
 ///
 /// # Errors
 /// When the bytes are not such a message.

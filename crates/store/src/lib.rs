@@ -1,8 +1,8 @@
 //! Result folders: ownership of files, replacing old files by new ones, and their content.
 //!
-//! [`Results`] claims a folder, writes files and an index of their hashes, and puts them in place
-//! together. The other modules define the content of files: arrays, batches, predictions, and
-//! indices that a later stage reads.
+//! [`Results`] claims a folder, writes files and an index of their hashes, and puts all files in
+//! place together. The other modules define the content of files: arrays, batches, predictions,
+//! and indices that a later stage reads.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -17,8 +17,8 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Makes and locks the file `path`, or takes over the file of a dead process; `busy` states,
-    /// for the message, what a living process is writing.
+    /// Makes and locks the file `path`, or takes over the file of a dead process; `busy` is the
+    /// path that messages name while a living process writes.
     pub(crate) fn take(path: &Path, busy: &Path) -> Result<Self, Failure> {
         let failure = |error: io::Error| Failure::write(busy, error);
         loop {

@@ -6,9 +6,9 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the memory that this process may still allocate without swapping, in bytes. This memory
-/// is limited by the machine, by the control groups of the process, and by its own limits (`ulimit
-/// -v`, `ulimit -d`).
+/// Returns the memory that this process may still allocate without swapping, in bytes. The memory
+/// is limited by the machine, by the control groups of the process, and by the limits of the
+/// process (`ulimit -v`, `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [
@@ -21,8 +21,8 @@ pub fn available_memory() -> u64 {
     all.min().unwrap_or(u64::MAX)
 }
 
-/// Resolves a scene file for this machine. Its meshes are in `folder`, and messages name the file
-/// as `shown`.
+/// Resolves a scene file for this machine. The meshes of the scene are in `folder`, and messages
+/// name the scene file as `shown`.
 pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Result<Scene, Failure> {
     resolve(name, file, folder, available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
@@ -70,7 +70,7 @@ fn folders(line: &str) -> Vec<PathBuf> {
 }
 
 /// Returns the limit of a control group minus its usage. Memory of cached files counts as free,
-/// because it can be evicted.
+/// because the system can evict it.
 fn left_in(folder: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();

@@ -187,7 +187,7 @@ impl NpzFile {
         }
     }
 
-    /// Returns the array `name`, in C order. The array must have this shape and hold finite
+    /// Returns the array `name`, in C order. The array must have the given shape and hold finite
     /// numbers.
     pub fn array<A: Number, I: IntoDimension>(
         &mut self,

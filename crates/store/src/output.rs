@@ -24,14 +24,14 @@ pub struct OutputFile {
 
 impl OutputFile {
     /// Checks that the file can be written, before any work is done. An existing file at the path
-    /// is kept, unless `force` is set and the file is regular. The path must not be among `inputs`
-    /// in any case.
+    /// is kept, unless `force` is set and the file is regular. The path must not be among
+    /// `inputs`, even with `force`.
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         Self::of_kind(path, force, inputs, None)
     }
 
-    /// Checks the same as [`Self::claim`], for a file that bears a mark. A file that this program
-    /// wrote and that has not changed since is replaced without `force`.
+    /// Performs the same checks as [`Self::claim`], for a file that bears a mark. A file that
+    /// this program wrote and that has not changed since is replaced without `force`.
     pub fn claim_sealed(
         path: &Path,
         mut force: bool,

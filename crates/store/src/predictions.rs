@@ -89,7 +89,7 @@ fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,
 ) -> Result<(PredictedPlane, Vec<u8>), Failure> {
-    // Every field is listed by name, so that a new one cannot be forgotten.
+    // Every field is listed by name, so that a new field cannot be forgotten.
     let Prediction {
         class,
         steps,
@@ -171,7 +171,8 @@ pub fn read(
         method: predicted_for,
         planes,
     } = &stored.index.content;
-    // Otherwise a reference measurement would be compared with a measurement by the same method.
+    // Without this check, a reference measurement would be compared with a measurement by the
+    // same method.
     if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
         let what = format!("predicted for {predicted_for:?}; the measurement is of {method:?}");
         return Err(stored.fault(what));

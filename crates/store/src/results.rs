@@ -1,9 +1,10 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
-//! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of an
-//! earlier result is removed if the index of that result lists it and it still has the listed hash.
-//! All other files in the folder belong to somebody else and are kept (docs/files.md).
+//! New files wait in a subfolder until all new files are complete, so an earlier result stays in
+//! place until then. An index, such as `summary.json`, lists the files with their hashes and is
+//! moved last. A file of an earlier result is removed if the index of that result lists the file,
+//! and the file still has the listed hash. All other files in the folder belong to somebody else
+//! and are kept (docs/files.md).
 
 mod claim;
 mod commit;
@@ -50,7 +51,7 @@ const LOCK: &str = ".etendue.lock";
 /// The message if nothing can be written below a folder.
 pub const LINKED: &str = "a link or a file is in the place of a folder";
 
-/// How long another process may hold a folder before a message is given.
+/// The time for which another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// The files that a command will write, and the files that it reads.
@@ -110,7 +111,7 @@ impl Finished {
 
 impl Results {
     /// Claims a folder, before any work is done. Creates and locks the folder, and removes the
-    /// remains of a dead process. Refuses if an input, or a file that etendue did not write, is in
+    /// remains of a dead process. Fails if an input, or a file that etendue did not write, is in
     /// the place of a file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
@@ -142,8 +143,8 @@ impl Results {
         Ok(results)
     }
 
-    /// Claims a folder `name` inside `out`. The user chooses `out`, and below it nothing is written
-    /// through a link.
+    /// Claims a folder `name` inside `out`. The user chooses `out`; below `out`, nothing is
+    /// written through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {
@@ -152,7 +153,8 @@ impl Results {
         Self::claim(&folder, plan)
     }
 
-    /// Claims a folder, but waits while another process writes there, and warns if that takes long.
+    /// Claims a folder, but waits while another process writes there, and warns if the wait is
+    /// long.
     pub fn claim_in_turn(folder: &Path, plan: Plan, warn: &dyn Fn(&str)) -> Result<Self, Failure> {
         let mut begun = Some(Instant::now());
         loop {
@@ -194,8 +196,8 @@ impl Results {
         Ok(())
     }
 
-    /// Writes a JSON file whose bytes may differ from run to run. The index does not list it; it
-    /// ends with its own hash.
+    /// Writes a JSON file whose bytes may differ from run to run. The index does not list this
+    /// file, which ends with its own hash.
     pub fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
         let bytes = sealed::sealed(json);
         self.put(name, &mut |file| file.write_all(&bytes)).map(drop)
@@ -216,8 +218,8 @@ impl Results {
         }
         let path = self.staged(name);
         let mut write = || {
-            // If this process is being interrupted, the folder is removed and must not be created
-            // again.
+            // If this process is being interrupted, the folder has been removed and must not be
+            // created again.
             let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
@@ -336,7 +338,7 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
-/// Returns the hash of a file in the index of a complete result.
+/// Returns the hash of a file, as listed in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }

@@ -13,7 +13,7 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
-/// The text before and after the 64 digits.
+/// The text before and after the 64 digits of the hash.
 const BEFORE: &str = ",\n  \"index_hash\": \"";
 const AFTER: &str = "\"\n}\n";
 /// The text with which a JSON object must end before it is sealed.

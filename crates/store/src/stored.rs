@@ -222,7 +222,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// Returns the summary of a run of exactly this scene, by the same method and version.
+/// Returns the summary of a run, if the run had exactly this scene, method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;
@@ -232,9 +232,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails if a folder holds a result of another scene, because a result must not replace that of
-/// another scene with the same name. Settings of the measurement are ignored. `arguments` is the
-/// style in which the message names `force`.
+/// Fails if a folder holds a result of another scene, because a result must not replace the
+/// result of another scene with the same name. Settings of the measurement are ignored.
+/// `arguments` is the style in which the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

@@ -37,14 +37,14 @@ pub fn ended(release: impl FnOnce()) {
     unfinished.clear();
 }
 
-/// Does short work; a first signal to stop takes effect only afterwards.
+/// Does short work; a first signal to stop takes effect only after this work.
 pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     let _held = unfinished();
     work()
 }
 
-/// Removes the unfinished files, and calls `last` with the message for the user. No other thread
-/// can make or release files afterwards, so the process must end in `last`.
+/// Removes the unfinished files, and calls `last` with the message for the user. After this call,
+/// no other thread can make or release files, so the process must end in `last`.
 pub fn abandon(last: impl FnOnce(&'static str)) {
     let unfinished = unfinished();
     let kept = *KEPT.lock().unwrap_or_else(PoisonError::into_inner);

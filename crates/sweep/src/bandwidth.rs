@@ -15,17 +15,17 @@ pub struct BandwidthRow {
     pub point: Vec<f64>,
     /// The plane's name.
     pub plane: String,
-    /// κ \[1/m\], θ₀ and θ₁ \[°\], d and d′ \[m\], the bandwidth of the lobe \[cycles per radian\], B of
-    /// Eq. 20 and the same as printed, B′ of Eq. 21 and the same as printed [cycles per unit slope].
-    /// With a measurement also the exact bandwidth, the measured one and its standard error. `None`
-    /// stands for a number that the plane does not have.
+    /// κ \[1/m\], θ₀ and θ₁ \[°\], d and d′ \[m\], and the bandwidth of the lobe \[cycles per radian\]. In cycles per
+    /// unit slope follow B of Eq. 20, corrected and as printed, and B′ of Eq. 21, corrected and as printed. If the
+    /// scene is measured, the exact bandwidth, the measured bandwidth and its standard error follow. `None` stands
+    /// for a number that the plane does not have.
     pub numbers: Vec<Option<f64>>,
-    /// What the reader should know before using the numbers.
+    /// Warnings to read before using the numbers.
     pub warnings: Vec<String>,
 }
 
 /// Returns a row for each plane to which the criteria of Durand et al. 2005, Eqs. 20 and 21, apply.
-/// With `measuring`, the scene is measured by this method.
+/// If `measuring` is a method, the scene is measured by this method.
 pub fn bandwidths(
     scene: &Scene,
     point: &SweepPoint,

@@ -12,8 +12,8 @@ pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];
 /// The largest useful number of panels in a picture.
 const MAX_PANELS: usize = 24;
 
-/// Draws the pictures of [`NAMES`], unless they would have too many panels. If several fields are
-/// swept, each combination of values of the fields after the first has its own panel.
+/// Draws the pictures of [`NAMES`], unless the pictures would have too many panels. If several
+/// fields are swept, each combination of values of the fields after the first has its own panel.
 #[expect(clippy::too_many_lines, reason = "the steps of one drawing, in order")]
 pub(crate) fn drawn(
     scene: &str,
@@ -74,7 +74,7 @@ pub(crate) fn drawn(
                 Some((at.point[0].1, number))
             };
             let mut numbers: Vec<(f64, TableNumber)> = at.filter_map(of_plane).collect();
-            // The values are sorted, because lists may give them in any order.
+            // The values are sorted, because lists may give the values in any order.
             numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
             panel(plane, others, &found[0].point[0].0, &numbers)
         };
@@ -122,7 +122,7 @@ fn panel(
     }
 }
 
-/// Whether there are at least three values, and they grow by equal factors.
+/// Whether there are at least three values, and the values grow by equal factors.
 fn go_by_factors(values: impl Iterator<Item = f64>) -> bool {
     // The relative rounding error of the values of a range, with a margin.
     const ROUNDING: f64 = 1e-6;

@@ -3,7 +3,7 @@
 use etendue_pipeline::{Progress, Reporter, Work};
 
 /// Reports to the progress of the sweep that work continues, whenever a point has advanced. Notes
-/// and warnings of single points are dropped.
+/// and warnings of single points are not shown.
 pub(crate) struct Unshown<'a>(pub(crate) &'a dyn Progress);
 
 impl Reporter for Unshown<'_> {

@@ -15,9 +15,9 @@ pub struct SweepRequest {
     pub common_seed: bool,
     /// Whether fields vary together, value by value, instead of in all combinations.
     pub together: bool,
-    /// Number of photons of each point, which replaces that of the scene.
+    /// Number of photons of each point, which replaces the number of photons in the scene.
     pub photons: Option<u64>,
-    /// Seed, which replaces that of the scene.
+    /// Seed of the photons, which replaces the seed in the scene.
     pub seed: Option<u64>,
     /// Method of measurement.
     pub method: Method,

@@ -1,4 +1,4 @@
-//! Runs a sweep. Missing points are run first; then the table and the curves are written.
+//! Runs a sweep. The missing points are run first, and then the table and the curves are written.
 
 use crate::pictures;
 use crate::points::SweepPoints;
@@ -30,7 +30,7 @@ pub struct FinishedSweep {
     pub folder: PathBuf,
     /// The table for a terminal: a header, and a row for each plane at each point.
     pub rows: Vec<Vec<String>>,
-    /// Whether there are curves; they are omitted if they would have more than 24 panels.
+    /// Whether there are curves; curves are omitted if they would have more than 24 panels.
     pub has_curves: bool,
     /// The numbers of points that pass, fail, and are undecided.
     pub verdicts: [usize; 3],

@@ -67,7 +67,7 @@ enum Column {
     Numbers(Vec<Option<f64>>),
 }
 
-/// The content of a row.
+/// The data of a row of the table: a number of a plane at a point.
 struct TableRow<'a> {
     at: &'a PointResult,
     plane: &'a Value,

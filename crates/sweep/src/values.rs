@@ -63,8 +63,8 @@ fn is_list(text: &str) -> bool {
     })
 }
 
-/// The forms are `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal factors) and
-/// `PATH=A,B,C`.
+/// The argument has the form `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal
+/// factors) or `PATH=A,B,C`.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
         .split_once('=')

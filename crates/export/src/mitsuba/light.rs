@@ -88,7 +88,8 @@ impl Writer {
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;
     let narrow = image.width[0].min(image.width[1]);
-    // The second derivative of exp(−π a²/w²) is at most 2π/w², that of the grating (2πf)²/2.
+    // The second derivative of exp(−π a²/w²) is at most 2π/w², and the second derivative of the
+    // grating is at most (2πf)²/2.
     let wave = image
         .grating
         .map_or(0.0, |g| 2.0 * PI * PI * g.frequency * g.frequency);

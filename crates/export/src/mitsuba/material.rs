@@ -132,8 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// Returns n and k. A dielectric becomes a metal without absorption, which reflects in the same
-/// way.
+/// Returns the index of refraction n and the index of absorption k. A dielectric becomes a metal
+/// without absorption, which reflects in the same way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,
@@ -143,7 +143,7 @@ fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
 }
 
 /// A lobe times the Fresnel factor of the angle of incidence. Mitsuba has no such plugin:
-/// `tests/peers/etendue_bsdfs.py` adds one, without which the scene does not load.
+/// `tests/peers/etendue_bsdfs.py` adds this plugin, without which the scene does not load.
 fn factored(fresnel: &Fresnel, lobe: String) -> String {
     match index(fresnel) {
         None => lobe,

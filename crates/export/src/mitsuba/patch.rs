@@ -52,7 +52,7 @@ pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     }
 }
 
-/// The centre, and rings of corners around it.
+/// The centre of the patch, and rings of corners around this centre.
 fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     let vertex = |r: f64, turn: f64| {
         let (sin, cos) = libm::sincos(TAU * turn);
@@ -177,7 +177,7 @@ mod tests {
         }
     }
 
-    /// The edge of a hemisphere is vertical; its triangles are as accurate there as elsewhere.
+    /// At the vertical edge of a hemisphere, triangles are as accurate as elsewhere.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

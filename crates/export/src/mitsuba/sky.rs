@@ -1,8 +1,8 @@
 //! Environments as Mitsuba's environment pictures.
 //!
-//! Columns are intervals of longitude in both formats. Rows are intervals of latitude in Étendue's
-//! pictures and samples in Mitsuba's, whose first row is the upper pole and whose last row is the
-//! lower pole.
+//! Columns are intervals of longitude in both formats. Étendue's rows are intervals of latitude.
+//! Mitsuba's rows are samples of latitude, from the upper pole in the first row to the lower pole
+//! in the last row.
 
 use etendue_field::{Environment, EnvironmentMap};
 use glam::DVec3;
@@ -15,7 +15,7 @@ const AROUND: usize = 4096;
 /// Returns the number of pixels per row, and the radiance row by row.
 ///
 /// A pixel map is represented exactly, because the nodes of the new picture include all nodes of
-/// the map. Light against the central ray is set to 0.
+/// the map. The radiance of light that travels against the central ray is set to 0.
 pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     let [width, rows] = match &environment.map {
         EnvironmentMap::Lobes(_) => [AROUND, AROUND / 2 + 1],

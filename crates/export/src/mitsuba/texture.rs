@@ -7,8 +7,8 @@ use super::xml::spectrum;
 use etendue_field::{Grating, Pattern, Picture};
 use std::f64::consts::TAU;
 
-/// Pixels per period of a cosine. The error of linear interpolation is at most (2π/512)²/8 = 2·10⁻⁵
-/// of its amplitude.
+/// Pixels per period of a cosine. The error of linear interpolation is at most (2π/512)²/8 =
+/// 2·10⁻⁵ of the cosine's amplitude.
 const PERIOD: usize = 512;
 
 /// A number that follows a pattern.
@@ -36,8 +36,8 @@ impl VariedTexture<'_> {
 impl Writer {
     /// A parameter of a material.
     ///
-    /// Checkerboards are pictures of four pixels too, because Mitsuba 3.9.1 swaps the colours of
-    /// its own checkerboard if it is used as a number.
+    /// Checkerboards are also pictures of four pixels, because Mitsuba 3.9.1 swaps the colours of
+    /// a checkerboard that is used as a number.
     pub(super) fn varied(&mut self, name: &str, varied: &VariedTexture<'_>) -> String {
         match varied.pattern {
             None => spectrum(name, varied.range[1]),

@@ -39,7 +39,7 @@ impl Xml {
         xml
     }
 
-    /// A comment. XML forbids double hyphens in comments, so spaces separate them.
+    /// A comment. XML forbids double hyphens in comments, so spaces separate the hyphens.
     pub(super) fn comment(&mut self, text: &str) {
         let text = text.replace("--", "- -").replace("--", "- -");
         self.line(&format!("<!-- {text} -->"));

@@ -17,7 +17,7 @@ fn stored(name: &str) -> Scene {
     scene(name, &std::fs::read_to_string(path).expect("scenes/"))
 }
 
-/// A scene with this light and these blockers, above a floor of 1/3 by 0.1 m.
+/// A scene with the given light and blockers, above a floor of 1/3 by 0.1 m.
 fn of(light: &str, blockers: &str) -> Scene {
     let text = format!(
         r#"(

@@ -91,8 +91,8 @@ fn every_lobe_has_its_word_and_its_numbers() {
         // A flat uniform surface needs no triangles.
         assert_eq!(of_type(&xml, "disk").len(), 1);
     }
-    // A dielectric reflects like a metal without absorption; without a factor, it reflects
-    // everything.
+    // A dielectric reflects like a metal without absorption; without a Fresnel factor, a surface
+    // reflects all light.
     let glass = parsed(&reflects(
         "Plane",
         "brdf: (lobe: Ggx(0.2), fresnel: Dielectric(1.5))",
@@ -161,8 +161,8 @@ fn patterns_become_pictures() {
     let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
-    // The values begin with the lowest row, which is the last row of the picture. Its centre is
-    // half a pixel before the end of a period, where the cosine is nearly 1.
+    // The values begin with the lowest row, which is the last row of the picture. The centre of
+    // this row is half a pixel before the end of a period, where the cosine is nearly 1.
     let expected = 0.25 * (1.0 + 0.9 * f64::cos(std::f64::consts::TAU * 0.5 / 512.0));
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();
@@ -182,7 +182,7 @@ fn blends_are_of_two_lobes() {
     );
     let xml = Document::parse(text(&tiles, "scene.xml")).unwrap();
     let [blend] = of_type(&xml, "blendbsdf").try_into().unwrap();
-    // Weight 0 selects the first BRDF, which is the other lobe.
+    // Weight 0 of Mitsuba's blend selects the first BRDF, which is the other lobe.
     let lobes: Vec<f64> = of_type(&xml, "phong")
         .iter()
         .map(|n| number(n, "exponent"))
@@ -258,7 +258,7 @@ fn environments_become_maps() {
     let most = values.iter().copied().fold(0.0_f32, f32::max);
     assert!((most - 3.0).abs() < 1e-4); // half a pixel beside the peak
     let dark = values.iter().filter(|v| **v == 0.0).count();
-    // Half of all directions are dark. Longitude is uniform, so half of the pixels are dark too,
+    // Half of all directions are dark. Longitude is uniform, so half of the pixels are also dark,
     // within a column or two.
     assert!(dark.abs_diff(values.len() / 2) < 3 * rows, "{dark}");
     let xml = Document::parse(text(&export, "scene.xml")).unwrap();

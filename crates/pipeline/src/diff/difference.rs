@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Diff {
     pub(super) results: [StoredResult; 2],
     pub(super) alpha: f64,
-    /// The fields in which the scenes differ.
+    /// The fields whose values in the two scenes differ.
     pub(super) scene: Vec<FieldChange>,
     pub(super) planes: Vec<PlaneDiff>,
 }
@@ -22,7 +22,7 @@ impl Diff {
     /// where there is none.
     ///
     /// # Errors
-    /// When one of them is not a complete result, or they have no plane in common.
+    /// When a folder holds no complete result, or when the results have no plane in common.
     pub fn read(folders: [&Path; 2], alpha: f64) -> Result<Self, Failure> {
         let [a, b] = folders.map(StoredResult::read);
         Self::of([a?, b?], alpha)
@@ -50,7 +50,7 @@ impl Diff {
         })
     }
 
-    /// Returns the numbers of tests of slices and of parameters.
+    /// Returns the number of tests of slices, and the number of tests of parameters.
     pub(super) fn tests(&self) -> [usize; 2] {
         let compared = || self.planes.iter().filter_map(PlaneDiff::compared);
         let slices = compared().filter(|plane| plane.test.p_value.is_some());
@@ -58,14 +58,14 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// Returns the level of each test. At this level, the probability that any of the tests finds
-    /// a difference where there is none is α.
+    /// Returns the significance level of each test. With this level, the probability that any
+    /// test finds a difference where there is none is α.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
     }
 
-    /// Returns the verdict of all tests together.
+    /// Returns the verdict from all tests together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let level = self.level();

@@ -1,4 +1,4 @@
-//! The tests of one plane of two results, and their outcome.
+//! Tests one plane of two results, and describes the outcome.
 
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
@@ -9,7 +9,7 @@ use ndarray::Array3;
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
-/// A plane of either or both results.
+/// A plane that at least one of two results has.
 #[derive(Debug)]
 pub(super) struct PlaneDiff {
     pub(super) name: String,
@@ -19,12 +19,13 @@ pub(super) struct PlaneDiff {
 /// The outcome for a plane.
 #[derive(Debug)]
 pub(super) enum PlaneDifference {
-    /// One result lacks the plane; the number is 0 for the first result and 1 for the second.
+    /// One result lacks the plane: the first result if the number is 0, and the second result if
+    /// the number is 1.
     Missing(usize),
-    /// The plane is measured in different units, at different frequencies or in a different window,
-    /// as described.
+    /// The two results measure the plane in different units, at different frequencies or in
+    /// different windows, as the text describes.
     Unlike(String),
-    /// The plane is in both results and records the same quantity.
+    /// Both results have the plane and record the same quantity.
     Compared(Box<Compared>),
 }
 
@@ -39,7 +40,7 @@ pub(super) struct Compared {
     unresolved: Option<String>,
     /// The reason why the outcome of the tests cannot be trusted.
     invalid: Option<String>,
-    /// Whether the same photons gave the same numbers.
+    /// Whether the two results have the same numbers because they come from the same photons.
     pub(super) is_identical: bool,
 }
 
@@ -49,29 +50,32 @@ pub(super) struct ParameterDiff {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) estimates: [Estimate; 2],
-    /// (a − b)/√(e_a² + e_b²) and its p-value.
+    /// The difference in standard errors, (a − b)/√(e_a² + e_b²), and the p-value of this
+    /// difference.
     pub(super) pull: (f64, f64),
 }
 
 /// The difference of two predictions.
 #[derive(Debug)]
 pub(super) struct PredictionDiff {
-    /// ‖F_A − F_B‖ over the larger norm.
+    /// The relative difference ‖F_A − F_B‖, divided by the larger of the two norms.
     pub(super) difference: f64,
-    /// Whether both predictions are for the same scene, and differ by more than their errors.
+    /// Whether the two predictions are for the same scene but differ by more than their errors.
     pub(super) is_wrong: bool,
 }
 
-/// The relative difference below which two numbers are taken to differ only by the rounding of
-/// sums.
+/// The relative difference below which two numbers are assumed to differ only because their sums
+/// are rounded differently.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The largest accepted relative difference between closed forms in two versions, which may order
-/// their sums differently. This difference allows for the rounding errors of the largest terms.
+/// The largest accepted relative difference between the closed forms of two versions of the
+/// program, which may add terms in different orders. This difference allows for the rounding
+/// errors of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
-/// The number of combined standard errors beyond which two predictions differ. The difference is a
-/// norm over all frequencies, so its random fluctuation is small.
+/// The number of combined standard errors above which the difference between two predictions
+/// counts as real. The difference is a norm over all frequencies, so its random variation is
+/// small.
 const APART: f64 = 3.0;
-/// The probability, over all planes, that independent noise is mistaken for that of shared
+/// The probability, over all planes, that independent noise is mistaken for the noise of shared
 /// photons.
 const SHARED: f64 = 1e-4;
 
@@ -104,12 +108,12 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// Returns the tested parameters, with their differences in standard errors.
+    /// Returns the parameters that are tested, with their differences in standard errors.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
 
-    /// Returns descriptions of what differs beyond noise.
+    /// Returns descriptions of the quantities that differ by more than noise.
     pub(super) fn differing(&self, level: f64) -> Vec<String> {
         let mut differing = Vec::new();
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
@@ -132,7 +136,7 @@ impl Compared {
     }
 }
 
-/// Returns all planes of two results, in the order of the first.
+/// Returns all planes of two results, in the order of the first result.
 pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
@@ -188,8 +192,8 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Checks whether both results have the same method, seed, photons and batches. Such results
-    /// share the photons of everything that their scenes have in common.
+    /// Checks whether both results have the same method, seed, photons and batches. Results with
+    /// equal settings share the photons of everything that their scenes have in common.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -243,7 +247,7 @@ impl ResultPair<'_> {
         let difference = apart(&a.grid, &a.predicted, &b.predicted);
         let error = |plane: &StoredPlane| plane.quadrature_error.unwrap_or(0.0).powi(2);
         let error: f64 = planes.into_iter().map(error).sum();
-        // At a plane of the class `reference`, the prediction is itself a measurement.
+        // At a plane of the class `reference`, the prediction is also a measurement.
         let reference = Class::Reference.to_string();
         let is_reference = planes.iter().any(|plane| plane.class == reference);
         let allowed = CLOSED_FORM.max(APART * error.sqrt());
@@ -268,7 +272,8 @@ impl ResultPair<'_> {
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
-            // A plane without light in one result is judged by the photons of the other result.
+            // If one result has no light at the plane, only the photons of the other result are
+            // checked.
             if plane.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
                 return Some(format!(
                     "{folder} has {} photons in its window, too few for a test",
@@ -284,7 +289,7 @@ impl ResultPair<'_> {
         None
     }
 
-    /// Returns the reason why the results may differ although the test detects no difference.
+    /// Returns the reason why the results may differ even though the test detects no difference.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -300,7 +305,7 @@ impl ResultPair<'_> {
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
-        // The difference of two results has √2 times the noise of each.
+        // The noise of the difference between two results is √2 times the noise of each result.
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
@@ -309,8 +314,8 @@ impl ResultPair<'_> {
     }
 }
 
-/// Returns the number of photons of equal weight per batch that would vary as much as the light of
-/// this sample. Returns `None` if this number is so large that no batch would be empty;
+/// Returns the number of photons of equal weight per batch whose sum would vary as much as the
+/// light of this sample. Returns `None` if this number is so large that no batch would be empty.
 /// `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];

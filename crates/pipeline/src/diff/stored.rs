@@ -1,4 +1,4 @@
-//! A result folder as read by `diff`: every file is verified and nothing is assumed.
+//! Reads result folders for `diff`: every file is verified, and its content is not trusted.
 
 use etendue_compare::{Estimate, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
@@ -35,14 +35,15 @@ pub(super) struct ResultIndex {
     files: BTreeMap<String, String>,
 }
 
-/// The numbers of a plane in `summary.json` that `diff` needs. Numbers that do not exist are null.
+/// The numbers of a plane in `summary.json` that `diff` needs. If a number does not exist, it is
+/// null in the file.
 #[derive(Debug, Deserialize)]
 pub(super) struct StoredPlane {
     pub(super) name: String,
     pub(super) class: String,
     pub(super) in_window: u64,
-    /// The effective number of independent real numbers in the noise, which results of earlier
-    /// versions lack.
+    /// The effective number of independent real numbers in the noise; results of earlier versions
+    /// do not have it.
     #[serde(default)]
     noise_dof: Option<f64>,
     pub(super) quadrature_error: Option<f64>,
@@ -57,7 +58,7 @@ pub(super) struct StoredNumber {
     error: Option<f64>,
 }
 
-/// A parameter of the chain.
+/// A parameter of a first-order chain.
 #[derive(Debug, Deserialize)]
 pub(super) struct StoredParameter {
     pub(super) name: String,
@@ -79,8 +80,8 @@ impl StoredNumber {
 }
 
 impl StoredParameter {
-    /// Checks whether the photons determine the parameter: a change by its whole value would be
-    /// detected.
+    /// Checks whether the photons determine the parameter, so that a change as large as the
+    /// parameter itself would be detected.
     pub(super) fn is_determined(&self) -> bool {
         let (Some(scene), Some(detectable)) = (self.scene, self.detectable) else {
             return false;
@@ -89,7 +90,7 @@ impl StoredParameter {
     }
 }
 
-/// The arrays of a plane.
+/// The slices of a plane, as stored in a result folder.
 #[derive(Debug)]
 pub(super) struct StoredSlices {
     pub(super) axes: [Array1<f64>; 3],
@@ -128,12 +129,12 @@ impl StoredResult {
         self.index.planes.iter().find(|plane| plane.name == name)
     }
 
-    /// Returns the hash of the arrays of a plane.
+    /// Returns the hash of the file with a plane's arrays.
     pub(super) fn hash(&self, plane: &str) -> Option<&String> {
         self.index.files.get(&slices_of(plane))
     }
 
-    /// Returns the arrays of a plane.
+    /// Returns the slices of a plane from the plane's arrays.
     pub(super) fn slices(&self, plane: &StoredPlane) -> Result<StoredSlices, Failure> {
         let name = slices_of(&plane.name);
         let bytes = listed_bytes(&self.folder, SUMMARY, &self.index.files, &name)?;

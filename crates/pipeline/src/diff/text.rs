@@ -1,4 +1,4 @@
-//! The output of `etendue diff`.
+//! Formats the output of `etendue diff`.
 
 use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
@@ -8,7 +8,7 @@ use etendue_compare::{Estimate, Verdict};
 use etendue_field::{percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
 
-/// The largest number of differing fields that are listed.
+/// The maximum number of differing fields that are listed.
 const MOST_FIELDS: usize = 20;
 
 /// Returns the output of `etendue diff`.
@@ -45,7 +45,7 @@ fn header(letter: char, result: &StoredResult) -> String {
     )
 }
 
-/// Returns the differences of the scenes.
+/// Describes the fields in which the scenes differ.
 fn scene(diff: &Diff) -> Vec<String> {
     let [a, b] = &diff.results;
     let changes = &diff.scene;
@@ -164,7 +164,7 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Returns the verdict in a sentence, with its reasons.
+/// Returns a sentence with the verdict and its reasons.
 fn verdict(diff: &Diff) -> String {
     let level = diff.level();
     let alpha = format!("{} %", tidy(100.0 * diff.alpha));

@@ -7,10 +7,10 @@ use etendue_rays::{NpyHeader, tm25};
 use etendue_trace::PlaneInWorld;
 use std::io;
 
-/// The photons of a plane as rays in world coordinates.
+/// The photons that cross a plane, as rays in world coordinates.
 pub(super) struct Rays {
     world: PlaneInWorld,
-    /// Number of photons emitted, including those that met nothing.
+    /// Number of photons emitted, including photons that met no object.
     emitted: u64,
     /// A description of the plane.
     about: String,
@@ -36,7 +36,7 @@ impl Rays {
         self.world.flux(crossing) / self.emitted as f64
     }
 
-    /// Returns the position in metres, the direction, and the power in W.
+    /// Returns the position in metres, the direction, and the power in W of a photon.
     fn ray(&self, crossing: &Crossing) -> io::Result<([f64; 3], [f64; 3], f64)> {
         let [point, along] = self.world.ray(&crossing.ray).ok_or_else(|| {
             let what = "a photon crossed the plane where it has no ray: a bug in etendue";
@@ -46,7 +46,7 @@ impl Rays {
     }
 }
 
-/// The header of a file, and the format of a photon in it.
+/// The header of a photon file, and the format in which the file stores a photon.
 pub(super) enum Content<'a> {
     Npy(u64),
     Mcpl(&'a Rays, Box<mcpl::McplHeader>, u64),
@@ -54,7 +54,7 @@ pub(super) enum Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// Returns the content of an NPY file: f64 [rows, 5], in the frame of the plane.
+    /// Returns the content of an NPY file: an f64 array [rows, 5], in coordinates of the plane.
     pub(super) fn npy(rows: u64) -> Self {
         Self::Npy(rows)
     }
@@ -62,8 +62,8 @@ impl<'a> Content<'a> {
     /// Returns the content of an MCPL file: photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
-        // MCPL stores the number of emitted photons as a sum, which is added up when files are
-        // merged.
+        // MCPL stores the number of emitted photons as a sum; if files are merged, these sums are
+        // added.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
         let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),
@@ -74,7 +74,8 @@ impl<'a> Content<'a> {
         Self::Mcpl(rays, Box::new(header), rows)
     }
 
-    /// Returns the content of a TM-25 file: rays with this total flux, W, without wavelengths.
+    /// Returns the content of a TM-25 file: rays without wavelengths, with the total flux `flux`
+    /// in W.
     pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
         let mut header = tm25::Tm25Header {
             radiant_flux: single(flux),

@@ -1,5 +1,5 @@
-//! The leading process: hands out pieces to other processes on request, and takes back their
-//! results.
+//! Runs the leading process, which gives pieces of work to other processes on request, and
+//! receives their results.
 
 use super::link::{Workers, key};
 use super::message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
@@ -14,13 +14,13 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{fmt, thread};
 
-/// Decodes the bytes of the piece with that number.
+/// Decodes the bytes of the piece with a given number.
 type Unpacked<'a, T> = dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync + 'a;
 
-/// Receives a piece and its bytes.
+/// A function that receives a finished piece and its bytes.
 type Taken<'a> = dyn FnMut(&Piece, &[u8]) -> Result<(), Failure> + Send + 'a;
 
-/// Returns the piece with that number, to be handed out.
+/// A function that returns the piece with a given number, for another process.
 type Given<'a> = dyn Fn(u32) -> Result<Packed, Failure> + Sync + 'a;
 
 /// The number of seconds after which other processes return unfinished batches: a minimum, and an
@@ -33,14 +33,14 @@ pub struct Leader<'a> {
     others: Mutex<Vec<Other>>,
 }
 
-/// One of the processes.
+/// The state of one of the other processes.
 #[derive(Clone, Copy, Debug)]
 struct Other {
     /// Number of parts of batches that the process measures in parallel.
     abreast: usize,
-    /// Number of pieces on which the process currently works.
+    /// Number of pieces on which the process is currently working.
     has: usize,
-    /// Whether the process is waiting for an answer.
+    /// Whether the process is waiting for an answer from the leading process.
     waits: bool,
 }
 
@@ -71,8 +71,8 @@ impl<'a> Leader<'a> {
         }
     }
 
-    /// Measures batches of a scene, and continues each batch after its finished parts. Returns the
-    /// finished batches, and the batches that `watch` has stopped.
+    /// Measures batches of a scene, and continues each batch after its finished parts. Returns
+    /// the finished batches, and the unfinished batches that `watch` has stopped.
     pub(crate) fn measure(
         &self,
         packing: Packing<'_>,
@@ -146,7 +146,7 @@ impl<'a> Leader<'a> {
         self.pieces(&key(scenes), Task::Points, points, own, unpacked)
     }
 
-    /// Handles pieces that are processed one by one.
+    /// Processes pieces of work that are handled one by one.
     fn pieces<T: Send>(
         &self,
         key: &str,
@@ -179,8 +179,9 @@ impl<'a> Leader<'a> {
         Ok(all)
     }
 
-    /// Processes the remaining pieces, by `own` in this process and on request in other processes.
-    /// `give` makes the pieces to send, and `take` receives their results.
+    /// Processes the remaining pieces: `own` processes pieces in this process, and other
+    /// processes receive pieces on request. `give` returns the pieces to send to other processes,
+    /// and `take` receives their results.
     fn share<T>(
         &self,
         key: &str,
@@ -192,7 +193,8 @@ impl<'a> Leader<'a> {
         let (own, others) = thread::scope(|scope| {
             let others = scope.spawn(|| {
                 let served = self.serve(key, task, left, (give, take));
-                // If other processes have failed, the leading process need not continue.
+                // If the other processes have failed, the leading process does not continue its
+                // own work.
                 served.inspect_err(|_| left.drop_all())
             });
             let own = own().inspect_err(|_| left.drop_all());
@@ -202,7 +204,7 @@ impl<'a> Leader<'a> {
         own
     }
 
-    /// Answers requests until no pieces remain and none are in progress elsewhere.
+    /// Answers requests until no pieces remain and no other process is working on a piece.
     fn serve(
         &self,
         key: &str,
@@ -232,12 +234,13 @@ impl<'a> Leader<'a> {
                     return Err(Failure::cannot_run(format!("process {who}: {message}")));
                 }
                 WorkerMessage::Done { pieces } => {
-                    // The other process receives new pieces first, and works on them while its
-                    // results are decoded and stored.
+                    // The other process first receives new pieces, and works on them while this
+                    // process decodes and stores its results.
                     self.hand(who, task, left, give)?;
                     let mut pieces = unpack(&pieces, &bytes);
                     pieces.try_for_each(|(piece, own)| take(piece, own))?;
-                    // Returned unfinished batches are given to processes that are waiting.
+                    // Unfinished batches that a process has returned are given to processes that
+                    // are waiting.
                     hand_all()?;
                 }
             }
@@ -245,7 +248,7 @@ impl<'a> Leader<'a> {
         Ok(())
     }
 
-    /// Waits for a message from another process, which then waits for the answer.
+    /// Waits for a message from another process; the other process then waits for an answer.
     fn heard(&self) -> Result<(usize, WorkerMessage, Vec<u8>), Failure> {
         let (who, bytes) = self.workers.receive().map_err(Failure::cannot_run)?;
         let mut others = held(&self.others);
@@ -256,7 +259,7 @@ impl<'a> Leader<'a> {
         Ok((who, said, bytes.to_vec()))
     }
 
-    /// Gives pieces to a waiting process, if any remain.
+    /// Gives pieces to a process that is waiting, if any pieces remain.
     fn hand(&self, who: usize, task: Task, left: &Left, give: &Given<'_>) -> Result<(), Failure> {
         let numbers = left.last(held(&self.others)[who].abreast);
         if numbers.is_empty() {
@@ -281,7 +284,8 @@ impl<'a> Leader<'a> {
         sent.map_err(Failure::cannot_run)
     }
 
-    /// Ends the work of all other processes, each when it next asks for work.
+    /// Ends the work of all other processes; each process is dismissed when it next asks for
+    /// work.
     pub fn dismiss_all(&self) -> Result<(), Failure> {
         for who in 1..self.workers.count() {
             while !held(&self.others)[who].waits {
@@ -296,7 +300,7 @@ impl<'a> Leader<'a> {
 /// The pieces that no process is working on.
 struct Left {
     numbers: Mutex<VecDeque<u32>>,
-    /// The number of parts of a piece that one process measures in parallel.
+    /// The number of parts of one piece that a process measures in parallel.
     parts: usize,
 }
 
@@ -316,13 +320,13 @@ impl Left {
         held(&self.numbers).clear();
     }
 
-    /// Takes the first piece.
+    /// Takes the first of the remaining pieces.
     fn next(&self) -> Option<u32> {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes pieces with this many parts in total from the end of the list, because the leading
-    /// process takes pieces from the front.
+    /// Takes pieces with `parts` parts in total from the end of the list, because the leading
+    /// process takes pieces from the front of the list.
     fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
         let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));

@@ -1,4 +1,5 @@
-//! The transport of bytes between processes, and the check that they do the same work.
+//! Defines the transport of bytes between processes, and checks that all processes do the same
+//! work.
 
 use etendue_scene::Scene;
 use etendue_store::stored::VERSION;
@@ -14,18 +15,18 @@ pub trait Workers: Sync {
     /// Sends bytes to a process.
     ///
     /// # Errors
-    /// A description, when the bytes cannot be sent.
+    /// A description of the reason, when the bytes cannot be sent.
     fn send(&self, to: usize, bytes: &[u8]) -> Result<(), String>;
 
     /// Waits for bytes from any process; returns the number of the sender.
     ///
     /// # Errors
-    /// A description, when nothing can be received.
+    /// A description of the reason, when nothing can be received.
     fn receive(&self) -> Result<(usize, Vec<u8>), String>;
 }
 
-/// Returns a key of scenes and version. All processes must have the same key, which ensures that
-/// they work on the same scenes.
+/// Returns a key that identifies the scenes and the version of the program. All processes must
+/// have the same key, so that all of them work on the same scenes.
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
     let scenes = scenes.into_iter();
     let words = scenes.map(|scene| format!(" {} {}", scene.hash(), scene.run.seed));

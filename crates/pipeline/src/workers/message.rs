@@ -1,16 +1,16 @@
-//! The messages between processes, with the bytes they refer to.
+//! Defines the messages between processes, and the bytes that follow each message.
 
 use etendue_store::framing::joined;
 use serde::{Deserialize, Serialize};
 
-/// A message to the leading process, which answers with an [`Order`].
+/// A message to the leading process, which answers it with an [`Order`].
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum WorkerMessage {
-    /// The process has scenes with this key, and measures this many batches in parallel.
+    /// The process has the scenes with the key `key`, and measures `abreast` batches in parallel.
     Ready { key: String, abreast: usize },
-    /// The process has finished or returned these pieces, whose bytes follow.
+    /// The process has finished or returned the pieces `pieces`, whose bytes follow the message.
     Done { pieces: Vec<Piece> },
-    /// The process cannot carry out its order.
+    /// The process cannot carry out the order that it received.
     Failed { message: String },
 }
 
@@ -21,7 +21,7 @@ pub(crate) enum Task {
     Batches,
     /// Planes to predict.
     Planes,
-    /// Points of a sweep to run.
+    /// The points of a sweep that are to be run.
     Points,
 }
 
@@ -29,26 +29,27 @@ pub(crate) enum Task {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Piece {
     pub number: u32,
-    /// The number of finished parts of a batch; `None` if it is complete or not begun.
+    /// The number of finished parts of a batch; `None` if the batch is complete or not begun.
     pub parts: Option<u32>,
     /// The number of bytes of the piece.
     pub length: usize,
 }
 
-/// Pieces to process; an empty list ends the work. The bytes of batches that are begun follow.
+/// An order to process pieces; an empty list of pieces ends the work. The bytes of batches that
+/// are already begun follow the order.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub(crate) task: Task,
     pub(crate) pieces: Vec<Piece>,
-    /// The time after which unfinished batches are returned.
+    /// The time in seconds after which unfinished batches are returned.
     pub(crate) seconds: f64,
 }
 
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// Returns the bytes of a message, which are those of `words` about pieces, followed by those of
-/// the pieces.
+/// Returns the bytes of a message: the bytes of `words`, which describes the pieces, followed by
+/// the bytes of the pieces.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,
     pieces: Vec<Packed>,
@@ -57,7 +58,7 @@ pub(crate) fn packed<T: Serialize>(
     joined(&words(pieces), &bytes.concat())
 }
 
-/// Returns the bytes of each piece, which are stored one after the other.
+/// Splits the bytes that follow a message into the bytes of each piece.
 pub(crate) fn unpack<'a>(
     pieces: &'a [Piece],
     mut bytes: &'a [u8],

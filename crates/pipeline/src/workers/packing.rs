@@ -20,8 +20,8 @@ impl Packing<'_> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
-    /// Returns the batch with this number from the bytes of [`Self::packed`]. It is identical to
-    /// the batch that `source` emits.
+    /// Returns the batch with this number, decoded from the bytes of [`Self::packed`]. The batch
+    /// is identical to the batch that `source` emits.
     pub(crate) fn unpacked(
         &self,
         source: &dyn PhotonSource,
@@ -51,7 +51,7 @@ impl Packing<'_> {
         Ok((piece, bytes))
     }
 
-    /// Returns the first parts of a batch, from bytes of [`Self::packed_partial`].
+    /// Returns the first parts of a batch, decoded from the bytes of [`Self::packed_partial`].
     pub(crate) fn unpacked_partial(
         &self,
         source: &dyn PhotonSource,

@@ -19,8 +19,8 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
 
 /// Packs a unit vector as version 3 does, by adaptive projection (Kittelmann et al. 2017, section
 /// 3.2): the component of largest modulus is omitted except for its sign. If the omitted component
-/// is x or y, 1/z takes its place. Since 1/z is larger than 1 in modulus, it shows which component
-/// was omitted.
+/// is x or y, 1/z takes its place. The modulus of 1/z is larger than 1, which shows which
+/// component was omitted.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
     if z.abs() >= x.abs().max(y.abs()) {
@@ -40,7 +40,8 @@ fn inverse(z: f64) -> f64 {
 /// Returns the vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
-    // Computes the omitted component; for a valid unit vector it is not smaller than the others.
+    // Computes the omitted component; in a valid unit vector, this component is not smaller than
+    // the other two.
     let missing = |c: f64, d: f64| {
         let squared = 1.0 - (c * c + d * d);
         if squared >= -SLACK {
@@ -50,8 +51,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
         }
     };
     match [a.abs() > 1.0, b.abs() > 1.0] {
-        // NaN also leads to this case, because comparisons with NaN are false; `missing` refuses
-        // it.
+        // NaN also leads to this branch, because comparisons with NaN are false; `missing` then
+        // refuses NaN.
         [false, false] => Ok([a, b, missing(a, b)?]),
         [true, false] => Ok([missing(b, 1.0 / a)?, b, 1.0 / a]),
         [false, true] => Ok([a, missing(a, 1.0 / b)?, 1.0 / b]),
@@ -62,8 +63,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
 /// Unpacks a direction of version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower
 /// half folded out. `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
-    // The numbers are coordinates in a square. Rounding to f32 may move them outside the square by
-    // up to 1e-6.
+    // The numbers are coordinates in a square. Rounding to f32 may move a point outside the
+    // square by up to 1e-6.
     if !(a.abs() <= 1.0 + 1e-6 && b.abs() <= 1.0 + 1e-6) {
         return Err(format!(
             "packed direction {a}, {b}; allowed: −1 to 1 for both"
@@ -98,7 +99,7 @@ mod tests {
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
                         // The limit covers two rounding errors of numbers up to 1; the square
-                        // root, of a sum of at least 1/3, at most doubles them.
+                        // root of a sum of at least 1/3 at most doubles these errors.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

@@ -26,7 +26,7 @@ pub struct McplHeader {
     pub universal_weight: Option<f64>,
     /// The program that wrote the file, as bytes, usually UTF-8.
     pub source: Vec<u8>,
-    /// Comments, as bytes like `source`. Comments that begin with `stat:sum:` have a meaning, see
+    /// Comments, as bytes, usually UTF-8. Comments that begin with `stat:sum:` hold sums, see
     /// [`StatSum`].
     pub comments: Vec<Vec<u8>>,
     /// The blobs of the file: keys and their data.
@@ -53,7 +53,7 @@ impl Default for McplHeader {
 }
 
 impl McplHeader {
-    /// Returns the header, the number of particles, and the offset of the first.
+    /// Returns the header, the number of particles, and the offset of the first particle.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
         let mut cursor = ByteCursor::new(bytes, 8, little_endian);
@@ -202,13 +202,14 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     Ok(count)
 }
 
-/// Reads bytes preceded by their number.
+/// Reads a byte string that is preceded by its length.
 fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }
 
-/// Converts the bytes of a number, of which the lowest comes first, to the byte order of a file.
+/// Converts the bytes of a number, stored with the lowest byte first, to the byte order of a
+/// file.
 pub(super) fn ordered<const N: usize>(mut bytes: [u8; N], little: bool) -> [u8; N] {
     if !little {
         bytes.reverse();

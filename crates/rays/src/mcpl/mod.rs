@@ -30,8 +30,8 @@ pub struct McplFile {
     header: McplHeader,
     count: usize,
     records: Vec<u8>,
-    /// Bytes after the last record, which are too few for another record; for example, a public
-    /// test file ends with a line feed.
+    /// Bytes after the last record, too few for another record; for example, a public test file
+    /// ends with a line feed.
     rest: Vec<u8>,
 }
 
@@ -39,9 +39,9 @@ impl McplFile {
     /// Reads an unpacked file.
     ///
     /// # Errors
-    /// The first violation of the format. Files that were not closed are refused too: their header
-    /// states no particles although records follow. Files with enough bytes after the last record
-    /// for another record are also refused.
+    /// The first violation of the format. Files that were not closed are also refused: their
+    /// header states no particles although records follow. Files with enough bytes after the last
+    /// record for another record are also refused.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();
@@ -68,7 +68,7 @@ impl McplFile {
         Ok(file)
     }
 
-    /// Returns a file of version 3 with these particles, all of which must fit the header's
+    /// Returns a file of version 3 with the given particles, all of which must fit the header's
     /// options.
     ///
     /// # Errors
@@ -119,7 +119,7 @@ impl McplFile {
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// Returns the bytes of the file; if it was read, they are the bytes from which it was read.
+    /// Returns the bytes of the file; for a file that was read, these are the original bytes.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);
@@ -128,7 +128,7 @@ impl McplFile {
         bytes
     }
 
-    /// Returns the rays of the file in metres. Their power is the weight of the particles; it is
+    /// Returns the rays of the file in metres. The power of a ray is the weight of the particle,
     /// in W if the comment [`WATTS`] states this. Particles other than photons, and photons of
     /// energy 0, have no wavelength.
     #[must_use]

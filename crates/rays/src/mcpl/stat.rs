@@ -26,7 +26,7 @@ pub struct StatSum {
 /// finite.
 pub fn stat_sum_comment(key: &str, value: f64) -> Result<Vec<u8>, Fault> {
     let shown = value.to_string();
-    // In this notation the longest number has 23 characters.
+    // In exponential notation, the longest number has 23 characters.
     let shown = if shown.len() > WIDTH {
         format!("{value:e}")
     } else {

@@ -4,7 +4,7 @@ use super::text;
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// The way in which the spectral information of rays is stored, 4.7.1.9.
+/// The way in which the spectral information of rays is stored (section 4.7.1.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
     /// 0: there is no spectral information.
@@ -19,7 +19,7 @@ pub enum SpectrumType {
     SpectrumPerRay,
 }
 
-/// The numbers that rays have in addition to position and direction, 4.7.2.
+/// The numbers that rays have in addition to position and direction (section 4.7.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
     /// Radiant flux, W.
@@ -84,9 +84,9 @@ pub struct Tm25Header {
     /// Total radiant flux, in W; NaN if it is not stated.
     pub radiant_flux: f32,
     /// Date and time, in the notation of ISO 8601, in 28 bytes that end with zeros; all bytes are
-    /// zero if the file does not state it.
+    /// zero if the file states no date.
     pub date: [u8; 28],
-    /// The place where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
+    /// The place where rays begin, by the codes 0 (unknown) to 7 of section 4.7.1.8.
     pub start_position: i32,
     /// The way in which the spectral information is stored.
     pub spectrum_type: SpectrumType,
@@ -102,7 +102,7 @@ pub struct Tm25Header {
     pub texts: [String; 9],
     /// Spectral tables: wavelength in nm, and weight.
     pub spectra: Vec<Vec<[f32; 2]>>,
-    /// Names of columns beyond those of the standard.
+    /// Names of columns that the standard does not define.
     pub extra_columns: Vec<String>,
     /// Additional text.
     pub additional_text: String,
@@ -137,16 +137,16 @@ impl Default for Tm25Header {
     }
 }
 
-/// Number of characters of a text of 4.7.3.
+/// Number of characters of a text of section 4.7.3.
 const TEXT: usize = 1000;
 /// The largest number of spectra in a file. The number is limited because an empty spectrum takes
 /// more bytes in memory than in the file.
 const MOST_SPECTRA: u32 = 65_536;
-/// Number of characters of a column name, 4.7.5.
+/// Number of characters of a column name (section 4.7.5).
 const NAME: usize = 128;
 
 impl Tm25Header {
-    /// What each of the texts of 4.7.3 describes.
+    /// The subject of each text of section 4.7.3 of the standard.
     pub const TEXTS: [&str; 9] = [
         "light source",
         "manufacturer",
@@ -177,7 +177,7 @@ impl Tm25Header {
             .unwrap_or_default()
     }
 
-    /// Returns the header, the number of rays, and the offset of the first.
+    /// Returns the header, the number of rays, and the offset of the first ray.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
         let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
@@ -277,7 +277,7 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// Reads 4.7.4: tables, and zeros up to a multiple of 32 bytes.
+    /// Reads section 4.7.4 of the standard: tables, and zeros up to a multiple of 32 bytes.
     fn read_spectra(
         &mut self,
         cursor: &mut ByteCursor<'_>,

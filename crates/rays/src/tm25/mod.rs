@@ -1,15 +1,16 @@
 //! IES TM-25-13, the ray file format of the Illuminating Engineering Society. TM-25-20 files, which
 //! state the version 2020, are read with the same layout.
 //!
-//! Source: IES TM-25-13, "Ray File Format for the Description of the Emission Property of Light Sources", section 4.7, and files of LED
-//! makers and of LightTools. Numbers are little-endian, those of rays f32. Units: mm, nm, W, lm. Text is UTF-32.
+//! The reader follows IES TM-25-13, "Ray File Format for the Description of the Emission Property of Light
+//! Sources", section 4.7, and files of LED makers and of LightTools. All numbers are little-endian; the numbers of
+//! rays are f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
 //! A file that is read and written again has the same bytes, except for bytes after the end of a
-//! text, and for invalid characters. Such differences cause a note.
+//! text, and for invalid characters. Each of these differences causes a note.
 //!
-//! Deviations that are accepted with a note: total flux in the header that differs from the sum
-//! over the rays (LightTools writes 1), directions of a length other than 1 (the set has unit
-//! vectors), and values out of range in fields that no ray depends on.
+//! Three deviations are accepted with a note. The total flux in the header may differ from the sum over the rays
+//! (LightTools writes 1). Directions may have a length other than 1 (the set has unit vectors). Fields on which no
+//! ray depends may have values out of range.
 
 mod header;
 mod text;
@@ -70,8 +71,7 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// Returns a file with these rays, each of `columns` numbers, as counted by
-    /// [`Tm25Header::columns`].
+    /// Returns a file with the given rays, each with as many numbers as [`Tm25Header::columns`] counts.
     ///
     /// # Errors
     /// When the header or the rays are invalid.
@@ -195,7 +195,7 @@ impl Tm25File {
         table.map(row).collect()
     }
 
-    /// Refuses invalid rays, and adds notes on unusual values; a note covers all rays together.
+    /// Refuses invalid rays, and adds notes on unusual values; each note covers all rays together.
     fn check(&mut self) -> Result<(), Fault> {
         let flags = self.header.flags;
         let spectrum = flags.spectrum_column();

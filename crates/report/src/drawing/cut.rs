@@ -266,7 +266,7 @@ impl CuttingPlane<'_> {
             })
         });
         let mut pieces: Vec<Segment> = cuts.collect();
-        // The name is placed at the piece in the middle.
+        // The name of the mesh is placed at the middle piece of the outline.
         let ends =
             |least: fn(f64, f64) -> f64, from| pieces.iter().map(|p| p.start[0]).fold(from, least);
         let middle = 0.5 * (ends(f64::min, f64::INFINITY) + ends(f64::max, f64::NEG_INFINITY));
@@ -279,7 +279,7 @@ impl CuttingPlane<'_> {
     }
 }
 
-/// Segments across the central ray; the first one carries the name.
+/// Segments across the central ray; the first segment carries the name.
 fn labelled(
     kind: SegmentKind,
     name: &str,
@@ -295,7 +295,7 @@ fn labelled(
     })
 }
 
-/// The interval of the whole axis.
+/// The interval that covers the whole axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// The largest number of periods of a grating on either side of the ray at which single periods
 /// can still be distinguished.

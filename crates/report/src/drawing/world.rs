@@ -1,4 +1,4 @@
-//! Draws a scene whose path turns: to scale, in the plane of D and X at the light.
+//! Draws a scene whose path turns, to scale, in the plane of D and X at the light.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
@@ -8,7 +8,8 @@ use glam::DVec3;
 
 /// The length in metres at which infinite objects are cut off; it is larger than any drawn scene.
 const ENDLESS_METRES: f64 = 1e4;
-/// Angle of a turn below which a path counts as straight.
+/// A turn of the path counts as straight if the modulus of its cosine differs from 1 by less than
+/// this number.
 const STRAIGHT: f64 = 1e-9;
 
 /// The scene to scale; `None` if the path stays on one line.
@@ -37,7 +38,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
         let half = plane.window.x.half_width();
         [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
     });
-    // The path continues beyond the last surface, even if there is no plane.
+    // The path continues beyond the last surface, even if there is no plane behind it.
     let way = scene.path.first_hit().min(last.length);
     let farthest = planes.iter().map(|plane| plane.distance);
     let end = farthest.fold(last.start + 0.3 * way, f64::max);

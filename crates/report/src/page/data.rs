@@ -16,8 +16,8 @@ use etendue_store::arrays::{radial_z, z};
 use ndarray::{Array2, ArrayView2, Axis as Along, Zip};
 use serde::Serialize;
 
-/// The largest size, in bytes, of the slices of all planes that a page contains. A page with larger
-/// slices omits them and refers to `slices.npz`.
+/// The largest size, in bytes, of the slices of all planes that a page contains. A page with
+/// larger slices omits the slices and refers to `slices.npz`.
 const MOST_SLICES: usize = 1_500_000;
 
 #[derive(Serialize)]
@@ -52,7 +52,7 @@ struct PlaneData<'a> {
     field_unit: String,
     /// The radial spectrum for ρ ≥ 0, like the slices.
     radial: Grids,
-    /// A slice for each azimuth; `None` if they are too large.
+    /// A slice for each azimuth; `None` if the slices are too large.
     slices: Option<Vec<Grids>>,
 }
 

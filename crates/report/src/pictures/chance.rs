@@ -44,7 +44,7 @@ impl Outliers {
         all
     }
 
-    /// Returns a sentence with these numbers.
+    /// Returns a sentence that states these three numbers.
     pub(super) fn words(&self) -> String {
         let Self {
             cells,

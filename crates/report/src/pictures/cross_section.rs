@@ -17,8 +17,8 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
 }
 
 /// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill
-/// ± `half_widths`. Its spectrum is the slice at azimuth 90°, within the range of the frequencies.
-/// Returns `None` if there is no such slice.
+/// ± `half_widths`. The spectrum of this light field is the slice at azimuth 90°, within the
+/// range of the frequencies. Returns `None` if there is no slice at azimuth 90°.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
     const CELLS: usize = 64;
     let SliceGrid { azimuths, rho, nu } = &slices.grid;

@@ -2,8 +2,9 @@
 //!
 //! The window bounds the light field, so the spectrum between given frequencies is determined by
 //! these frequencies. Of all windowed light fields W ℓ with the given spectrum, the one with the
-//! least ∫ ℓ² is drawn. Its spectrum is a weighted sum of the given values. The weights follow
-//! from the covariance of white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+//! least ∫ ℓ² is drawn. The spectrum of the drawn light field is a weighted sum of the given
+//! values. The weights follow from the covariance of white noise behind the window, K(Ω) = ∫ W²
+//! e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};

@@ -21,7 +21,7 @@ use etendue_store::Results;
 use ndarray::{Array2, Axis};
 use std::cmp::Ordering;
 
-/// The strip along the path; returns it as SVG.
+/// Draws the strip along the path, and returns the strip as SVG.
 pub fn path(
     results: &mut Results,
     case: &MeasuredScene,
@@ -179,7 +179,7 @@ impl BothSlices {
         })
     }
 
-    /// Replaces the mean over azimuths by both slices.
+    /// Replaces the mean over azimuths by the slices at 0 and 90°.
     fn show<'a>(&'a self, column: &mut StripColumn<'a>) {
         let spectrum = column.spectrum.clone();
         let with = |values: &'a Array2<f64>| Picture {
@@ -191,7 +191,8 @@ impl BothSlices {
         let finer = self.finer.as_ref().map(|both| both.each_ref().map(with));
         let [finer, other_finer] = finer.map_or([None, None], |both| both.map(Some));
         column.finer = finer;
-        // If there are two lines through the origin, the first belongs to the plane of incidence.
+        // If there are two lines through the origin, the first line belongs to the plane of
+        // incidence.
         let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
         let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
         if let [own, other] = shears[..] {
@@ -305,7 +306,8 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // After a mirror, light lies along a line of the spectrum; after a lobe, it does not.
+            // After a mirror, light lies along a line of the spectrum; after a lobe, light does
+            // not lie along a line.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
@@ -313,9 +315,9 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
 }
 
 /// Lines along which theory predicts the light. After light has travelled a distance d, its
-/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, it also lies
-/// along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve these
-/// lines. A diffuse surface keeps only ν = 0, and d is counted from there.
+/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, the spectrum
+/// also lies along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve
+/// these lines. A diffuse surface keeps only ν = 0, and d is counted from this surface.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -342,7 +344,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 
 /// Lines along which the chain predicts the light of a picture, in the plane of incidence and
 /// across it. At the light, a projector's spectrum lies along ρ and a beam's along ν. The map of
-/// the chain moves content at Ω to A⁻ᵀ Ω.
+/// the chain moves the content of the spectrum at Ω to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];

@@ -71,7 +71,7 @@ pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
 }
 
 /// The axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each axis
-/// contains zero. This ring is half as wide as the others, but is drawn at equal width.
+/// contains zero. The first ring is half as wide as the others, but is drawn at equal width.
 pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
     let axis = |name, unit, edges: &[f64]| {

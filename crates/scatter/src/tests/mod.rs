@@ -90,7 +90,7 @@ fn white_furnace() {
     });
 }
 
-/// Tests surfaces that conserve energy, and facets so smooth that shadowing loses little of it.
+/// Tests surfaces that conserve energy, and facets so smooth that shadowing loses little energy.
 #[test]
 fn nothing_is_lost() {
     for angle in ANGLES {
@@ -106,7 +106,7 @@ fn nothing_is_lost() {
         }
         for facets in [beckmann([0.01; 2]), ggx([0.01; 2])] {
             let [_, [flux, error]] = means(&conductor(facets, Fresnel::White), wo);
-            // The loss grows with (α tan θ)², here at most 0.02.
+            // The loss of energy grows with (α tan θ)², which is at most 0.02 here.
             assert!(flux > 0.98 - 4.5 * error, "{facets:?} at {angle}: {flux}");
         }
         let mirrored = mirror(&Fresnel::White, wo);
@@ -128,7 +128,8 @@ fn smooth_interfaces_refract_by_snell() {
                 continue;
             }
             let behind = if is_thin { 1.0 } else { index };
-            // Radiance is divided by the squared index; the rest is rounding error.
+            // The radiance behind the interface is divided by the squared index; the remaining
+            // difference from 1 is rounding error.
             assert!((far.weight * behind * behind - 1.0).abs() < 1e-12);
             assert!((far.wi.truncate() * behind + wo.truncate()).length() < 1e-12);
             assert!(far.density.is_none() && (far.wi.length() - 1.0).abs() < 1e-12);
@@ -176,7 +177,7 @@ fn light_goes_both_ways() {
     }
 }
 
-/// The comparison of samples with densities detects each of these faults.
+/// The comparison of samples with densities detects each of the planted faults.
 #[test]
 fn planted_faults_are_seen() {
     let wo = at(0.6);

@@ -75,9 +75,9 @@ where
     }
 }
 
-/// Returns the largest weight for sampling by visible normals. For GGX it is Smith's masking of one
-/// direction, plus rounding error. Beckmann's normals are sampled by GGX, so their weight is larger
-/// by the ratios of D, 4/e, and of G₁, √π.
+/// Returns the largest weight for sampling by visible normals. For GGX, this weight is Smith's
+/// masking of one direction, plus rounding error. Beckmann's normals are sampled by GGX, so the
+/// weight of Beckmann's facets is larger by the ratios of D, 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
     match facets.distribution {
         MicrofacetDistribution::Beckmann => 2.61,
@@ -103,7 +103,7 @@ pub(super) fn phong(exponent: f64) -> Model {
     model(format!("{lobe:?}"), 1.0 + 1e-9, Lobe(value, sample, value))
 }
 
-/// Perfect mirrors, sampled whether they are visible or not.
+/// Perfect mirrors, whose normals are sampled whether they are visible or not.
 fn unmasked(facets: Microfacets) -> Model {
     let value = move |wi, wo| facets.value(wi, wo).0;
     let sample = move |wo, random| facets.sample_unmasked(wo, random);
@@ -128,8 +128,8 @@ pub(super) fn modified_phong(diffuse: f64, specular: f64, exponent: f64) -> Mode
         specular,
         lobe: Phong { exponent },
     };
-    // The weight of the cosine is at most kd divided by its share; for the lobe the ratio is larger
-    // by (n + 2)/(n + 1).
+    // The weight of the cosine is at most kd divided by its share. For the lobe, the ratio is
+    // larger by (n + 2)/(n + 1).
     let bound = (diffuse + specular) * (exponent + 2.0) / (exponent + 1.0) + 1e-9;
     model(format!("{phong:?}"), bound, phong)
 }
@@ -151,8 +151,8 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
         is_nonlinear,
     };
     let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
-    // The weight is that of coat or base divided by its share of samples, which is approximately
-    // its share of the light.
+    // The weight is the light of the coat or of the base divided by its share of the samples,
+    // which approximates its share of the light.
     model(name, 4.0, plastic)
 }
 

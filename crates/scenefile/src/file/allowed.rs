@@ -1,12 +1,13 @@
-//! Attributes of types: what a field of a scene file is, an example, and the numbers it may hold.
-//! The schema, the hints of messages and the check of all numbers are derived from them.
+//! Defines attributes of types: a description of a field of a scene file, an example, and the
+//! allowed range of its numbers. The schema, the hints in messages and the checks of all numbers
+//! are derived from these attributes.
 
 use crate::display::number;
 use crate::limits::MAX_NUMBER;
 use schemars::Schema;
 use serde_json::Value;
 
-/// Adds the description of a field, and an example.
+/// Adds the description and an example of a field.
 pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         schema.insert("title".into(), what.into());
@@ -14,18 +15,18 @@ pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut
     }
 }
 
-/// Sets the least and the largest allowed number.
+/// Sets the smallest and the largest allowed number.
 pub(super) fn within(least: f64, most: f64) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| bound(node, least, most))
 }
 
-/// Sets the range in words, for a range that depends on other fields and is checked by the
-/// resolver.
+/// Describes the allowed range in words, if it depends on other fields and is checked when the
+/// scene is resolved.
 pub(super) fn depends(words: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| node["x-range"] = words.into())
 }
 
-/// Adds the reason why other numbers are not allowed.
+/// Adds the reason why numbers outside the range are not allowed.
 pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         numbers(schema, |node| {
@@ -40,8 +41,8 @@ pub(super) fn any(schema: &mut Schema) {
     within(-MAX_NUMBER, MAX_NUMBER)(schema);
 }
 
-/// Allows positive numbers, as for sizes, widths, frequencies and strengths; this is the default
-/// for every number.
+/// Allows positive numbers, as for sizes, widths, frequencies and strengths; by default,
+/// every number has this range.
 pub(crate) fn positive(node: &mut Value) {
     bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
 }

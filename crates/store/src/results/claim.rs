@@ -21,7 +21,7 @@ impl Results {
         inside(&self.folder, name)
     }
 
-    /// Refuses results that would replace inputs.
+    /// Refuses results whose files would replace inputs.
     pub(super) fn refuse_inputs(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let earlier = earlier.keys().map(String::as_str);

@@ -21,7 +21,7 @@ pub(super) struct MovedFiles {
     pub(super) gone: Vec<String>,
     /// Files that etendue did not write.
     pub(super) replaced: Vec<String>,
-    /// All moves so far, to be undone on failure.
+    /// All moves so far, which are undone on failure.
     done: Vec<[PathBuf; 2]>,
     /// The style in which messages name arguments.
     arguments: ArgumentStyle,
@@ -63,7 +63,7 @@ impl MovedFiles {
 }
 
 impl Results {
-    /// Puts all files in place.
+    /// Moves all new files to their names.
     pub(super) fn commit(&self) -> Result<MovedFiles, Failure> {
         let index = self.plan.index;
         let ready = self.ready(index);
@@ -78,7 +78,7 @@ impl Results {
         })
     }
 
-    /// Completes the moves that a dead process began, and removes what it left.
+    /// Completes the moves that a dead process began, and removes files that the dead process left.
     pub(super) fn recover(&self) -> Result<MovedFiles, Failure> {
         let moved = match self.ready_index() {
             Some(index) => self.move_all(index)?,
@@ -99,7 +99,7 @@ impl Results {
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
-            // This folder is now empty, unless a file could not be moved back or an earlier
+            // The folder is now empty, unless a file could not be moved back or an earlier
             // process had moved a file there.
             remove_empty(&self.aside(""));
             return Err(error);
@@ -120,7 +120,7 @@ impl Results {
     fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
-        // From here on the folder holds no valid result until the new index is in place.
+        // From this step on, the folder holds no valid result until the new index is in place.
         let place = self.folder.join(index);
         if listed(&place).is_some() {
             moved.file(place, self.aside(index))?;
@@ -153,7 +153,7 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `force`, a file there that etendue did not write is
+    /// Moves a new file to its name; with `force`, a file that etendue did not write is first
     /// moved aside.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
