@@ -55,7 +55,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     })?;
     if rows.is_empty() {
         return Err(Failure::bad_input(
-            "no plane of this scene is orthogonal to its ray and sees light that leaves a smooth surface with a BRDF",
+            "no plane of this scene can be used; allowed: planes orthogonal to the central ray, for light that leaves a smooth surface with a BRDF",
         ));
     }
     let header = header(args);

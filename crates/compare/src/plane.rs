@@ -224,9 +224,9 @@ impl ComparedSides<'_> {
             let what = match (self.prediction.mesh_error, self.prediction.class) {
                 (None, _) => "the quadrature of the prediction may be off",
                 (Some(_), Class::Reference) => {
-                    "with so coarse a mesh, photons and backward rays may differ"
+                    "because of the coarse mesh, photons and backward rays may differ"
                 }
-                (Some(_), _) => "with so coarse a mesh, photons and the prediction may differ",
+                (Some(_), _) => "because of the coarse mesh, photons and the prediction may differ",
             };
             Some(format!(
                 "{what} by {error} of the spectrum, and noise is {}; more photons do not help",

@@ -282,7 +282,7 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         ),
         named(
             Save::Field,
-            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), which is also predicted and compared; traces the photons once more for each plane, or twice if memory is short",
+            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), with prediction and comparison. The photons are traced once more for each plane, or twice if memory is short",
         ),
     ])
 }

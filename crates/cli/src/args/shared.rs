@@ -167,7 +167,7 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be a whole number that f64 holds exactly"
+    reason = "the value was checked to be a whole number that f64 holds exactly"
 )]
 pub(super) fn whole_number(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");

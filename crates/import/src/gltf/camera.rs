@@ -21,7 +21,7 @@ impl<'a> GltfReader<'a> {
             return;
         };
         let Some(looking) = placed.looking() else {
-            return self.cause(&placed.path, "scales a camera to size 0");
+            return self.cause(&placed.path, "scales the camera of this node to size 0");
         };
         let read = match (&camera.perspective, &camera.orthographic) {
             (Some(of), _) => self.perspective(of, &format!("{path}.perspective")),

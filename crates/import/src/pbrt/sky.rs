@@ -21,12 +21,12 @@ const WITHIN: usize = 4096;
 impl PbrtReader<'_> {
     pub(super) fn sky(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
         if entity.has("L") {
-            let message = "L together with filename; allowed: one of them".to_owned();
+            let message = "L is given together with filename; allowed: one of them".to_owned();
             return Err(entity.fault(self.report, "L", message));
         }
         let scale = self.scale_of(entity);
         let turned = without_scale(to_world).ok_or_else(|| {
-            let message = "a sky with shear, or with different scales along its axes";
+            let message = "the sky has shear, or different scales along its axes";
             self.report.cause(&entity.place, message);
             CauseGiven
         });
