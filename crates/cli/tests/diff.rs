@@ -83,7 +83,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a half",
         4,
-        &["both have seed 1, and share photons"],
+        &["both results have seed 1, and share photons"],
     );
     // Other scenes.
     let pitch = [
@@ -223,7 +223,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::write(&summary, sealed(tree)).unwrap();
     refuses(
         path,
-        &["b/summary.json: files does not list light/slices.npz"],
+        &["b/summary.json: the field files does not list light/slices.npz"],
     );
 }
 
@@ -286,7 +286,7 @@ fn the_same_photons_are_compared_number_by_number() {
         &folder,
         "a fill",
         4,
-        &["receiver: ", "both have seed 1, and share photons"],
+        &["receiver: ", "both results have seed 1, and share photons"],
     );
 }
 

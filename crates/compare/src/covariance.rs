@@ -188,7 +188,7 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} grows over the outer half of the band, where there are replicas, tails of edges or other parts of the spectrum: the value covers the band only",
+                "the variance along {} grows over the outer half of the band, which contains replicas, tails of edges or other parts of the spectrum: the variance covers only the band",
                 axes.join(", ")
             ));
         }

@@ -217,7 +217,7 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons, or a few rays of the prediction, carry most of the light: the light varies as if each batch held only {each:.1} of them, too few for a test{needs}"
+                "a few photons or rays of the prediction carry most of the light: the noise is that of only {each:.1} equal photons or rays in each batch, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);

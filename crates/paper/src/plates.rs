@@ -163,7 +163,7 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
-        note: "*blocked*: the share of the light in the window that the blockers block. The receiver has most high frequencies behind blockers of medium size: the replicas of the smallest blockers are sheared beyond its range.",
+        note: "*blocked*: the share of the light in the window that the blockers block. Behind blockers of medium size, the receiver has the most high frequencies: travel shears the replicas of the smallest blockers beyond the range of the receiver.",
         heads: lettered(&["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]),
         rows: compared(&seen, true),
         feet,

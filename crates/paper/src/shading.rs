@@ -139,7 +139,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
-        note: "A beam (distant light with content at all angular frequencies) on a glossy sphere. The lobe limits the line of the spectrum; curvature shears it twice, and travel once more.",
+        note: "A beam (distant light with content at all angular frequencies) on a glossy sphere. The lobe limits the spectrum, which is a line; curvature shears this line twice, and travel shears it once more.",
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),

@@ -274,7 +274,7 @@ pub struct PlaneFile {
 
 /// A place on the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(transform = told("Emission, Distance(…), or a place before or after something", r#"Before("floor")"#))]
+#[schemars(transform = told("Emission, Distance(…), Before(…) or After(…)", r#"Before("floor")"#))]
 pub enum Place {
     /// At the light, for light as it leaves.
     Emission,

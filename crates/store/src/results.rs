@@ -211,7 +211,7 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "this file was not planned: a bug in etendue",
+                "this file was not planned: this is a bug in etendue",
             ));
         }
         let path = self.staged(name);

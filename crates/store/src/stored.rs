@@ -102,7 +102,7 @@ impl<T: DeserializeOwned> Stored<T> {
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
         if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
             return Err(fault(
-                "scene_hash is not that of scene_file and inputs".to_owned(),
+                "scene_hash is not the hash of scene_file and inputs".to_owned(),
             ));
         }
         Ok(Self {
@@ -132,7 +132,7 @@ impl<T> Stored<T> {
             &self.path.display().to_string(),
         )?;
         if scene.inputs != *inputs {
-            return Err(self.fault("inputs are not the files in its folder"));
+            return Err(self.fault("the field inputs does not match the files in the folder"));
         }
         Ok(scene)
     }
@@ -210,13 +210,13 @@ pub fn listed_bytes(
 ) -> Result<Vec<u8>, Failure> {
     let [shown, index] = [name, index].map(|name| folder.join(name));
     let (shown, index) = (shown.display(), index.display());
-    let hash = files
-        .get(name)
-        .ok_or_else(|| Failure::bad_input(format!("{index}: files does not list {name}")))?;
+    let hash = files.get(name).ok_or_else(|| {
+        Failure::bad_input(format!("{index}: the field files does not list {name}"))
+    })?;
     let bytes = read_below(folder, name, machine::available_memory())
         .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
     if *hash != blake3::hash(&bytes).to_hex().as_str() {
-        let message = format!("{shown} is damaged: its hash is not the one in {index}");
+        let message = format!("{shown} is damaged: its hash differs from the hash in {index}");
         return Err(Failure::bad_input(message));
     }
     Ok(bytes)

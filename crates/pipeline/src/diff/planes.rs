@@ -277,7 +277,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: the light varies as if each batch held only {each:.1} of them"
+                    "a few photons carry most of the light of {folder}: the noise is that of only {each:.1} equal photons in each batch"
                 ));
             }
         }
@@ -291,12 +291,12 @@ impl ResultPair<'_> {
         let planes = a.planes.len().max(1) as f64;
         if test.p_shared.is_some_and(|p| p < SHARED / planes) {
             let seeds = if a.seed == b.seed {
-                format!("both have seed {}, and share photons", a.seed)
+                format!("both results have seed {}, and share photons", a.seed)
             } else {
-                "they share photons, or their noise is overstated".to_owned()
+                "the results share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "they differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
+                "the results differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());

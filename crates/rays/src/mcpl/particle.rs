@@ -153,7 +153,7 @@ impl ParticleNumbers<'_> {
             records.extend(ordered(value.to_le_bytes(), little));
             return Ok(());
         }
-        #[expect(clippy::cast_possible_truncation, reason = "the file holds f32")]
+        #[expect(clippy::cast_possible_truncation, reason = "the file stores f32")]
         let single = value as f32;
         if single.is_infinite() && value.is_finite() {
             return Err(format!("{value} does not fit single precision"));

@@ -79,7 +79,7 @@ impl Tm25File {
         header.check()?;
         if !numbers.len().is_multiple_of(header.columns()) {
             let message = format!(
-                "{} numbers, not a multiple of {} for each ray",
+                "the number of values is {}, which is not a multiple of the {} values of a ray",
                 numbers.len(),
                 header.columns()
             );

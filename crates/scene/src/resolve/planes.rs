@@ -162,7 +162,7 @@ impl Resolver<'_> {
                 let stop = self.stop(of, place, name, file, path, stops)?;
                 let visited = stop.ends.is_some() || file.path.visits.contains(name);
                 if stop.surface && !visited {
-                    let allowed = "After(…) of a surface that the path visits";
+                    let allowed = "After(…) with a surface that the path visits";
                     self.faults.add_on_path(of, show(place), allowed);
                 }
                 let leg = stop.ends.map_or(0, |leg| leg + 1);
