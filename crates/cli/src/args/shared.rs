@@ -68,7 +68,8 @@ impl PhotonArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ForceArgs {
-    /// Replace files that etendue did not write, or that were changed after it wrote them, and print the name of each
+    /// Replace files that etendue did not write, or that were changed after etendue wrote them, and
+    /// print the name of each replaced file
     #[arg(long)]
     pub(crate) force: bool,
 }
