@@ -191,7 +191,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")"#,
         "Distance(4.5)",
-        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m, where the last surface is, and from there to 4 m, where an object ends the path",
+        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 m to the last surface at 2 m, or from this surface to 4 m, where an object ends the path",
     ],
     // A jitter that would make squares overlap.
     [

@@ -200,7 +200,7 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if no photon reaches it, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence)"
+                    "no ray of the prediction reached the window, and {inside} of {emitted} photons reached it. If no photon reached the window, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence"
                 )
             })
         } else if inside == 0 {

@@ -138,7 +138,7 @@ fn quadrics_have_sizes() {
         ),
         (
             "Scale 1 2 1 AreaLightSource \"diffuse\" Shape \"sphere\"",
-            "that emits, with shear or with different scales along its axes",
+            "emits, but has shear or different scales along its axes",
         ),
         ("Scale 1 0 1 Shape \"disk\"", "scaled to size 0"),
         ("Shape \"curve\"", "shape `curve` is not supported"),

@@ -23,7 +23,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
+        note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel, the light of the point is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and the spectrum is the line *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),

@@ -69,7 +69,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
     };
     taken.curves(&Curves {
         title: "The product".to_owned(),
-        note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
+        note: "|*S*_{0}| at *ν* = 0, the line of the light that leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
             .to_owned(),
         y: AxisQuantity::new("relative to 0", ""),
         panels: vec![panel],

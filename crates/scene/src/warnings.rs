@@ -47,7 +47,7 @@ impl Scene {
                 worst.filter(|((_, mismatch), _)| *mismatch > LEVEL)
             {
                 warnings.push(format!(
-                    "{}: too coarse for normals interpolated between its vertices. At {}, photons \
+                    "{}: the mesh is too coarse for normals that are interpolated between vertices. At {}, photons \
                      and backward rays may differ by {:.1} % of the spectrum; with triangles {:.0} \
                      times shorter, they differ by at most {} %",
                     mesh.name,

@@ -96,7 +96,7 @@ impl<T: DeserializeOwned> Stored<T> {
             )));
         }
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed after it was written: its index_hash does not match the text before it";
+            let what = "the file was changed after it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;

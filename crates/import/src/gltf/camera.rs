@@ -99,7 +99,7 @@ impl<'a> GltfReader<'a> {
         let (xmag, ymag) = (xmag?, ymag?);
         let aspect = xmag / ymag;
         if !(ASPECTS[0]..=ASPECTS[1]).contains(&aspect) {
-            let message = format!("xmag over ymag is {aspect}; allowed: {ASPECTS:?}");
+            let message = format!("xmag divided by ymag is {aspect}; allowed: {ASPECTS:?}");
             self.cause(path, message);
             return None;
         }

@@ -202,7 +202,7 @@ impl ResultPair<'_> {
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
-            return Some(format!("its {field} is {}", values.join(" and ")));
+            return Some(format!("the field {field} is {}", values.join(" and ")));
         }
         let names = ["azimuths", "frequencies ρ", "frequencies ν"];
         let mut axes = names.iter().zip(a.axes.iter().zip(&b.axes));
@@ -211,7 +211,7 @@ impl ResultPair<'_> {
             let last = axis.iter().copied().fold(0.0, f64::max);
             format!("{} up to {}", axis.len(), tidy(last))
         };
-        Some(format!("its {name} differ: {} and {}", brief(a), brief(b)))
+        Some(format!("the {name} differ: {} and {}", brief(a), brief(b)))
     }
 
     fn parameters(&self, a: &StoredPlane, b: &StoredPlane) -> Vec<ParameterDiff> {

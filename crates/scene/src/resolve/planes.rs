@@ -240,7 +240,7 @@ impl Resolver<'_> {
         let end = last.start + last.length;
         if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {} m, where the last surface is, and from there to {} m, where an object ends the path",
+                "0 m to the last surface at {} m, or from this surface to {} m, where an object ends the path",
                 tidy(last.start),
                 tidy(end)
             );

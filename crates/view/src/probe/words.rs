@@ -225,7 +225,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
             lines.push(line(what, number(value), value));
         }
         advice = Some(format!(
-            "advice: shading samples {} at {degrees:.0}°, {} across it",
+            "advice: place shading samples {} at {degrees:.0}°, and {} across this direction",
             picture.spacing(value.value),
             picture.spacing(across.map_or(limit, |across| across.value)),
         ));
