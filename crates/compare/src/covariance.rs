@@ -194,7 +194,7 @@ impl CovarianceReport {
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
-                "covariance tracing differs from the photons by {} of the variances; noise is {}",
+                "covariance tracing differs from the photons by {} of the variances, and noise is {}",
                 percent(off, 1),
                 percent(error, 1)
             ));

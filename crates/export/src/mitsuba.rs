@@ -59,7 +59,7 @@ pub enum NotInMitsuba {
     /// A sum of BRDFs that is not a blend.
     #[error(
         "Mitsuba adds two BRDFs with weights w and 1 − w only: {name:?} cannot be exported; \
-         allowed: Reflects with `other` and `blend`"
+         use Reflects with `other` and `blend`"
     )]
     Sum {
         /// Name of the surface.

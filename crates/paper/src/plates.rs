@@ -110,7 +110,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     taken.plate(&Plate {
         title: "Two occluders that together block all light",
-        note: "Measured slices at azimuth 0. Each occluder leaves half of the light, with a different phase; together they leave none.",
+        note: "Measured slices at azimuth 0. Each occluder passes half of the light, with a different phase; together, the two occluders pass no light.",
         heads: ["one occluder", "the other", "both"]
             .map(str::to_owned)
             .to_vec(),

@@ -92,7 +92,7 @@ impl<T: DeserializeOwned> Stored<T> {
         // differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
-                "written by version {version}, but this is version {VERSION}: all stages must be of the same version"
+                "the file was written by version {version}, but this program is version {VERSION}: all stages must be of the same version"
             )));
         }
         if !sealed::is_sealed(&bytes) {

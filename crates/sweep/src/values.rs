@@ -137,7 +137,9 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         format!("`{count}` is not a whole number of values from 2 to {MAX_POINTS}")
     })?;
     if is_log && ends[0] * ends[1] <= 0.0 {
-        return Err("logarithmic spacing cannot change the sign or reach zero".to_owned());
+        return Err(
+            "logarithmic spacing cannot include values of different signs or zero".to_owned(),
+        );
     }
     Ok((0..count)
         .map(|i| between(ends, i, count, is_log))

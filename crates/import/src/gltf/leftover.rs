@@ -10,7 +10,7 @@ impl GltfReader<'_> {
         for (i, animation) in root.animations.iter().enumerate() {
             let name = animation.name.as_deref().unwrap_or_default();
             let message = format!(
-                "{} left out: nodes keep the transforms that the file gives them",
+                "animation {} is left out: nodes keep the transforms that they have without it",
                 quoted(name)
             );
             self.note(&format!("animations[{i}]"), message);

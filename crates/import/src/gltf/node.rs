@@ -84,7 +84,7 @@ impl<'a> GltfReader<'a> {
             }
             (Some(_), false) => self.note(
                 "nodes",
-                format!("{unmet} nodes are not in the scene and are left out"),
+                format!("{unmet} nodes do not belong to the scene and are left out"),
             ),
             (None, _) => {}
         }
@@ -129,7 +129,7 @@ impl<'a> GltfReader<'a> {
             Some(_) if is_split => {
                 self.cause(
                     path,
-                    "has a matrix together with translation, rotation or scale; allowed: either",
+                    "has a matrix together with translation, rotation or scale; allowed: only one of the two forms",
                 );
                 None
             }

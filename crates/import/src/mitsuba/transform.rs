@@ -117,7 +117,10 @@ fn vector(attributes: &Attributes, default: f64) -> Result<DVec3, String> {
     let each = ["x", "y", "z"].map(|axis| find(attributes, axis));
     if let Some(text) = find(attributes, "value") {
         if each.iter().any(Option::is_some) {
-            return Err("value is given together with x, y or z; allowed: either".to_owned());
+            return Err(
+                "value is given together with x, y or z; allowed: only one of the two forms"
+                    .to_owned(),
+            );
         }
         return value::triple(text).map(DVec3::from);
     }

@@ -58,7 +58,7 @@ impl MtlMap {
                 "-o" => offset = pair(&values, 0.0),
                 "-clamp" if values.first() == Some(&"on") => wrap = Wrap::Clamp,
                 "-clamp" | "-blendu" | "-blendv" => {}
-                _ => report.note(&place, format!("option {option} left out")),
+                _ => report.note(&place, format!("option {option} is left out")),
             }
         }
         if rest.is_empty() {

@@ -70,7 +70,7 @@ pub(super) fn read(
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
         1 => format!("{word} left out"),
-        _ => format!("{word} left out, {count} times"),
+        _ => format!("{word} is left out, {count} times"),
     }
 }
 

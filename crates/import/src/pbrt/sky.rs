@@ -101,7 +101,7 @@ fn nearest(square: &Raster, toward: DVec3) -> f64 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "the number is from 0 to the side"
+        reason = "the number is between 0 and the side length of the picture"
     )]
     let [x, y] = place(toward).map(|v| ((v.clamp(0.0, 1.0) * side as f64) as usize).min(side - 1));
     square.values()[y * side + x].max(0.0)

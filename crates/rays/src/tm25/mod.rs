@@ -224,7 +224,7 @@ impl Tm25File {
                 let most = self.header.spectra.len();
                 if found.fract() != 0.0 || found < 1.0 || found > most as f64 {
                     return refused(format!(
-                        "its spectrum is number {found}; allowed: 1 to {most}"
+                        "its spectrum has number {found}; allowed: 1 to {most}"
                     ));
                 }
             }

@@ -85,12 +85,12 @@ impl Resolver<'_> {
         };
         let field = at.field(&format!("vertex {}", at.number(vertex)));
         let value = format!(
-            "on a fold: its normal is {:.1}° from that of {}",
+            "on a fold: its normal differs by {:.1}° from the normal of {}",
             libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees(),
             at.triangle(triangle)
         );
         let allowed = format!(
-            "vertices of a smooth surface, with normals at most {:.1}° from those of their triangles, which are all wound in the same direction{}",
+            "vertices of a smooth surface, with normals at most {:.1}° from the normals of their triangles, which all have the same winding{}",
             libm::acos(MIN_NORMAL).to_degrees(),
             others(turned.len())
         );
