@@ -243,7 +243,7 @@ fn faults_of_ply_files_are_told() {
         ("element vertex 3", "element vertex -3", "line 3 is `element vertex -3`; allowed: element NAME COUNT"),
         ("element vertex 3", "element vertex 1000000000000", "number of bytes after the header is 26; allowed: at least 6000000000001, because the header announces 1000000000000 vertex, 1 face"),
         ("element vertex 3", "element vertex 18446744073709551615", "bytes after the header is 26; allowed: at least 110680464442257309691,"),
-        ("element vertex 3\n", "property int n\nelement vertex 3\n", "line 3 is `property int n`; allowed: an element before"),
+        ("element vertex 3\n", "property int n\nelement vertex 3\n", "line 3 is `property int n`; allowed: an element that stands before"),
         ("property float x", "property half x", "line 4 is `property half x`; allowed: property TYPE NAME"),
         ("property float x\n", "property float x\nproperty uchar x\n", "line 5 is `property uchar x`; allowed: each property once"),
         ("element face", "element vertex 3\nelement face", "line 7 is `element vertex 3`; allowed: each element once"),
