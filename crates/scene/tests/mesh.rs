@@ -272,7 +272,7 @@ fn faults_of_ply_files_are_told() {
         ("3 0 1 2\n", "-3 0 1 2\n", "line 13, face 0, vertex_indices is -3 long; allowed: a list that"),
         ("3 0 1 2\n", "4 0 1 2", "line 13, face 0, vertex_indices is missing, because the file ends; allowed: 1 rows of element face"),
         ("3 0 1 2\n", "3 0 1 1\n", "triangles with an area is 0; allowed: at least 1"),
-        ("3 0 1 2\n", "3 0 1 2\n3 0 2 1\n", "the rest of the file is 7 bytes long; allowed: empty, after"),
+        ("3 0 1 2\n", "3 0 1 2\n3 0 2 1\n", "the rest of the file is 7 bytes long; allowed: empty, because"),
     ];
     for (from, to, words) in cases {
         let told = read("a.ply", edited(from, to)).unwrap_err().to_string();
