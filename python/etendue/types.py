@@ -182,7 +182,7 @@ class EventThinLens(TypedDict):
     """A flat thin lens with this focal length."""
 
     ThinLens: float
-    """a focal length in metres, negative if the lens spreads light, not 0"""
+    """a focal length in metres, other than 0, and negative if the lens spreads light"""
 
 
 class FormCylinder(TypedDict):

@@ -22,7 +22,7 @@ fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be a whole number that f64 holds exactly"
+    reason = "the value was checked to be a whole number that f64 holds exactly"
 )]
 fn whole_float(value: &Bound<'_, PyAny>) -> Option<u64> {
     let number: f64 = value.extract().ok()?;

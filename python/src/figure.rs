@@ -46,7 +46,9 @@ pub(crate) fn figure(
     alive(py, threads, progress.as_ref(), move |live| {
         let subjects = subjects(&request)?;
         let first = subjects.first();
-        let first = first.ok_or_else(|| Failure::bad_input("there is no scene to draw"))?;
+        let first = first.ok_or_else(|| {
+            Failure::bad_input("a figure needs at least one scene, but no scene is given")
+        })?;
         make_all(&request, &subjects, live)?;
         Ok(out.join(first.name()))
     })

@@ -49,7 +49,9 @@ fn viewpoint(arguments: &Arguments<'_, '_>) -> PyResult<Option<Viewpoint>> {
             fov,
         })),
         (None, None) if up.is_none() && arguments.get("fov")?.is_none() => Ok(None),
-        (None, None) => fault("up and fov need look_from and look_at, which add a camera"),
+        (None, None) => fault(
+            "up and fov are allowed only together with look_from and look_at, which add a camera",
+        ),
         _ => fault("look_from and look_at must be given together"),
     }
 }

@@ -90,7 +90,7 @@ def test_figures(alone, tmp_path):
         ({"scenes": [scene, scene]}, "two scenes are named fig9b"),
         ({"scenes": ["5"], "plane": "receiver"}, "^plane applies only to figures of scenes$"),
         ({"scenes": ["no-figure"]}, "no-figure"),
-        ({"scenes": []}, "no scene to draw"),
+        ({"scenes": []}, "no scene is given"),
         ({"scenes": [scene], "quality": "best"}, "quality is 'best'; allowed: 'draft', 'print'"),
         ({"scenes": [scene], "style": tmp_path / "none.ron"}, "none.ron: cannot be read"),
     ]:
@@ -170,7 +170,7 @@ def test_imports(alone, tmp_path):
         ({"look_from": (0, 0, 1)}, "look_from and look_at must be given together"),
         ({"look_from": (0, 0, 1), "look_at": (0, 0, 1)}, "look_from= and look_at= are the same point, or up= is parallel to"),
         ({"look_from": "0,0,1", "look_at": (0, 0, 0)}, "look_from is '0,0,1'; allowed: three numbers"),
-        ({"fov": 30}, "up and fov need look_from and look_at"),
+        ({"fov": 30}, "up and fov are allowed only together with look_from and look_at"),
         ({"seed": -1}, "seed is -1; allowed"),
         ({"threads": 0}, "threads is 0; allowed: a whole number from 1 to 1024"),
         ({"threads": 10**6}, "threads is 1000000; allowed: a whole number from 1 to 1024"),

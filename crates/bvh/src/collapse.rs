@@ -43,7 +43,7 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
             let number = if of.is_leaf() {
                 assert!(
                     of.prim_count as usize <= MAX_LEAF,
-                    "a leaf has more boxes than were asked for"
+                    "a leaf has more than {MAX_LEAF} boxes"
                 );
                 leaves.push([of.first_index, of.prim_count]);
                 Node::leaf(leaves.len() - 1)

@@ -55,7 +55,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     })?;
     if rows.is_empty() {
         return Err(Failure::bad_input(
-            "no plane of this scene is orthogonal to its ray and sees light that leaves a smooth surface with a BRDF",
+            "no plane of this scene can be used; allowed: planes orthogonal to the central ray, for light that leaves a smooth surface with a BRDF",
         ));
     }
     let header = header(args);
@@ -67,10 +67,10 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let cells = rows.iter().map(cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
-        "A bandwidth is the frequency below which 95 % of the energy lies: in cycles per radian for the lobe, and otherwise in cycles per unit slope at a fixed point of the plane.",
+        "A bandwidth is the frequency below which 95 % of the energy lies. Its unit is cycles per radian for the lobe; for all other bandwidths, at a fixed point of the plane, the unit is cycles per unit slope.",
     );
     say(
-        "B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; the columns beside them use the equations as printed.\n",
+        "B and B' are Eqs. 20 and 21 of Durand et al. 2005, corrected; the columns beside them use the equations as printed.\n",
     );
     deliver(&aligned(table).join("\n"))?;
     for warning in warnings {

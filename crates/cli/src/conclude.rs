@@ -53,7 +53,7 @@ pub(crate) fn conclude(
         if !gone.is_empty() {
             let names = gone.join(", ");
             say(&format!(
-                "these files were removed with the earlier result and not saved again: {names}"
+                "these files of the earlier result were removed, and this run did not save them: {names}"
             ));
         }
     }

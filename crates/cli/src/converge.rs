@@ -23,7 +23,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
         ));
     }
     say(&format!(
-        "{}: ‖first order − exact‖/‖exact‖ with widths × e and frequencies / e\n",
+        "{}: ‖first order − exact‖/‖exact‖, with all widths multiplied by e and all frequencies divided by e\n",
         scene.name
     ));
     deliver(&aligned(rows(&planes)).join("\n"))?;

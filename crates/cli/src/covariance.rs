@@ -111,7 +111,7 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
         let all: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
         let all = all.join(", ");
         return Err(Failure::bad_input(format!(
-            "--plane {name}: the planes are {all}"
+            "--plane {name}: the scene has no such plane; allowed: {all}"
         )));
     }
     if !names.is_empty() {
@@ -139,7 +139,9 @@ fn of_plane(
     bar.finish_and_clear();
     let field = field.map_err(Failure::cannot_run)?;
     let Some(covariance) = &field.covariance else {
-        return Err(Failure::cannot_run("no covariance: a bug in etendue"));
+        return Err(Failure::cannot_run(
+            "a plane has no covariance: this is a bug in etendue",
+        ));
     };
     CovarianceReport::new(
         (measurement, index),

@@ -174,7 +174,7 @@ fn wavelengths(set: &RaySet) -> String {
             let unknown = each.iter().filter(|w| w.is_nan()).count();
             let rest = match unknown {
                 0 => String::new(),
-                n => format!(", none for {n} rays"),
+                n => format!("; {n} rays have no wavelength"),
             };
             format!(
                 "{}, one for each ray{rest}",

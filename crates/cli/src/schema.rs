@@ -167,7 +167,7 @@ fn table(node: &Value) -> String {
 fn default(value: &Value) -> String {
     match value {
         Value::Null => "left out".to_owned(),
-        Value::Object(_) => "the defaults of its fields".to_owned(),
+        Value::Object(_) => "the default of each field".to_owned(),
         value => format!("`{}`", written(value)),
     }
 }

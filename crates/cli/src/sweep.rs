@@ -53,7 +53,7 @@ fn print(finished: &FinishedSweep) {
     } = finished;
     say(&aligned(rows.clone()).join("\n"));
     if !has_curves {
-        say("no curves are drawn: they would have more than 24 panels");
+        say("no curves are drawn, because the figure would have more than 24 panels");
     }
     let all = pass + fail + undecided;
     say(&format!(

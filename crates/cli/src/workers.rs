@@ -26,8 +26,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         }
     };
     if !is_shared(&command) {
-        let message =
-            "only `run` without --target-error, `predict` and `sweep` can use several processes";
+        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error";
         return ended(Err(Failure::bad_input(message)), !leads);
     }
     if !leads {

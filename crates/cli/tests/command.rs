@@ -291,7 +291,7 @@ fn saved_photons_are_the_ones_measured() {
 
     let output = run(folder.path(), &[]);
     let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.contains("not saved again: after_blockers/photons.npy, "));
+    assert!(told.contains("did not save them: after_blockers/photons.npy, "));
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 

@@ -130,7 +130,7 @@ fn a_changed_index_is_refused() {
         (
             a,
             |t| t["seed"] = json!(3),
-            &["seed 3; the seed of its scene is 18446744073709551557"],
+            &["its seed is 3, but the seed of its scene is 18446744073709551557"],
         ),
         (
             a,
@@ -140,7 +140,7 @@ fn a_changed_index_is_refused() {
         (
             p,
             |t| t["planes"] = json!([]),
-            &["planes []", "[light, receiver]"],
+            &["planes are []", "[light, receiver]"],
         ),
         (
             p,
@@ -260,20 +260,25 @@ fn wrong_numbers_are_refused() {
             LEDGER,
             "emitted",
             counts(&[20], u64::MAX),
-            "photons of each batch",
+            "photons of the batches",
         ),
         (
             BATCHES,
             "emitted",
             counts(&[20], 5),
-            "photons of each batch",
+            "photons of the batches",
         ),
-        (BATCHES, "tally", counts(&[20, 3], 1), "inside + outside"),
+        (
+            BATCHES,
+            "tally",
+            counts(&[20, 3], 1),
+            "the sum of inside and outside",
+        ),
         (
             BATCHES,
             "tally",
             counts(&[20, 3], u64::MAX),
-            "inside + outside",
+            "the sum of inside and outside",
         ),
         (BATCHES, "slices", npy(&broken.into_dyn()), "not finite"),
         (

@@ -83,7 +83,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a half",
         4,
-        &["both have seed 1, and share photons"],
+        &["both results have seed 1, and share photons"],
     );
     // Other scenes.
     let pitch = [
@@ -104,7 +104,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a window",
         4,
-        &["its window.u.Hann is 0.30000000000000004 and 0.2"],
+        &["the field window.u.Hann is 0.30000000000000004 and 0.2"],
     );
     found(
         &folder,
@@ -202,7 +202,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::write(&summary, text.replace("\"seed\": 2", "\"seed\": 3")).unwrap();
     refuses(
         path,
-        &["b/summary.json: it was changed after it was written"],
+        &["b/summary.json: the file was changed after it was written"],
     );
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);
@@ -223,7 +223,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::write(&summary, sealed(tree)).unwrap();
     refuses(
         path,
-        &["b/summary.json: files does not list light/slices.npz"],
+        &["b/summary.json: the field files does not list light/slices.npz"],
     );
 }
 
@@ -286,7 +286,7 @@ fn the_same_photons_are_compared_number_by_number() {
         &folder,
         "a fill",
         4,
-        &["receiver: ", "both have seed 1, and share photons"],
+        &["receiver: ", "both results have seed 1, and share photons"],
     );
 }
 

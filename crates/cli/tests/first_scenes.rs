@@ -77,7 +77,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")"#,
         r#""floor""#,
-        r#"line 14, column 31: planes[0].at is "floor"; allowed: Emission, Distance(…), or a place before or after something, such as Before("floor")"#,
+        r#"line 14, column 31: planes[0].at is "floor"; allowed: Emission, Distance(…), Before(…) or After(…), such as Before("floor")"#,
     ],
     // A name without quotes.
     [
@@ -191,7 +191,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")"#,
         "Distance(4.5)",
-        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m, where the last surface is, and from there to 4 m, where an object ends the path",
+        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 m to the last surface at 2 m, or from this surface to 4 m, where an object ends the path",
     ],
     // A jitter that would make squares overlap.
     [
@@ -209,7 +209,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")),"#,
         r#"Before("floor")), (name: "arrival", at: Emission),"#,
-        r#"line 14, column 56: planes[1].name is "arrival"; allowed: a name no other plane has"#,
+        r#"line 14, column 56: planes[1].name is "arrival"; allowed: a name that no other plane has"#,
     ],
     // Blockers at the same distance as the floor.
     [
@@ -225,7 +225,7 @@ const MISTAKES: &[[&str; 3]] = &[
     ],
 ];
 
-const CUT: &str = "line 15, column 7: the scene: the file ends here, but a bracket is still open; allowed: its missing fields and `)`";
+const CUT: &str = "line 15, column 7: the scene: the file ends here, but a bracket is still open; allowed: the missing fields and `)`";
 
 /// Settings on the command line, and their messages.
 const SET: &[[&str; 2]] = &[
@@ -243,7 +243,7 @@ const SET: &[[&str; 2]] = &[
     ],
     [
         "planes.0.at=Befor(floor)",
-        r#"planes[0].at: unknown variant `Befor`, expected one of `Emission`, `Before`, `After`, `Distance` (did you mean Before?); allowed: Emission, Distance(…), or a place before or after something, such as Before("floor")"#,
+        r#"planes[0].at: unknown variant `Befor`, expected one of `Emission`, `Before`, `After`, `Distance` (did you mean Before?); allowed: Emission, Distance(…), Before(…) or After(…), such as Before("floor")"#,
     ],
 ];
 

@@ -222,7 +222,7 @@ fn time_is_up_within_a_batch() {
         let (code, message) = ended(path, arguments);
         assert_eq!(code, Some(3), "{message}");
         assert!(
-            message.contains("0 of 64 batches, and parts of "),
+            message.contains("0 of 64 batches and parts of "),
             "{message}"
         );
         assert!(parts(path) > kept, "{arguments}: {message}");

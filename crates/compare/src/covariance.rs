@@ -188,13 +188,13 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} grows over the outer half of the band, where there are replicas, tails of edges or other parts of the spectrum: the value covers the band only",
+                "the variance along {} grows over the outer half of the band, which contains replicas, tails of edges or other parts of the spectrum: the variance covers only the band",
                 axes.join(", ")
             ));
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
-                "covariance tracing differs from the photons by {} of the variances; noise is {}",
+                "covariance tracing differs from the photons by {} of the variances, and noise is {}",
                 percent(off, 1),
                 percent(error, 1)
             ));

@@ -159,7 +159,7 @@ pub(crate) fn compared(
     let n = shares.len();
     assert!(
         [n + 1, 2 * n].contains(&spectra.len()),
-        "the groups of the prediction differ from those of the measurement"
+        "the prediction and the measurement have different groups"
     );
     let products = bins.products(&spectra);
     let each = || products.outer_iter();

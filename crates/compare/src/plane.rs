@@ -200,7 +200,7 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if no photon reaches it, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence)"
+                    "no ray of the prediction reached the window, and {inside} of {emitted} photons reached it. If no photon reached the window, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence"
                 )
             })
         } else if inside == 0 {
@@ -217,16 +217,16 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons, or a few rays of the prediction, carry most of the light: the light varies as if each batch held only {each:.1} of them, too few for a test{needs}"
+                "a few photons or rays of the prediction carry most of the light: the noise is that of only {each:.1} equal photons or rays in each batch, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
             let what = match (self.prediction.mesh_error, self.prediction.class) {
                 (None, _) => "the quadrature of the prediction may be off",
                 (Some(_), Class::Reference) => {
-                    "with so coarse a mesh, photons and backward rays may differ"
+                    "because of the coarse mesh, photons and backward rays may differ"
                 }
-                (Some(_), _) => "with so coarse a mesh, photons and the prediction may differ",
+                (Some(_), _) => "because of the coarse mesh, photons and the prediction may differ",
             };
             Some(format!(
                 "{what} by {error} of the spectrum, and noise is {}; more photons do not help",

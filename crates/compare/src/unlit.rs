@@ -45,7 +45,7 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         cuts.dedup();
         if whole > 0.0 && section.measure() <= ROUNDING * whole {
             return Some(format!(
-                "half-planes of {} block all paths",
+                "the half-planes of {} block all paths of light",
                 cuts.join(" and ")
             ));
         }
@@ -53,7 +53,7 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
     let covering = layers
         .into_iter()
         .find(|layer| covers(layer, &sections, scene, plane));
-    covering.map(|layer| format!("{} blocks all paths", layer.name))
+    covering.map(|layer| format!("{} blocks all paths of light", layer.name))
 }
 
 /// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a

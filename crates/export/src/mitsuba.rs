@@ -34,12 +34,10 @@ pub enum NotInMitsuba {
         exponent: f64,
     },
     /// A light of rays from a file.
-    #[error("Mitsuba has no light of single rays: the rays of a file cannot be exported")]
+    #[error("Mitsuba has no light that consists of rays: the rays of a file cannot be exported")]
     Rays,
     /// A mask that is not opaque.
-    #[error(
-        "Mitsuba has no semi-transparent mask, only pictures of one: {name:?} cannot be exported"
-    )]
+    #[error("Mitsuba has semi-transparent masks only as pictures: {name:?} cannot be exported")]
     Mask {
         /// Name of the layer of blockers with this mask.
         name: String,
@@ -61,7 +59,7 @@ pub enum NotInMitsuba {
     /// A sum of BRDFs that is not a blend.
     #[error(
         "Mitsuba adds two BRDFs with weights w and 1 − w only: {name:?} cannot be exported; \
-         Reflects with `other` and `blend` can"
+         use Reflects with `other` and `blend`"
     )]
     Sum {
         /// Name of the surface.

@@ -2,7 +2,7 @@
 //!
 //!     cargo run --example check -p etendue-import -- [--root FOLDER] [--set NAME=VALUE] SCENE...
 
-#![allow(clippy::print_stdout, reason = "a program for people")]
+#![allow(clippy::print_stdout, reason = "the example prints its results")]
 
 use etendue_import::{Options, import};
 use std::path::PathBuf;

@@ -25,12 +25,12 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Op
         && to_world.matrix3.determinant().abs() > 0.0;
     match (is_regular, fits) {
         (false, _) => Some(
-            "that is placed out of range, or scaled to size 0; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
+            "is placed out of range, or scaled to size 0; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
         ),
         (true, false) if matches!(geometry, Geometry::Sphere) => {
-            Some("that emits, with shear or with different scales along its axes")
+            Some("emits, but has shear or different scales along its axes")
         }
-        (true, false) => Some("with shear, or with different scales along its axes"),
+        (true, false) => Some("has shear, or different scales along its axes"),
         (true, true) => None,
     }
 }

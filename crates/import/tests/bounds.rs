@@ -23,7 +23,7 @@ fn an_element_of_many_attributes_is_not_parsed() {
     assert!(causes(&few)[0].contains("attribute a0"), "{few}");
     let many = format!("\n<shape type='sphere'{}/>", attributes(100_000));
     let found = causes(&many);
-    assert_eq!(found, ["text:3:1: an element of more than 64 attributes"]);
+    assert_eq!(found, ["text:3:1: an element has more than 64 attributes"]);
 }
 
 #[test]
@@ -73,7 +73,8 @@ fn packed_meshes_unpack_to_a_bounded_size() {
     let shape =
         r#"<shape type="serialized"><string name="filename" value="a.serialized"/></shape>"#;
     let causes = read_in(shape, folder.path(), Color::Luminance).unwrap_err();
-    let words = format!("unpacks to more than {most} bytes; allowed: 64 times its size");
+    let words =
+        format!("unpacks to more than {most} bytes; allowed: 64 times the size of the file");
     assert!(causes[0].contains(&words), "{causes:?}");
 }
 

@@ -102,7 +102,7 @@ fn unsound_cameras_are_refused() {
         ),
         (
             "<float name=\"near_clip\" value=\"-1\"/>",
-            "clip planes at -1",
+            "the clip planes are at -1",
         ),
         (
             "<film type=\"hdrfilm\"><integer name=\"width\" value=\"0\"/></film>",

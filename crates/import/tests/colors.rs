@@ -137,7 +137,7 @@ fn conductors_have_indices_of_refraction() {
         );
     }
     let both = "<shape type=\"sphere\"><bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"eta\" value=\"1\"/></bsdf></shape>";
-    assert!(common::causes(both)[0].contains("material together with eta or k"));
+    assert!(common::causes(both)[0].contains("material is given together with eta or k"));
 }
 
 /// Returns a PNG picture of 2 × 1 pixels.

@@ -138,7 +138,7 @@ fn defaults_that_hold_one_another_do_not_fill_memory() {
     }
     let found = common::causes(&inside);
     assert!(
-        found[0].contains("parameters make more than"),
+        found[0].contains("after parameters are inserted"),
         "{:?}",
         &found[..1]
     );

@@ -234,7 +234,7 @@ fn deep_and_wide_pbrt_scenes_end() {
     assert!(
         refused(&"AttributeBegin ".repeat(100_000))[0]
             .message
-            .contains("blocks nested more than")
+            .contains("blocks are nested more than")
     );
     assert!(
         refused(&"Attribute \"shape\" \"float a\" 1 ".repeat(1000))[0]
@@ -256,7 +256,11 @@ fn deep_and_wide_pbrt_scenes_end() {
         row += &format!("Texture \"t{i}\" \"spectrum\" \"scale\" \"texture tex\" \"t{before}\"\n");
     }
     row += "Material \"diffuse\" \"texture reflectance\" \"t4999\" Shape \"sphere\"";
-    assert!(refused(&row)[0].message.contains("too many are nested"));
+    assert!(
+        refused(&row)[0]
+            .message
+            .contains("too many textures are nested")
+    );
     // Materials that double their content at each level.
     let mut doubled = String::from("MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n");
     for i in 1..64 {

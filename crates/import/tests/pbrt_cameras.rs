@@ -71,7 +71,7 @@ fn the_angle_of_view_is_of_the_shorter_side() {
         1e-12,
     );
     let square = "Camera \"perspective\" \"float screenwindow\" [-1 1 -1 1]";
-    assert!(unsettled(&format!("{WIDE} {square}"))[0].contains("pixels that are not square"));
+    assert!(unsettled(&format!("{WIDE} {square}"))[0].contains("the pixels are not square"));
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn areas_shine_by_their_power() {
     assert!(causes(two)[0].contains("pbrt gives this power to each triangle"));
     let both = "AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"";
     assert!(
-        causes(both)[0].starts_with("text:3:27: light from both sides"),
+        causes(both)[0].starts_with("text:3:27: a surface that emits on both sides"),
         "{:?}",
         causes(both)
     );

@@ -118,7 +118,7 @@ fn mixtures_have_amounts_of_the_second() {
         other => panic!("{other:?}"),
     }
     let itself = "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"] NamedMaterial \"a\" Shape \"sphere\"";
-    assert!(causes(itself)[0].contains("it contains itself"));
+    assert!(causes(itself)[0].contains("the material contains itself"));
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn what_has_no_equal_is_refused() {
     }
     let coated = notes("Material \"coateddiffuse\"\nShape \"sphere\" Shape \"disk\"");
     assert_eq!(coated.len(), 1, "{coated:?}");
-    assert!(coated[0].contains("approximated: a plastic, whose rough coat"));
+    assert!(coated[0].contains("approximated: the material is a plastic, whose rough coat"));
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn fronts_are_where_normals_point() {
     // A mirrored sphere emits light outwards.
     let shining = "Scale -1 1 1 AreaLightSource \"diffuse\" Shape \"sphere\"";
     assert_eq!(front(&shape(shining), own), DVec3::NEG_X);
-    assert!(notes(shining)[0].contains("below a mirror"));
+    assert!(notes(shining)[0].contains("because of a mirroring transform"));
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn quadrics_have_sizes() {
         ),
         (
             "Scale 1 2 1 AreaLightSource \"diffuse\" Shape \"sphere\"",
-            "that emits, with shear or with different scales along its axes",
+            "emits, but has shear or different scales along its axes",
         ),
         ("Scale 1 0 1 Shape \"disk\"", "scaled to size 0"),
         ("Shape \"curve\"", "shape `curve` is not supported"),
@@ -172,7 +172,7 @@ fn patches_are_two_triangles() {
         assert_close(&[place.x / 2.0, place.y], &uv.to_array(), 0.0);
     }
     let twisted = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 1]";
-    assert!(causes(twisted)[0].contains("a patch that is not flat"));
+    assert!(causes(twisted)[0].contains("a patch is not flat"));
 }
 
 #[test]
@@ -225,7 +225,8 @@ fn objects_are_shown_where_instances_are() {
     );
     assert!(causes("ObjectInstance \"p\"")[0].contains("object `p` is not known"));
     assert!(
-        causes("ObjectBegin \"o\" ObjectInstance \"o\" ObjectEnd")[0].contains("within an object")
+        causes("ObjectBegin \"o\" ObjectInstance \"o\" ObjectEnd")[0]
+            .contains("an object contains an instance")
     );
 }
 

@@ -85,7 +85,7 @@ fn references_may_come_before_their_object_but_aliases_not() {
     let early = "<alias id=\"a\" as=\"b\"/><bsdf type=\"diffuse\" id=\"a\"/>";
     assert_eq!(causes(early), ["text:2:1: <alias>: no object has id `a`"]);
     let round = "<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf><shape type=\"sphere\"><ref id=\"a\"/></shape>";
-    assert!(causes(round)[0].contains("a bsdf within itself"));
+    assert!(causes(round)[0].contains("a bsdf contains itself"));
 }
 
 #[test]

@@ -70,7 +70,7 @@ fn unsound_steps_are_causes() {
         ("<rotate angle=\"3\"/>", "a rotation axis of length 0"),
         (
             "<scale value=\"1\" x=\"2\"/>",
-            "value together with x, y or z",
+            "value is given together with x, y or z; allowed: only one of the two forms",
         ),
         ("<translate x=\"1.0f\"/>", "`1.0f` is not a finite number"),
         ("<translate x=\"nan\"/>", "`nan` is not a finite number"),
@@ -81,7 +81,7 @@ fn unsound_steps_are_causes() {
         ),
         (
             "<lookat origin=\"1,1,1\" target=\"1,1,1\"/>",
-            "no viewing direction",
+            "the viewing direction has length 0",
         ),
         ("<shear x=\"1\"/>", "is not allowed in a transform"),
     ] {

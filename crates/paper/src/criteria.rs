@@ -64,7 +64,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
-               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. At the minimum of the corrected value, the window determines the measured value."
+               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is smallest, the window determines the measured value."
             .to_owned(),
         y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: panels.to_vec(),

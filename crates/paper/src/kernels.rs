@@ -52,7 +52,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
     let curves = taken.curves(&values(
         "The cosine over slopes, and its transforms",
-        "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; transforms 4π|*Ω*| *K*_{1}(2π|*Ω*|) and half π times that.",
+        "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; the transform of *g* is 4π|*Ω*| *K*_{1}(2π|*Ω*|), and the transform of *G* is π/2 times as large.",
         vec![
             panel(
                 "(a) in slope",

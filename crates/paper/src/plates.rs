@@ -23,7 +23,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
+        note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel, the light of the point is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and the spectrum is the line *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -110,7 +110,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     taken.plate(&Plate {
         title: "Two occluders that together block all light",
-        note: "Measured slices at azimuth 0. Each occluder leaves half of the light, with a different phase; together they leave none.",
+        note: "Measured slices at azimuth 0. Each occluder passes half of the light, with a different phase; together, the two occluders pass no light.",
         heads: ["one occluder", "the other", "both"]
             .map(str::to_owned)
             .to_vec(),
@@ -163,7 +163,7 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
-        note: "*blocked*: the share of the light in the window that the blockers block. The receiver has most high frequencies behind blockers of medium size: the replicas of the smallest blockers are sheared beyond its range.",
+        note: "*blocked*: the share of the light in the window that the blockers block. Behind blockers of medium size, the receiver has the most high frequencies: travel shears the replicas of the smallest blockers beyond the range of the receiver.",
         heads: lettered(&["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]),
         rows: compared(&seen, true),
         feet,

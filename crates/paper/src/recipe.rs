@@ -108,7 +108,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "7",
-        about: "each of two occluders alone, and both: the light that they block differs in phase, and together they block all light",
+        about: "two occluders, each alone and both together: each blocks light with another phase, and together they block all light",
         scenes: &[
             ("fig7_one", scene!("fig7_one")),
             ("fig7_other", scene!("fig7_other")),
@@ -152,7 +152,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "11",
-        about: "a caustic: a beam on a hollow mirror, met along its normal and at 40°",
+        about: "a caustic: a beam on a hollow mirror, at incidences of 0° and 40°",
         scenes: &[
             ("fig11", scene!("fig11")),
             ("solar_oven", scene!("table1/solar_oven")),
@@ -182,7 +182,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "14",
-        about: "diffuse shading under an environment map: convolution and restriction are a product",
+        about: "diffuse shading under an environment map: convolution and restriction together are a product",
         scenes: &[("fig14", scene!("fig14"))],
         also: &[],
         has_table: true,
@@ -212,7 +212,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "17",
-        about: "a picture from few shading samples: uniform, by the criteria, and a reference",
+        about: "a picture from few shading samples: placed uniformly, by the criteria, and a reference",
         scenes: &[],
         also: &[],
         has_table: false,

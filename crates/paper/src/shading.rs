@@ -69,7 +69,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
     };
     taken.curves(&Curves {
         title: "The product".to_owned(),
-        note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
+        note: "|*S*_{0}| at *ν* = 0, the line of the light that leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
             .to_owned(),
         y: AxisQuantity::new("relative to 0", ""),
         panels: vec![panel],
@@ -139,7 +139,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
-        note: "A beam (distant light with content at all angular frequencies) on a glossy sphere. The lobe limits the line of the spectrum; curvature shears it twice, and travel once more.",
+        note: "A beam (distant light with content at all angular frequencies) on a glossy sphere. The lobe limits the spectrum, which is a line; curvature shears this line twice, and travel shears it once more.",
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),

@@ -20,7 +20,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
-        note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
+        note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears the stripes along *x*; angles are measured along T, which is opposite to X.",
         heads: lettered(&["slopes", "slopes, after 0.5 m", "angles, there"]),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -30,8 +30,8 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let panels = shrunk(&taken.also[0], &["angles"])?;
     let error = orders(
         taken,
-        "The error of taking *u* for *θ*",
-        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, with a window *e* times as wide: tan *θ* equals *θ* to second order.",
+        "The error of using *u* in place of *θ*",
+        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, for a window *e* times as wide: tan *θ* equals *θ* up to terms of second order.",
         &panels,
         2,
     )?;
@@ -74,7 +74,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     }
     let plate = taken.plate(&Plate {
         title: "Directions in 3D, by longitude and latitude",
-        note: "Light of a projector on a saddle turned by 45°: a mirror, and rough copper seen 6.9° beside the plane of incidence. Along: position and longitude or slope; across: the other two.",
+        note: "Light of a projector on a saddle turned by 45°: a mirror, and rough copper seen 6.9° beside the plane of incidence. *Along* means position and longitude or slope; *across* means the other position, and latitude or slope.",
         heads: lettered(&[
             "mirror\nnormals",
             "mirror\noutgoing",
@@ -90,7 +90,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let error = orders(
         taken,
         "The error of a flat (*θ*, *φ*)",
-        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide.",
+        "‖first order − exact‖/‖exact‖ at the mirror, for neighbourhoods *e* times as wide.",
         &panels,
         1,
     )?;

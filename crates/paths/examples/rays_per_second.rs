@@ -9,7 +9,7 @@
 //! distances (infinite for no hit, zero for `free` with a hit) to `RAYS.met` as f64. Rays are
 //! seven f32 each: origin, direction, end.
 
-#![allow(clippy::print_stdout, reason = "a program for people")]
+#![allow(clippy::print_stdout, reason = "the example prints its results")]
 
 use etendue_import::{Options, import};
 use etendue_paths::{Ray, SceneGeometry};

@@ -108,7 +108,7 @@ fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
         0 => String::new(),
-        begun => format!(", and parts of {begun} more,"),
+        begun => format!(" and parts of {begun} other batches"),
     };
     Failure::cannot_run(format!(
         "time is up: {done} of {batches} batches{begun} are kept in {}; the same command with --resume continues from them",

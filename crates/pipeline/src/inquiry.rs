@@ -108,11 +108,13 @@ fn both_pass(
     let squares = disagreement(failed);
     let error = theory.excess_squared_error.unwrap_or(f64::INFINITY);
     if squares.iter().all(|square| *square >= DETECTABLE * error) {
-        return format!("{other} agree with both: the failure may be chance; use another seed");
+        return format!(
+            "{other} agree with {this} and with the prediction: the failure may be chance; use another seed"
+        );
     }
     let noise = percent(theory.noise_limit);
     let cannot = format!(
-        "{other} cannot decide whether {this} or the prediction is wrong: their noise is {noise}"
+        "{other} cannot decide whether {this} or the prediction is wrong: the noise of {other} is {noise}"
     );
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
@@ -231,14 +233,14 @@ mod tests {
             let methods = [Method::Photons, Method::Backward];
             Inquiry::new(methods, &failed, (&passed, &passed), 1e6).finding
         };
-        let chance = "agree with both: the failure may be chance";
+        let chance = "and with the prediction: the failure may be chance";
         assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
         let open = found(1.25, 8.5e-6);
         assert!(open.contains("cannot decide whether photons or"), "{open}");
         let open = found(1.25, 3e-5);
         for words in [
             "differ by 0.550 %",
-            "their noise is 1.500 %",
+            "the noise of backward rays is 1.500 %",
             "3.6e6 or more backward rays are needed",
         ] {
             assert!(open.contains(words), "{words}: {open}");

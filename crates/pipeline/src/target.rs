@@ -63,7 +63,7 @@ pub fn reached(
         }
         if photons == most || needed > MAX_FACTOR * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {} %: {now}, and falls as one over the square root of their number or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
+                "--target-error {} %: {now}, and falls as one over the square root of the number of photons or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
                 tidy(100.0 * target),
                 grouped(most)
             )));
@@ -112,7 +112,7 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
         None => "all predictions are in closed form".to_owned(),
     };
     format!(
-        "--target-error {} %: the noise of the photons is at most this at each plane; {rest}",
+        "--target-error {} %: the noise of the photons at each plane is at most this share; {rest}",
         tidy(100.0 * target)
     )
 }

@@ -137,7 +137,7 @@ fn to_tm25(set: &RaySet, notes: &mut Vec<String>) -> Result<Tm25File, Fault> {
         }
         Wavelengths::Each(each) if each.iter().any(|w| w.is_nan()) => {
             notes.push(
-                "some rays have no wavelength; the wavelengths of the others are dropped"
+                "some rays have no wavelength; the wavelengths of all other rays are dropped"
                     .to_owned(),
             );
         }

@@ -36,13 +36,15 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     })?;
     let bytes = read_file(&shown, MAX_PAGE_BYTES).map_err(|e| fault(&e.to_string()))?;
     if hash != blake3::hash(&bytes).to_hex().as_str() {
-        return Err(fault("damaged: its hash is not the one in summary.json"));
+        return Err(fault(
+            "the page is damaged: its hash differs from the hash in summary.json",
+        ));
     }
     let text = String::from_utf8(bytes).map_err(|e| fault(&e.to_string()))?;
     let inside = text
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
-    let (data, _) = inside.ok_or_else(|| fault("it does not contain the data of a run"))?;
+    let (data, _) = inside.ok_or_else(|| fault("the page does not contain the data of a run"))?;
     // A hash does not protect the page, because anyone can write a new index for a changed page.
     // The function therefore also checks that the text is valid JSON.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;

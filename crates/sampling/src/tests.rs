@@ -182,14 +182,17 @@ fn things_are_drawn_by_their_weights() {
 fn planted_faults_are_seen() {
     let linear = |[a, b]: [f64; 2]| 0.9 * a * DVec2::from_angle(2.0 * PI * b);
     let found = in_square(linear, evenly(0.81 * PI, in_disc));
-    assert!(!found.agrees(), "a disc without the root: {found:?}");
+    assert!(!found.agrees(), "a disc without the square root: {found:?}");
     let found = in_square(
         |[a, b]| DVec2::new(a * (1.0 - b), a * b),
         evenly(0.5, in_triangle),
     );
-    assert!(!found.agrees(), "a triangle without the root: {found:?}");
+    assert!(
+        !found.agrees(),
+        "a triangle without the square root: {found:?}"
+    );
     let found = in_square(triangle, evenly(0.505, in_triangle));
-    assert!(!found.agrees(), "1 % less: {found:?}");
+    assert!(!found.agrees(), "a density 1 % too small: {found:?}");
     let found = on_sphere(
         ASIDE,
         |[a, b, ..]| cosine_hemisphere([a, b]),
@@ -211,7 +214,7 @@ fn planted_faults_are_seen() {
     };
     let [area, poles] = [area, poles].map(LatLongSampler::new);
     let found = on_sphere(ASIDE, |r| area.sample(r), |d| poles.density(d));
-    assert!(!found.agrees(), "rows half a pixel off: {found:?}");
+    assert!(!found.agrees(), "rows shifted by half a pixel: {found:?}");
     let found = on_sphere(
         ASIDE,
         |[a, b, c, d]| area.sample([a, b, d, c.sqrt()]),

@@ -103,13 +103,17 @@ fn limited(numbers: Option<usize>, length: usize) -> Result<(), Fault> {
         _ => {
             let shown = numbers.map_or("countless".to_owned(), |n| n.to_string());
             let allowed = format!("at most {most} numbers in a file of {length} bytes");
-            Err(fault("the number of pixels times channels", shown, allowed))
+            Err(fault(
+                "the number of pixels times the number of channels",
+                shown,
+                allowed,
+            ))
         }
     }
 }
 
 fn raster(width: usize, height: usize, values: Vec<f64>) -> Result<Raster, Fault> {
-    let allowed = "as many numbers as pixels, and at least one";
+    let allowed = "one number for each pixel, and at least one pixel";
     Raster::new(width, height, values)
         .ok_or_else(|| fault("the size", format!("{width} × {height}"), allowed))
 }

@@ -198,8 +198,9 @@ impl Resolver<'_> {
         let level = 1.0 - libm::pow(1.0 - alpha, 1.0 / planes.max(1) as f64);
         if level < LEAST_LEVEL {
             let least = 1.0 - libm::pow(1.0 - LEAST_LEVEL, planes as f64);
-            let allowed =
-                format!("at least {least:.4} with {planes} planes: p is known to 1/20000");
+            let allowed = format!(
+                "at least {least:.4} with {planes} planes, because p is known only to 1/20000"
+            );
             self.faults.add("run.alpha", number(alpha), allowed);
         }
     }

@@ -47,7 +47,7 @@ impl Scene {
                 worst.filter(|((_, mismatch), _)| *mismatch > LEVEL)
             {
                 warnings.push(format!(
-                    "{}: too coarse for normals interpolated between its vertices. At {}, photons \
+                    "{}: the mesh is too coarse for normals that are interpolated between vertices. At {}, photons \
                      and backward rays may differ by {:.1} % of the spectrum; with triangles {:.0} \
                      times shorter, they differ by at most {} %",
                     mesh.name,
@@ -70,7 +70,7 @@ impl Scene {
         let (behind, flux) = (rays.behind(), rays.flux());
         (behind > 0.0).then(|| {
             format!(
-                "light: {} W of the ray file's {} W do not go forward, along path.direction, and are omitted",
+                "light: rays with {} W of the ray file's {} W do not go forward, along path.direction, and are omitted",
                 tidy(behind),
                 tidy(behind + flux)
             )

@@ -243,7 +243,7 @@ fn faults_of_ply_files_are_told() {
         ("element vertex 3", "element vertex -3", "line 3 is `element vertex -3`; allowed: element NAME COUNT"),
         ("element vertex 3", "element vertex 1000000000000", "number of bytes after the header is 26; allowed: at least 6000000000001, because the header announces 1000000000000 vertex, 1 face"),
         ("element vertex 3", "element vertex 18446744073709551615", "bytes after the header is 26; allowed: at least 110680464442257309691,"),
-        ("element vertex 3\n", "property int n\nelement vertex 3\n", "line 3 is `property int n`; allowed: an element before"),
+        ("element vertex 3\n", "property int n\nelement vertex 3\n", "line 3 is `property int n`; allowed: an element that stands before"),
         ("property float x", "property half x", "line 4 is `property half x`; allowed: property TYPE NAME"),
         ("property float x\n", "property float x\nproperty uchar x\n", "line 5 is `property uchar x`; allowed: each property once"),
         ("element face", "element vertex 3\nelement face", "line 7 is `element vertex 3`; allowed: each element once"),
@@ -255,11 +255,11 @@ fn faults_of_ply_files_are_told() {
         ("element vertex 3", "element vertex 0", "vertices is 0; allowed: at least 3"),
         ("element face 1", "element face 0", "faces is 0; allowed: at least 1"),
         ("end_header", "element odd 1000000000000\nend_header", "number of properties of element odd is 0; allowed: at least 1"),
-        ("end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "", "end_header is missing, as the file ends; allowed: a complete header"),
+        ("end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "", "end_header is missing, because the file ends; allowed: a complete header"),
         ("0 1 0\n3 0 1 2\n", "0 1 0\n", "number of bytes after the header is 18; allowed: at least 19, because the header announces 3 vertex, 1 face"),
-        ("0 1 0\n3 0 1 2\n", "0000 1 0\n", "line 13, face 0, vertex_indices is missing, as the file ends; allowed: 1 rows of element face"),
-        ("1 0 0\n0 1 0\n3 0 1 2\n", "1.00000000000 0.0", "line 11, vertex 1, z is missing, as the file ends; allowed: 3 rows of element vertex"),
-        ("1 0 0\n", "1 0\n", "line 11, vertex 1, z is missing, as the line ends; allowed: a value for each property"),
+        ("0 1 0\n3 0 1 2\n", "0000 1 0\n", "line 13, face 0, vertex_indices is missing, because the file ends; allowed: 1 rows of element face"),
+        ("1 0 0\n0 1 0\n3 0 1 2\n", "1.00000000000 0.0", "line 11, vertex 1, z is missing, because the file ends; allowed: 3 rows of element vertex"),
+        ("1 0 0\n", "1 0\n", "line 11, vertex 1, z is missing, because the line ends; allowed: a value for each property"),
         ("1 0 0\n", "1 0 0 0\n", "line 11, vertex 1, the next word is `0`; allowed: the end of the line"),
         ("1 0 0\n", "1 zero 0\n", "line 11, vertex 1, y is `zero`; allowed: a number"),
         ("1 0 0\n", "1 NaN 0\n", "line 11, vertex 1, y is NaN; allowed: -1000000000.0 to 1000000000.0"),
@@ -270,9 +270,9 @@ fn faults_of_ply_files_are_told() {
         ("3 0 1 2\n", "3 0 1 1.5\n", "line 13, face 0, corner 3 is 1.5; allowed: 0 to 2"),
         ("3 0 1 2\n", "2 0 1\n\n", "line 13, face 0, number of corners is 2; allowed: 3 to 4096"),
         ("3 0 1 2\n", "-3 0 1 2\n", "line 13, face 0, vertex_indices is -3 long; allowed: a list that"),
-        ("3 0 1 2\n", "4 0 1 2", "line 13, face 0, vertex_indices is missing, as the file ends; allowed: 1 rows of element face"),
+        ("3 0 1 2\n", "4 0 1 2", "line 13, face 0, vertex_indices is missing, because the file ends; allowed: 1 rows of element face"),
         ("3 0 1 2\n", "3 0 1 1\n", "triangles with an area is 0; allowed: at least 1"),
-        ("3 0 1 2\n", "3 0 1 2\n3 0 2 1\n", "the rest of the file is 7 bytes long; allowed: empty, after"),
+        ("3 0 1 2\n", "3 0 1 2\n3 0 2 1\n", "the rest of the file is 7 bytes long; allowed: empty, because"),
     ];
     for (from, to, words) in cases {
         let told = read("a.ply", edited(from, to)).unwrap_err().to_string();
@@ -299,7 +299,7 @@ fn faults_of_binary_ply_files_are_told() {
     for (told, words) in [
         (
             cut,
-            "face 7, vertex_indices is missing, as the file ends; allowed: 8 rows of element face",
+            "face 7, vertex_indices is missing, because the file ends; allowed: 8 rows of element face",
         ),
         (
             with(2 * 24 + 8, &f64::NAN.to_le_bytes()),
@@ -347,7 +347,7 @@ fn a_list_longer_than_the_file_is_told() {
     file.extend([0; 40]);
     let told = read("a.ply", file).unwrap_err().to_string();
     assert!(
-        told.contains("face 0, vertex_indices is missing, as the file ends"),
+        told.contains("face 0, vertex_indices is missing, because the file ends"),
         "{told}"
     );
 }

@@ -89,8 +89,8 @@ fn folds_and_windings_that_disagree_are_named() {
     told(
         file("a.obj", &turned, "event: Mirror"),
         &[
-            "vertex 5 is on a fold: its normal is",
-            "that of the triangle of vertices 4, 3 and 5",
+            "vertex 5 is on a fold: its normal differs by",
+            "the normal of the triangle of vertices 4, 3 and 5",
             "at most 89.4°",
         ],
     );

@@ -274,7 +274,7 @@ pub struct PlaneFile {
 
 /// A place on the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(transform = told("Emission, Distance(…), or a place before or after something", r#"Before("floor")"#))]
+#[schemars(transform = told("Emission, Distance(…), Before(…) or After(…)", r#"Before("floor")"#))]
 pub enum Place {
     /// At the light, for light as it leaves.
     Emission,
@@ -357,7 +357,7 @@ pub struct RunFile {
     #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors are estimated from the spread between batches"))]
     pub batches: u32,
     /// Share of correct scenes that the verdict may reject, for all planes together.
-    #[schemars(transform = told("a share of correct scenes", "0.01"), transform = within(1e-6, 0.5))]
+    #[schemars(transform = told("a share of correct scenes that may fail", "0.01"), transform = within(1e-6, 0.5))]
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
     #[schemars(transform = told("a share of the spectrum", "0.1"), transform = within(1e-4, 1.0))]

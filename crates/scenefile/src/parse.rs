@@ -22,7 +22,7 @@ impl SceneFile {
             return json(text);
         }
         if text.trim_start().starts_with('<') {
-            let message = "this is XML, such as a scene of Mitsuba 3, which the commands render, import and probe read; allowed: a scene in RON or JSON";
+            let message = "this is XML, such as a scene of Mitsuba 3; allowed: a scene in RON or JSON (only the commands render, import and probe read XML)";
             return Err(SceneError::Syntax {
                 line: 1,
                 column: 1,
@@ -163,7 +163,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let found = shown(&rest[..word(rest)], EXCERPT);
     let allowed = match code {
         Error::Eof => {
-            return "the file ends here, but a bracket is still open; allowed: its missing fields and `)`"
+            return "the file ends here, but a bracket is still open; allowed: the missing fields and `)`"
                 .into();
         }
         Error::ExpectedComma if rest.starts_with('^') => {

@@ -4,7 +4,7 @@
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be a whole number below 2^53"
+    reason = "the number was checked to be a whole number below 2^53"
 )]
 pub(crate) fn whole(x: f64) -> Option<u64> {
     let small = (0.0..9_007_199_254_740_992.0).contains(&x);

@@ -120,7 +120,7 @@ pub fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measuremen
     let seed = stored.index.scene_file.run.seed;
     if held.seed != seed {
         return Err(stored.fault(format!(
-            "seed {}; the seed of its scene is {seed}",
+            "its seed is {}, but the seed of its scene is {seed}",
             held.seed
         )));
     }
@@ -180,7 +180,10 @@ impl StoredRows {
         let emitted: Array1<u64> = file.array("emitted", [count])?;
         let sum = emitted.iter().try_fold(0_u64, |sum, n| sum.checked_add(*n));
         if emitted.iter().any(|n| *n == 0) || sum != Some(held.photons) {
-            let must = format!("must be the photons of each batch, {} in all", held.photons);
+            let must = format!(
+                "must be the numbers of photons of the batches, {} in all",
+                held.photons
+            );
             return Err(file.fault("emitted", must));
         }
         Ok(Self { numbers, emitted })
@@ -194,7 +197,7 @@ fn plane_batches(
     plane: &VirtualPlane,
 ) -> Result<Vec<PlaneBatch>, Failure> {
     if StoredRows::read(file, held)? != *rows {
-        return Err(file.fault("emitted", format!("must be as in {LEDGER}")));
+        return Err(file.fault("emitted", format!("must be the same as in {LEDGER}")));
     }
     file.check_half_axes(&plane.grid)?;
     let count = rows.numbers.len();
@@ -213,7 +216,7 @@ fn plane_batches(
                 outside: tally[2],
             };
             if tally.inside.checked_add(tally.outside) != Some(tally.crossed) {
-                return Err(file.fault("tally", "crossed must be inside + outside"));
+                return Err(file.fault("tally", "crossed must be the sum of inside and outside"));
             }
             Ok(PlaneBatch {
                 tally,

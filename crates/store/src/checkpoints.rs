@@ -179,7 +179,9 @@ impl CheckpointStore {
     fn batch(&self, name: &CheckpointName, photons: u64, path: &Path) -> Result<Batch, Failure> {
         let bytes = read_file(path, available_memory()).map_err(Failure::bad_input)?;
         if *name != CheckpointName::new(name.batch, name.parts, &bytes) {
-            return Err(Failure::bad_input("the hash in its name does not match"));
+            return Err(Failure::bad_input(
+                "the hash in the name of the file does not match",
+            ));
         }
         let held = Held {
             seed: self.seed,
@@ -231,7 +233,7 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
     };
     let found = read_files(&open, held, planes)?;
     let batch = found.batches().next().cloned();
-    batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
+    batch.ok_or_else(|| Failure::bad_input("the file contains no batch"))
 }
 
 /// The progress of a batch.

@@ -25,7 +25,10 @@ impl Lock {
             let mut options = File::options();
             let options = options.read(true).write(true).create(true).truncate(false);
             if path.is_symlink() {
-                return Err(Failure::write(path, "it is a link"));
+                return Err(Failure::write(
+                    path,
+                    "it is a link; allowed: a regular file",
+                ));
             }
             let file = options.open(path).map_err(failure)?;
             match file.try_lock() {

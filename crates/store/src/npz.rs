@@ -266,7 +266,7 @@ impl NpzFile {
             .filter_map(A::read)
             .collect();
         if !numbers.iter().all(|number| number.is_finite()) {
-            return Err(self.fault(name, "it holds numbers that are not finite"));
+            return Err(self.fault(name, "the array holds numbers that are not finite"));
         }
         Ok((header, numbers))
     }

@@ -174,7 +174,9 @@ pub fn read(
     // Without this check, a reference measurement would be compared with a measurement by the
     // same method.
     if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
-        let what = format!("predicted for {predicted_for:?}; the measurement is of {method:?}");
+        let what = format!(
+            "the prediction is for method {predicted_for:?}, but the method of the measurement is {method:?}"
+        );
         return Err(stored.fault(what));
     }
     let predicted: Vec<&str> = planes.iter().map(|plane| plane.name.as_str()).collect();
@@ -185,7 +187,7 @@ pub fn read(
         .collect();
     if predicted != wanted {
         let [predicted, wanted] = [predicted, wanted].map(|planes| planes.join(", "));
-        return Err(stored.fault(format!("planes [{predicted}]; must be [{wanted}]")));
+        return Err(stored.fault(format!("the planes are [{predicted}]; must be [{wanted}]")));
     }
     let planes = scene.planes.iter().zip(theories).zip(planes);
     planes
@@ -193,7 +195,9 @@ pub fn read(
             let class = theory.class();
             if words.class != class {
                 let (name, is) = (&plane.name, words.class);
-                return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));
+                return Err(stored.fault(format!(
+                    "the class of plane {name} is {is:?}; must be {class:?}"
+                )));
             }
             read_plane(stored.npz(&file_of(plane))?, plane, words)
         })

@@ -162,7 +162,10 @@ impl Results {
                 Err(failure) if failure.message.ends_with(lock::BUSY) => {
                     // Processes that share a run briefly wait for each other without a message.
                     if begun.take_if(|begun| begun.elapsed() > PATIENCE).is_some() {
-                        warn(&format!("{}: waiting for it to end", failure.message));
+                        warn(&format!(
+                            "{}: waiting for that process to end",
+                            failure.message
+                        ));
                     }
                     std::thread::sleep(Duration::from_millis(100));
                 }
@@ -213,7 +216,7 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "this file was not planned: a bug in etendue",
+                "this file was not planned: this is a bug in etendue",
             ));
         }
         let path = self.staged(name);

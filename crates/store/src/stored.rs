@@ -92,17 +92,17 @@ impl<T: DeserializeOwned> Stored<T> {
         // differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
-                "written by version {version}, but this is version {VERSION}: all stages must be of the same version"
+                "the file was written by version {version}, but this program is version {VERSION}: all stages must be of the same version"
             )));
         }
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed after it was written: its index_hash does not match the text before it";
+            let what = "the file was changed after it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
         if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
             return Err(fault(
-                "scene_hash is not that of scene_file and inputs".to_owned(),
+                "scene_hash is not the hash of scene_file and inputs".to_owned(),
             ));
         }
         Ok(Self {
@@ -132,7 +132,7 @@ impl<T> Stored<T> {
             &self.path.display().to_string(),
         )?;
         if scene.inputs != *inputs {
-            return Err(self.fault("inputs are not the files in its folder"));
+            return Err(self.fault("the field inputs does not match the files in the folder"));
         }
         Ok(scene)
     }
@@ -210,13 +210,13 @@ pub fn listed_bytes(
 ) -> Result<Vec<u8>, Failure> {
     let [shown, index] = [name, index].map(|name| folder.join(name));
     let (shown, index) = (shown.display(), index.display());
-    let hash = files
-        .get(name)
-        .ok_or_else(|| Failure::bad_input(format!("{index}: files does not list {name}")))?;
+    let hash = files.get(name).ok_or_else(|| {
+        Failure::bad_input(format!("{index}: the field files does not list {name}"))
+    })?;
     let bytes = read_below(folder, name, machine::available_memory())
         .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
     if *hash != blake3::hash(&bytes).to_hex().as_str() {
-        let message = format!("{shown} is damaged: its hash is not the one in {index}");
+        let message = format!("{shown} is damaged: its hash differs from the hash in {index}");
         return Err(Failure::bad_input(message));
     }
     Ok(bytes)

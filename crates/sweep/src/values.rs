@@ -133,10 +133,13 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         .parse()
         .ok()
         .filter(|n| (2..=MAX_POINTS).contains(n));
-    let count = wanted
-        .ok_or_else(|| format!("`{count}` is not a number of values from 2 to {MAX_POINTS}"))?;
+    let count = wanted.ok_or_else(|| {
+        format!("`{count}` is not a whole number of values from 2 to {MAX_POINTS}")
+    })?;
     if is_log && ends[0] * ends[1] <= 0.0 {
-        return Err("logarithmic spacing cannot change the sign or reach zero".to_owned());
+        return Err(
+            "logarithmic spacing cannot include values of different signs or zero".to_owned(),
+        );
     }
     Ok((0..count)
         .map(|i| between(ends, i, count, is_log))

@@ -333,7 +333,7 @@ impl Around {
     /// frame are the axes of the leg, the distances of hits are exact.
     #[expect(
         clippy::float_cmp,
-        reason = "with rounding errors, the general case is used, which is correct too"
+        reason = "if rounding errors hide that numbers are equal, the general case is used, which is also correct"
     )]
     fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;

@@ -169,7 +169,10 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     let mut npz = Npz::new();
     // A method produces only the maps that it needs.
     for (name, values) in layers.into_iter().filter(|(_, of)| !of.is_empty()) {
-        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
         let samples = values.iter().map(|x| *x as f32).collect();
         parts.push(Part { name, samples });
         let rows = Array2::from_shape_vec((h, w), values.clone());

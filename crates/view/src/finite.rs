@@ -5,7 +5,10 @@ use etendue_store::Failure;
 /// Refuses a picture with a pixel that is not finite in 32 bits. If there is such a pixel, nothing
 /// is written.
 pub(crate) fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(), Failure> {
-    #[expect(clippy::cast_possible_truncation, reason = "EXR files hold 32 bits")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "EXR files hold 32-bit numbers"
+    )]
     let is_lost = |value: &f64| !(*value as f32).is_finite();
     let Some(first) = radiance.iter().position(is_lost) else {
         return Ok(());

@@ -3,7 +3,7 @@
 
 #![allow(
     clippy::missing_errors_doc,
-    reason = "a Failure carries the whole message for the user, written where it occurs"
+    reason = "a Failure holds the complete message for the user"
 )]
 
 mod adaptive;

@@ -122,7 +122,10 @@ fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<
     require_finite(picture.size, &picture.mean)?;
     require_finite(picture.size, &errors)?;
     let part = |name, values: &[f64]| {
-        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
         let samples = values.iter().map(|x| *x as f32).collect();
         Part { name, samples }
     };

@@ -69,7 +69,8 @@ pub(crate) struct FigureArgs {
     pub(crate) set: Vec<(String, String)>,
 
     /// Plane at which scene files are shown; a single scene file is then shown at this plane only
-    /// [default: all planes of a single scene file, or the last plane of each of several]
+    /// [default: all planes of a single scene file, or the last plane of each of several scene
+    /// files]
     #[arg(long, value_name = "NAME")]
     pub(crate) plane: Option<String>,
 
@@ -78,9 +79,10 @@ pub(crate) struct FigureArgs {
     pub(crate) out: PathBuf,
 
     /// Style file, in RON, such as (titles: false, scene: false, verdicts: false, width: 3.33,
-    /// floor: -40); each field is optional. titles also controls the notes; scene controls the
-    /// drawing above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest
-    /// level of spectra in dB; palette is Inferno, Magma, Viridis or Cividis
+    /// floor: -40). Each field is optional. The field titles also controls the notes, and the field
+    /// scene controls the drawing above the planes. The field width is the page width in inches,
+    /// 3.3 to 7, and the field floor is the lowest level of spectra in dB. The field palette is
+    /// Inferno, Magma, Viridis or Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

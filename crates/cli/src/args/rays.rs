@@ -19,7 +19,7 @@ The format of FILE is recognised by its first bytes, and that of the output file
 A note lists what the output format cannot hold. Copies in the same format keep everything. docs/rays.md \
 lists the units.")]
 pub(crate) struct RaysArgs {
-    /// Ray file: IES TM-25, MCPL (also gzipped) or NPY
+    /// Ray file in IES TM-25, MCPL (also gzipped) or NPY
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 

@@ -33,9 +33,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Trace photons until their noise at each plane is at most this share of the spectrum, from
-    /// 2^20 photons up to --photons [default: 2^40]; the exit code is 3 if these do not suffice.
-    /// Errors of predictions are not included
+    /// Trace photons until their noise at each plane is at most this share of the spectrum. The run
+    /// begins with 2^20 photons and stops at --photons [default: 2^40]; the exit code is 3 if this
+    /// number does not suffice. The noise does not include errors of predictions
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
@@ -282,7 +282,7 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         ),
         named(
             Save::Field,
-            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), which is also predicted and compared; traces the photons once more for each plane, or twice if memory is short",
+            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), with prediction and comparison. The photons are traced once more for each plane, or twice if memory is short",
         ),
     ])
 }

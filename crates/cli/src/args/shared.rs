@@ -68,7 +68,8 @@ impl PhotonArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ForceArgs {
-    /// Replace files that etendue did not write, or that were changed after it wrote them, and print the name of each
+    /// Replace files that etendue did not write, or that were changed after etendue wrote them, and
+    /// print the name of each replaced file
     #[arg(long)]
     pub(crate) force: bool,
 }
@@ -167,7 +168,7 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be a whole number that f64 holds exactly"
+    reason = "the value was checked to be a whole number that f64 holds exactly"
 )]
 pub(super) fn whole_number(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");

@@ -39,9 +39,9 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Use the seed of the scene or of --seed at all points: differences between points have less
-    /// noise, but their errors are not independent. Otherwise each point has its own seed, derived
-    /// from the given seed and the point's values
+    /// Use the same seed, that of the scene or of --seed, at all points: differences between points
+    /// have less noise, but the errors of the points are not independent. Without this option, each
+    /// point has its own seed, derived from the given seed and the point's values
     #[arg(long)]
     pub(crate) common_seed: bool,
 
@@ -106,8 +106,8 @@ pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Also trace the scene and measure the bandwidth; the bandwidth of the exact prediction is shown
-    /// beside it
+    /// Also trace the scene and measure the bandwidth; the bandwidth of the exact prediction is
+    /// shown beside the measured bandwidth
     #[arg(long)]
     pub(crate) measure: bool,
 

@@ -54,8 +54,8 @@ pub(crate) struct WorldArgs {
     pub(crate) view: ViewArgs,
 }
 
-/// A camera from the command line, which does not depend on the scene. It is named `command` and
-/// becomes the first camera.
+/// A camera from the command line, which does not depend on the scene. This camera is named
+/// `command` and becomes the first camera.
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     /// Add a camera of 512 × 512 pixels at this point, in coordinates of the scene
@@ -221,7 +221,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point to find the distance of blockers; the same number is used for the distance of
+    /// Rays per point to find the distance of blockers, and as many rays to find the distance of
     /// lights; the paper uses 100
     #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,

@@ -32,7 +32,7 @@ pub(crate) fn unforeseen_by_rays(
     found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
         let percent = 100.0 * apart;
         format!(
-            "a mesh that sends light elsewhere than its osculating patch, by {percent:.3} % of the window"
+            "a mesh whose light misses the light of its osculating patch by {percent:.3} % of the window"
         )
     }));
     (found, later)

@@ -15,7 +15,7 @@ impl Xml {
             Self("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n".into());
         let frame = scene.path.frame;
         xml.comment(&format!(
-            "Étendue scene {:?}. Metres; the origin is the light's centre, z runs along the central ray. In the world \
+            "Étendue scene {:?}. Lengths are in metres; the origin is the centre of the light, and z points along the central ray. In the world \
              of the scene file the origin is {}, x is {}, y is {}, z is {}.",
             scene.name,
             spaced(frame.origin),

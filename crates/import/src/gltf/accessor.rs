@@ -87,7 +87,10 @@ impl GltfReader<'_> {
         use ComponentType::{U8, U16, U32};
         if !matches!(rows.component, U8 | U16 | U32) {
             let path = format!("accessors[{}].componentType", index.value());
-            self.cause(&path, "of indices; allowed: 5121, 5123, 5125");
+            self.cause(
+                &path,
+                "is not allowed for indices; allowed: 5121, 5123, 5125",
+            );
             return None;
         }
         Some((0..rows.count).map(|row| rows.whole(row)).collect())
@@ -122,7 +125,10 @@ impl GltfReader<'_> {
         let stride = view.byte_stride.map_or(element, |stride| stride.0);
         let fit = self.fit(accessor, element, stride, bytes.len());
         let Some((start, count)) = fit else {
-            self.cause(&path, "reaches beyond its buffer, or elements overlap");
+            self.cause(
+                &path,
+                "reaches beyond its buffer, or has elements that overlap",
+            );
             return None;
         };
         Some(AccessorRows {
@@ -189,14 +195,14 @@ impl GltfReader<'_> {
         let bytes: Arc<[u8]> = match (&buffer.uri, self.chunk) {
             (Some(uri), _) => self.bytes_of(uri)?.into(),
             (None, Some(chunk)) if number == 0 => chunk.into(),
-            _ => return Err("has no uri, and the file has no chunk for it".to_owned()),
+            _ => return Err("has no uri, and the file has no binary chunk".to_owned()),
         };
         let length = usize::try_from(buffer.byte_length.0).ok();
         let within = length.and_then(|length| bytes.get(..length));
         let (found, said) = (bytes.len(), buffer.byte_length.0);
         within
             .map(Arc::from)
-            .ok_or_else(|| format!("has {found} bytes; byteLength is {said}"))
+            .ok_or_else(|| format!("has {found} bytes, but its byteLength is {said}"))
     }
 
     /// Returns the bytes that a URI refers to.

@@ -21,7 +21,7 @@ impl<'a> GltfReader<'a> {
             return;
         };
         let Some(looking) = placed.looking() else {
-            return self.cause(&placed.path, "scales a camera to size 0");
+            return self.cause(&placed.path, "scales the camera of this node to size 0");
         };
         let read = match (&camera.perspective, &camera.orthographic) {
             (Some(of), _) => self.perspective(of, &format!("{path}.perspective")),
@@ -99,7 +99,7 @@ impl<'a> GltfReader<'a> {
         let (xmag, ymag) = (xmag?, ymag?);
         let aspect = xmag / ymag;
         if !(ASPECTS[0]..=ASPECTS[1]).contains(&aspect) {
-            let message = format!("xmag over ymag is {aspect}; allowed: {ASPECTS:?}");
+            let message = format!("xmag divided by ymag is {aspect}; allowed: {ASPECTS:?}");
             self.cause(path, message);
             return None;
         }

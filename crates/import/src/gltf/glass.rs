@@ -18,7 +18,7 @@ impl GltfReader<'_> {
         let Some(of) = transmission else {
             if extensions.is_some_and(|of| of.volume.is_some()) {
                 let path = format!("{}.extensions.KHR_materials_volume", draft.path);
-                self.note(&path, "left out: nothing is transmitted");
+                self.note(&path, "left out: the material transmits no light");
             }
             return Some(opaque);
         };
@@ -42,7 +42,7 @@ impl GltfReader<'_> {
         }
         self.note(
             &path,
-            "approximated: a mixture of an opaque material and glass",
+            "approximated: the material is a mixture of an opaque material and glass",
         );
         let weight = Texture::Constant(share);
         let of = Box::new([opaque, glass]);
@@ -57,10 +57,10 @@ impl GltfReader<'_> {
         let roughness = roughness(alpha?).filter(|_| !is_thin);
         let message = match is_thin {
             true => {
-                "approximated: a smooth thin sheet with all internal reflections; its base colour applies once"
+                "approximated: the surface is a smooth thin sheet with all internal reflections; the base colour applies once"
             }
             false => {
-                "approximated: an interface whose base colour applies each time light passes it"
+                "approximated: the surface is an interface, and the base colour applies each time light passes"
             }
         };
         self.note(path, message);
@@ -81,7 +81,10 @@ impl GltfReader<'_> {
         };
         let path = format!("{}.extensions.KHR_materials_volume", draft.path);
         if volume.attenuation_distance.0.is_finite() {
-            self.note(&path, "attenuation left out: the body is clear");
+            self.note(
+                &path,
+                "attenuation is left out: light is not absorbed inside the body",
+            );
         }
         if volume.thickness_factor.0 > 0.0 && volume.thickness_texture.is_some() {
             self.note(&path, "thicknessTexture left out");

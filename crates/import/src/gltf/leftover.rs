@@ -9,7 +9,10 @@ impl GltfReader<'_> {
         let root = self.root;
         for (i, animation) in root.animations.iter().enumerate() {
             let name = animation.name.as_deref().unwrap_or_default();
-            let message = format!("{} left out: nodes keep their own transforms", quoted(name));
+            let message = format!(
+                "animation {} is left out: nodes keep the transforms that they have without it",
+                quoted(name)
+            );
             self.note(&format!("animations[{i}]"), message);
         }
         for name in root.extensions.iter().flat_map(|of| of.others.keys()) {

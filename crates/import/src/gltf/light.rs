@@ -41,7 +41,7 @@ impl<'a> GltfReader<'a> {
         };
         let looking = placed.looking();
         if looking.is_none() && kind != Type::Point {
-            self.cause(&placed.path, "scales a light to size 0");
+            self.cause(&placed.path, "scales the light of this node to size 0");
         }
         match kind {
             Type::Point => Some(Light::Point {
@@ -72,8 +72,9 @@ impl<'a> GltfReader<'a> {
         // The tolerance is needed because π/2 rounded to 32 bits is slightly larger than π/2.
         let fits = 0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6;
         if !fits {
-            let message =
-                format!("cones of {inner} and {outer}; allowed: 0 <= inner < outer <= π/2");
+            let message = format!(
+                "the inner and outer cone angles are {inner} and {outer}; allowed: 0 <= inner < outer <= π/2"
+            );
             self.cause(path, message);
         }
         fits.then_some([inner, outer.min(FRAC_PI_2)])

@@ -50,7 +50,7 @@ impl<'a> GltfReader<'a> {
         };
         if draft.sets.len() > 1 {
             let message = format!(
-                "pictures with several sets of texture coordinates, {:?}; allowed: one set",
+                "the pictures use several sets of texture coordinates, {:?}; allowed: one set",
                 draft.sets
             );
             self.cause(&draft.path, message);
@@ -87,7 +87,7 @@ impl<'a> GltfReader<'a> {
     /// was reported.
     #[expect(
         clippy::option_option,
-        reason = "the outer `None` means a reported cause"
+        reason = "the outer `None` means that a cause was reported"
     )]
     fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let path = format!("{}.emissiveFactor", draft.path);
@@ -117,7 +117,7 @@ impl<'a> GltfReader<'a> {
     /// that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "the outer `None` means a reported cause"
+        reason = "the outer `None` means that a cause was reported"
     )]
     fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let source = draft.source;
@@ -160,7 +160,7 @@ impl<'a> GltfReader<'a> {
             return;
         };
         if extensions.unlit.is_some() {
-            let message = "left out: the surface is lit like others";
+            let message = "left out: the surface reflects light like any other surface";
             self.note(&format!("{path}.extensions.KHR_materials_unlit"), message);
         }
         for name in extensions.others.keys() {

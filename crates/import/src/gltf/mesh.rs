@@ -44,14 +44,17 @@ impl GltfReader<'_> {
         };
         let count = vertices.len();
         if let Some(bad) = listed.iter().find(|i| **i as usize >= count) {
-            self.cause(path, format!("index {bad} among {count} vertices"));
+            self.cause(
+                path,
+                format!("an index is {bad}, but there are only {count} vertices"),
+            );
             return None;
         }
         let agrees = |length: usize| length == count;
         if !normals.as_ref().is_none_or(|n| agrees(n.len()))
             || !uvs.as_ref().is_none_or(|uvs| agrees(uvs.len()))
         {
-            self.cause(path, "attributes of different lengths");
+            self.cause(path, "the attributes have different lengths");
             return None;
         }
         let mut parts = MeshParts {

@@ -29,7 +29,8 @@ impl GltfReader<'_> {
             Texture::Constant(..=0.0) => self.dielectric_base(draft, color, &alpha),
             Texture::Constant(1.0..) => Some(self.metal(draft, color, alpha)),
             weight => {
-                let message = "approximated: a mixture of a coated base and a metal";
+                let message =
+                    "approximated: the material is a mixture of a coated base and a metal";
                 self.note(&format!("{}.{PBR}.metallicFactor", draft.path), message);
                 let base = self.dielectric_base(draft, color.clone(), &alpha)?;
                 let metal = self.metal(draft, color, alpha);
@@ -83,7 +84,7 @@ impl GltfReader<'_> {
     fn metal(&self, draft: &Draft<'_>, reflectance: Texture, alpha: Texture) -> Material {
         let is_white = matches!(reflectance, Texture::Constant(v) if (v - 1.0).abs() < 1e-9);
         if !is_white {
-            let message = "approximated: a metal reflects its base colour at all angles, and does not turn white at grazing ones";
+            let message = "approximated: a metal reflects its base colour at all angles, and is not white at grazing angles";
             self.note(&format!("{}.{PBR}", draft.path), message);
         }
         Material::Conductor(Conductor {
@@ -106,14 +107,14 @@ impl GltfReader<'_> {
             });
         }
         let path = format!("{}.{PBR}", draft.path);
-        self.note(&path, format!("approximated: a diffuse base below a coat of index {index}, with internal reflections"));
+        self.note(&path, format!("approximated: the material is a diffuse base below a coat of index {index}, with internal reflections"));
         let alpha = match alpha {
             Texture::Bitmap(bitmap) => {
                 let values = bitmap.pixels.values();
                 let roots: f64 = values.iter().map(|alpha| alpha.sqrt()).sum();
                 let mean = roots / values.len() as f64;
                 let message =
-                    format!("approximated: its mean, {mean:.4}, is the roughness of the coat");
+                    format!("approximated: the coat has the mean roughness, {mean:.4}, everywhere");
                 self.note(&format!("{path}.metallicRoughnessTexture"), message);
                 Texture::Constant(mean * mean)
             }
@@ -167,7 +168,7 @@ impl GltfReader<'_> {
         if !is_plain {
             self.note(
                 &path,
-                "approximated: a factor on the reflection of the coat",
+                "approximated: the reflection of the coat is multiplied by this factor",
             );
         }
         Some(DielectricCoat { index, specular })

@@ -65,7 +65,7 @@ impl<'a> GltfReader<'a> {
         };
         if self.root.scenes.len() > 1 {
             let others = self.root.scenes.len() - 1;
-            let message = format!("is used; {others} other scenes are left out");
+            let message = format!("this scene is used; {others} other scenes are left out");
             self.note(&format!("scenes[{chosen}]"), message);
         }
         scene.nodes.iter().map(|node| node.value()).collect()
@@ -82,7 +82,10 @@ impl<'a> GltfReader<'a> {
                     "has two parents, or is its own ancestor",
                 );
             }
-            (Some(_), false) => self.note("nodes", format!("{unmet} are not in the scene")),
+            (Some(_), false) => self.note(
+                "nodes",
+                format!("{unmet} nodes do not belong to the scene and are left out"),
+            ),
             (None, _) => {}
         }
     }
@@ -124,7 +127,10 @@ impl<'a> GltfReader<'a> {
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
         match node.matrix {
             Some(_) if is_split => {
-                self.cause(path, "matrix together with translation, rotation or scale");
+                self.cause(
+                    path,
+                    "has a matrix together with translation, rotation or scale; allowed: only one of the two forms",
+                );
                 None
             }
             Some(matrix) => self.matrix(matrix, path),
@@ -139,7 +145,10 @@ impl<'a> GltfReader<'a> {
             .iter()
             .all(|v| v.abs() < 1e-6);
         if !is_affine {
-            self.cause(&format!("{path}.matrix"), "its last row is not 0 0 0 1");
+            self.cause(
+                &format!("{path}.matrix"),
+                "the last row of the matrix is not 0 0 0 1",
+            );
             return None;
         }
         let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);

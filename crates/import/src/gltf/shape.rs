@@ -31,7 +31,7 @@ impl<'a> GltfReader<'a> {
         let size: f64 = lengths.iter().product();
         let is_tiny = lengths.iter().any(|length| *length < 1.0 / MAX_NUMBER);
         if is_tiny || linear.determinant().abs() <= 1e-12 * size {
-            let message = "scales a mesh to size 0: left out";
+            let message = "scales the mesh of this node to size 0: the mesh is left out";
             return self.note(&placed.path, message);
         }
         let own = || mesh.name.clone();
@@ -131,7 +131,7 @@ impl<'a> GltfReader<'a> {
                 let fits = spent.map_err(|error| self.cause(path, error)).is_ok();
                 let made = parts.finish().filter(|_| fits).map(Arc::new);
                 let message = format!(
-                    "emits on both sides: its back is a separate surface, {gap:.3e} behind"
+                    "emits on both sides: its back becomes a separate surface, {gap:.3e} behind its front"
                 );
                 self.note(path, message);
                 self.backs.insert(key, made.clone());

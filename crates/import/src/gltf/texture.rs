@@ -68,8 +68,9 @@ impl GltfReader<'_> {
         };
         let [across, down] = [wrap(sampler.wrap_s), wrap(sampler.wrap_t)];
         if across != down {
-            let message =
-                format!("approximated: wrapS, {across:?}, is used in place of wrapT, {down:?}");
+            let message = format!(
+                "approximated: wrapS, {across:?}, is used in both directions, and wrapT, {down:?}, is left out"
+            );
             self.note(path, message);
         }
         let filter = match sampler.mag_filter {

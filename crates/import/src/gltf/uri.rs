@@ -21,20 +21,24 @@ pub(super) enum BufferSource {
 /// Parses a URI; data may have at most `most` bytes.
 pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (kind, text) = data.split_once(',').ok_or("is data without a comma")?;
+        let (kind, text) = data
+            .split_once(',')
+            .ok_or("is a data URI without a comma")?;
         if !kind.ends_with(";base64") {
-            return Err("is data in another encoding; allowed: base64".to_owned());
+            return Err("is a data URI that is not in base64; allowed: base64".to_owned());
         }
         // Four characters encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
-            return Err("has more data than an import may read".to_owned());
+            return Err("is a data URI of more bytes than an import may read".to_owned());
         }
         let bytes = BASE64.decode(text);
-        let bytes = bytes.map_err(|error| format!("is damaged base64 ({error})"))?;
+        let bytes = bytes.map_err(|error| format!("is a data URI in damaged base64 ({error})"))?;
         return Ok(BufferSource::Data(bytes));
     }
     if uri.contains("://") {
-        return Err("is remote; allowed: files and data".to_owned());
+        return Err(
+            "is the address of a remote file; allowed: local files and data URIs".to_owned(),
+        );
     }
     unescaped(uri).map(BufferSource::File)
 }

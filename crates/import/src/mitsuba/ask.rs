@@ -174,7 +174,7 @@ impl<'a> MitsubaReader<'a> {
         let found = self.children(object, kind);
         if let Some((second, _)) = found.get(1) {
             let (name, plugin) = (kind.name(), quoted(&object.plugin));
-            let message = format!("a second {name} in {plugin}; allowed: one");
+            let message = format!("{plugin} has a second {name}; allowed: one");
             self.report.cause(&second.place, message);
         }
         found.first().map(|(_, child)| *child)

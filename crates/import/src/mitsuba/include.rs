@@ -23,7 +23,9 @@ impl Tree<'_> {
     ) -> Result<(), String> {
         allow(attributes, &["value"])?;
         if parent != 0 {
-            return Err("<path> inside another element; allowed: directly in <scene>".to_owned());
+            return Err(
+                "<path> is inside another element; allowed: directly in <scene>".to_owned(),
+            );
         }
         let name = required(attributes, "value")?;
         let found = self.files.find(&source.folders, name);
@@ -51,7 +53,9 @@ impl Tree<'_> {
             return Err(told("includes itself".to_owned()));
         }
         if self.open.len() > MOST_INCLUDED {
-            return Err(format!("includes nested more than {MOST_INCLUDED} deep"));
+            return Err(format!(
+                "includes are nested more than {MOST_INCLUDED} deep"
+            ));
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {

@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// Plugins supported as lights.
-const ALLOWED: &str = "point, spot, directional, constant, envmap; area within a shape";
+const ALLOWED: &str = "point, spot, directional, constant, envmap, and area within a shape";
 
 /// Default half-angle of a spot, degrees.
 const CUTOFF: f64 = 20.0;
@@ -68,7 +68,7 @@ impl<'a> MitsubaReader<'a> {
     /// that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "the inner `None` means neither; the outer one, a reported cause"
+        reason = "the inner `None` means that neither is given; the outer `None` means that a cause was reported"
     )]
     fn either(
         &self,
@@ -78,7 +78,8 @@ impl<'a> MitsubaReader<'a> {
     ) -> Option<Option<DVec3>> {
         match [name, "to_world"].map(|name| self.has(object, name)) {
             [true, true] => {
-                let message = format!("{name} together with to_world; allowed: one of them");
+                let message =
+                    format!("{name} is given together with to_world; allowed: one of them");
                 self.report.cause(&object.place, message);
                 None
             }
@@ -143,8 +144,10 @@ impl<'a> MitsubaReader<'a> {
         let pixels = self.picture(object, false)?;
         let (scale, to_world) = (scale?, to_world?);
         if pixels.values().iter().any(|v| *v < 0.0) {
-            self.report
-                .cause(&object.place, "pixels below 0; allowed: 0 or more");
+            self.report.cause(
+                &object.place,
+                "the picture has pixels below 0; allowed: 0 or more",
+            );
             return None;
         }
         let bytes = size_of_val(pixels.values()) as u64;

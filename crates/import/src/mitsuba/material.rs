@@ -68,7 +68,7 @@ impl<'a> MitsubaReader<'a> {
         }
         if depth > MAX_DEPTH {
             let message =
-                format!("bsdfs nested more than {MAX_DEPTH} deep, or a bsdf within itself");
+                format!("bsdfs are nested more than {MAX_DEPTH} deep, or a bsdf contains itself");
             self.report.cause(&object.place, message);
             return None;
         }
@@ -118,7 +118,7 @@ impl<'a> MitsubaReader<'a> {
         };
         let has_index = self.has(object, "eta") || self.has(object, "k");
         if name != "none" && has_index {
-            let message = "material together with eta or k; allowed: one of them";
+            let message = "material is given together with eta or k; allowed: one of them";
             self.report
                 .cause(self.place_of(object, "material"), message);
             return None;
@@ -210,7 +210,7 @@ impl<'a> MitsubaReader<'a> {
 
     #[expect(
         clippy::option_option,
-        reason = "the inner `None` means smooth; the outer one, a reported cause"
+        reason = "the inner `None` means a smooth surface; the outer `None` means that a cause was reported"
     )]
     fn roughness_if(
         &mut self,

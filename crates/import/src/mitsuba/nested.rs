@@ -20,7 +20,7 @@ impl<'a> MitsubaReader<'a> {
             },
         };
         if both.iter().any(lets_through) {
-            let message = "twosided around a bsdf that transmits light";
+            let message = "twosided contains a bsdf that transmits light; allowed: opaque bsdfs";
             self.report.cause(&object.place, message);
             return None;
         }
@@ -67,7 +67,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
         let plugin = &object.plugin;
-        let message = format!("{plugin} with a wrong number of bsdfs; allowed: {allowed}");
+        let message = format!("{plugin} has a wrong number of bsdfs; allowed: {allowed}");
         self.report.cause(&object.place, message);
         None
     }

@@ -81,7 +81,9 @@ impl Parameters {
                 made.push_str(&parameter.value);
             }
             if self.made > MOST_BYTES {
-                return Err(format!("parameters make more than {MOST_BYTES} bytes"));
+                return Err(format!(
+                    "the scene has more than {MOST_BYTES} bytes after parameters are inserted"
+                ));
             }
         }
         made.push_str(rest);

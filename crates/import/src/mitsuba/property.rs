@@ -42,7 +42,12 @@ impl Tree<'_> {
             "spectrum" => match (find(attributes, "value"), find(attributes, "filename")) {
                 (Some(text), None) => value::spectrum(text)?,
                 (None, Some(file)) => self.spectrum(file, source)?,
-                _ => return Err("not one of value and filename".to_owned()),
+                _ => {
+                    return Err(
+                        "value and filename are both given, or neither; allowed: one of them"
+                            .to_owned(),
+                    );
+                }
             },
             "point" | "vector" => match find(attributes, "value") {
                 Some(text) => Value::Vector(value::triple(text)?.into()),
@@ -72,7 +77,7 @@ impl Tree<'_> {
         match holds(made) {
             true => Ok(made),
             false => Err(format!(
-                "its product has numbers out of range; allowed: up to {MAX_NUMBER:e}"
+                "the product with the preceding transforms has numbers out of range; allowed: up to {MAX_NUMBER:e}"
             )),
         }
     }

@@ -74,7 +74,7 @@ impl<'a> MitsubaReader<'a> {
         if 0.0 < near && near < far {
             return Some([near, far]);
         }
-        let message = format!("clip planes at {near} and {far}; allowed: 0 < near < far");
+        let message = format!("the clip planes are at {near} and {far}; allowed: 0 < near < far");
         self.report.cause(&object.place, message);
         None
     }
@@ -128,7 +128,7 @@ impl<'a> MitsubaReader<'a> {
                 .map(|length| diagonal(DIAGONAL / 2.0 / length));
         }
         if self.has(object, "focal_length") {
-            let message = "focal_length together with fov; allowed: one of them";
+            let message = "focal_length is given together with fov; allowed: one of them";
             self.report
                 .cause(self.place_of(object, "focal_length"), message);
         }

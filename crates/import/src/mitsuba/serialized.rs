@@ -31,7 +31,9 @@ pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts
     };
     let mesh = stream.mesh(version);
     let parts = mesh.map_err(|error| match stream.inner.limit() {
-        0 => format!("unpacks to more than {most} bytes; allowed: {MAX_PER_BYTE} times its size"),
+        0 => format!(
+            "unpacks to more than {most} bytes; allowed: {MAX_PER_BYTE} times the size of the file"
+        ),
         _ => error,
     })?;
     files.spend(most - stream.inner.limit())?;

@@ -28,7 +28,7 @@ impl<'a> MitsubaReader<'a> {
         let to_world = self.to_world(object);
         let groups = self.children(object, ObjectKind::Shape);
         let [(_, group)] = groups[..] else {
-            let message = "an instance with a wrong number of shapegroups; allowed: one";
+            let message = "an instance has a wrong number of shapegroups; allowed: one";
             return self.report.cause(&object.place, message);
         };
         if group.plugin != "shapegroup" {
@@ -131,7 +131,7 @@ impl<'a> MitsubaReader<'a> {
         let like = similar(placed.matrix3);
         let radius = like.x_axis.length();
         let message = format!(
-            "as in Mitsuba, a sphere with different scales along its axes has the scale along its X axis, and so the radius {radius:.6}"
+            "the sphere has different scales along its axes: as in Mitsuba, the scale along its X axis determines the radius, {radius:.6}"
         );
         self.report.note(&object.place, message);
         let placed = DAffine3::from_mat3_translation(like, placed.translation);
@@ -148,7 +148,10 @@ impl<'a> MitsubaReader<'a> {
         let radius = self.radius(object)?;
         let (p0, axis) = (p0?, p1? - p0?);
         let Some(along) = axis.try_normalize() else {
-            self.report.cause(&object.place, "p0 and p1 are the same");
+            self.report.cause(
+                &object.place,
+                "p0 and p1 are the same point; allowed: two different points",
+            );
             return None;
         };
         let scale = DVec3::new(radius, radius, axis.length());

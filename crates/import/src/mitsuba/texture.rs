@@ -178,7 +178,7 @@ impl<'a> MitsubaReader<'a> {
         let second = self.texture_or(object, "color1", role, 0.2);
         let to_uv = self.to_uv(object);
         let (Texture::Constant(first), Texture::Constant(second)) = (first?, second?) else {
-            let message = "a checkerboard of textures; allowed: two values";
+            let message = "a checkerboard has textures as its colours; allowed: two values";
             self.report.cause(&object.place, message);
             return None;
         };

@@ -42,8 +42,9 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             let origin = value::vector(required(attributes, "origin")?)?;
             let target = value::vector(required(attributes, "target")?)?;
             let up = find(attributes, "up").map_or(Ok(DVec3::ZERO), value::vector)?;
-            look_at(origin, target, up)
-                .ok_or_else(|| "no viewing direction, or up is parallel to it".to_owned())
+            look_at(origin, target, up).ok_or_else(|| {
+                "the viewing direction has length 0, or up is parallel to it".to_owned()
+            })
         }
         "matrix" => {
             allow(attributes, &["value"])?;
@@ -101,10 +102,13 @@ fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     } else if let Ok(linear) = <[f64; 9]>::try_from(numbers) {
         DMat4::from_mat3(DMat3::from_cols_array(&linear).transpose())
     } else {
-        return Err(format!("{} numbers; allowed: 9 or 16", numbers.len()));
+        return Err(format!(
+            "a matrix has {} numbers; allowed: 9 or 16",
+            numbers.len()
+        ));
     };
     if matrix.row(3) != DVec4::W {
-        return Err("the last row is not 0 0 0 1".to_owned());
+        return Err("the last row of a matrix is not 0 0 0 1".to_owned());
     }
     Ok(DAffine3::from_mat4(matrix))
 }
@@ -113,7 +117,10 @@ fn vector(attributes: &Attributes, default: f64) -> Result<DVec3, String> {
     let each = ["x", "y", "z"].map(|axis| find(attributes, axis));
     if let Some(text) = find(attributes, "value") {
         if each.iter().any(Option::is_some) {
-            return Err("value together with x, y or z".to_owned());
+            return Err(
+                "value is given together with x, y or z; allowed: only one of the two forms"
+                    .to_owned(),
+            );
         }
         return value::triple(text).map(DVec3::from);
     }

@@ -80,7 +80,7 @@ pub(super) fn spectrum_file(text: &str) -> Result<Value, String> {
         match numbers(line).map_err(|error| format!("line {}: {error}", i + 1))?[..] {
             [] => {}
             [wavelength, value] => pairs.push([wavelength, value]),
-            _ => return Err(format!("line {}: not a wavelength and a value", i + 1)),
+            _ => return Err(format!("line {} is not a wavelength and a value", i + 1)),
         }
     }
     sampled(pairs)

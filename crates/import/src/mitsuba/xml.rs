@@ -77,7 +77,7 @@ impl<'a> Tree<'a> {
         if let Some(offset) = crowded(text) {
             let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);
-            let message = format!("an element of more than {MAX_ATTRIBUTES} attributes");
+            let message = format!("an element has more than {MAX_ATTRIBUTES} attributes");
             return self.report.cause(&place, message);
         }
         let document = match Document::parse(text) {
@@ -147,8 +147,10 @@ impl<'a> Tree<'a> {
             if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
                 let most =
                     format!("at most {MOST_ELEMENTS} elements, nested at most {MAX_DEPTH} deep");
-                self.report
-                    .cause(&place, format!("too many elements: {most}"));
+                self.report.cause(
+                    &place,
+                    format!("the scene has too many elements; allowed: {most}"),
+                );
             }
             return;
         }
@@ -191,7 +193,10 @@ impl<'a> Tree<'a> {
         Ok(made)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "an element and its place")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the arguments describe an element and its place"
+    )]
     fn object(
         &mut self,
         node: Node<'_, '_>,

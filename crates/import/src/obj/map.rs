@@ -58,7 +58,7 @@ impl MtlMap {
                 "-o" => offset = pair(&values, 0.0),
                 "-clamp" if values.first() == Some(&"on") => wrap = Wrap::Clamp,
                 "-clamp" | "-blendu" | "-blendv" => {}
-                _ => report.note(&place, format!("option {option} left out")),
+                _ => report.note(&place, format!("option {option} is left out")),
             }
         }
         if rest.is_empty() {
@@ -66,7 +66,8 @@ impl MtlMap {
             return None;
         }
         if !(scale.abs().max_element() <= MAX_NUMBER && offset.abs().max_element() <= MAX_NUMBER) {
-            let message = format!("places its picture out of range; allowed: up to {MAX_NUMBER:e}");
+            let message =
+                format!("moves or scales the picture out of range; allowed: up to {MAX_NUMBER:e}");
             report.cause(&place, message);
             return None;
         }

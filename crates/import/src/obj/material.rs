@@ -62,7 +62,9 @@ impl ObjReader<'_> {
         let side = match illum {
             4 | 6 | 7 | 9 => return Some(self.glass(entry)),
             3 | 5 | 8 => {
-                note("approximated: a mirror that reflects Ks at all angles; Kd and Ns left out");
+                note(
+                    "approximated: the material is a mirror that reflects Ks at all angles; Kd and Ns are left out",
+                );
                 Material::Conductor(Conductor {
                     index: None,
                     reflectance: Texture::Constant(self.color.of(entry.ks.unwrap_or([1.0; 3]))),
@@ -127,7 +129,8 @@ impl ObjReader<'_> {
             let message = format!("transmits without Ni: Ni = {INDEX} is used");
             self.report.note(&entry.place, message);
         }
-        let message = "approximated: a smooth interface; Kd, Ks and Ns left out";
+        let message =
+            "approximated: the material is a smooth interface; Kd, Ks and Ns are left out";
         self.report.note(&entry.place, message);
         Material::Dielectric(Dielectric {
             index,
@@ -141,7 +144,7 @@ impl ObjReader<'_> {
     /// Returns the transparency. The outer `None` means that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "the outer `None` means a reported cause"
+        reason = "the outer `None` means that a cause was reported"
     )]
     fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {

@@ -40,7 +40,10 @@ pub(super) fn read(
             continue;
         }
         let Some((_, entry)) = &mut open else {
-            report.note(&place, format!("{} before newmtl left out", quoted(word)));
+            report.note(
+                &place,
+                format!("{} stands before newmtl and is left out", quoted(word)),
+            );
             continue;
         };
         let statement = MtlStatement {
@@ -67,7 +70,7 @@ pub(super) fn read(
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
         1 => format!("{word} left out"),
-        _ => format!("{word} left out, {count} times"),
+        _ => format!("{word} is left out, {count} times"),
     }
 }
 
@@ -122,7 +125,10 @@ impl MtlStatement<'_> {
             }
             // The pictures of these statements would change normals or displace the surface.
             "bump" | "map_bump" | "norm" | "disp" => {
-                let message = format!("{} is not supported: surfaces are smooth", self.word);
+                let message = format!(
+                    "{} is not supported: normals are those of the shape",
+                    self.word
+                );
                 self.report.cause(&self.place, message);
             }
             "map_kd" => entry.map_kd = self.map(folder).or(entry.map_kd.take()),

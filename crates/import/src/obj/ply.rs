@@ -29,7 +29,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     }
     report.note(
         &place,
-        "has no material: diffuse with reflectance 0.5 on both sides",
+        "has no material: a diffuse material of reflectance 0.5 is used on both sides",
     );
     let world = World {
         shapes: vec![Shape {

@@ -110,13 +110,13 @@ impl<'a> ObjReader<'a> {
             self.report.note(&place, message);
         }
         if surface.has_picture && parts.uvs.is_none() {
-            let message = "faces without texture coordinates, which their material needs";
+            let message = "faces have no texture coordinates, but their material needs them";
             return self.report.cause(&place, message);
         }
         let Some(mesh) = parts.finish() else {
             return self
                 .report
-                .note(&place, "no triangle with an area above 0: left out");
+                .note(&place, "has no triangle with an area above 0: left out");
         };
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),
@@ -136,7 +136,7 @@ impl<'a> ObjReader<'a> {
             None => {
                 self.report.note(
                     &self.place,
-                    "has faces without a material: diffuse with reflectance 0.5",
+                    "has faces without a material: a diffuse material of reflectance 0.5 is used",
                 );
                 Some(self.default_surface())
             }

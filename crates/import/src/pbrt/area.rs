@@ -31,7 +31,7 @@ impl PbrtReader<'_> {
             return Err(area.unsupported(self.report, "diffuse"));
         }
         if area.truth(self.report, "twosided", false)? {
-            let message = "light from both sides of a surface is not supported";
+            let message = "a surface that emits on both sides is not supported";
             return Err(area.fault(self.report, "twosided", message.to_owned()));
         }
         if shape.entity.has("alpha") {

@@ -26,7 +26,7 @@ impl Builder<'_> {
     pub(super) fn push(&mut self, kind: char, place: &SourcePlace) -> Result<(), String> {
         self.within_world("a block")?;
         if self.stack.len() >= MAX_DEPTH {
-            return Err(format!("blocks nested more than {MAX_DEPTH} deep"));
+            return Err(format!("blocks are nested more than {MAX_DEPTH} deep"));
         }
         self.stack.push((self.state.clone(), kind, place.clone()));
         Ok(())
@@ -42,7 +42,7 @@ impl Builder<'_> {
                 Ok(())
             }
             Some((.., place)) => Err(format!(
-                "{word}End, but the block opened in line {} is not closed",
+                "{word}End stands before the end of the block that line {} opens",
                 place.line
             )),
             None => Err(format!("{word}End without {word}Begin")),
@@ -51,10 +51,10 @@ impl Builder<'_> {
 
     pub(super) fn begin_object(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
         if self.object.is_some() {
-            return Err("an object within an object".to_owned());
+            return Err("an object is defined within an object".to_owned());
         }
         if self.scene.objects.contains_key(&name) {
-            return Err(format!("a second object {}", quoted(&name)));
+            return Err(format!("object {} is defined twice", quoted(&name)));
         }
         self.push('o', place)?;
         let object = PbrtObject {
@@ -75,7 +75,7 @@ impl Builder<'_> {
     pub(super) fn instance(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
         self.within_world("ObjectInstance")?;
         if self.object.is_some() {
-            return Err("an instance within an object".to_owned());
+            return Err("an object contains an instance".to_owned());
         }
         self.scene.instances.push(Instance {
             name,

@@ -108,14 +108,18 @@ impl<'a> Builder<'a> {
     pub(super) fn before_world(&self, word: &str) -> Result<(), String> {
         match self.is_world {
             false => Ok(()),
-            true => Err(format!("{word} after WorldBegin; allowed: before")),
+            true => Err(format!(
+                "{word} stands after WorldBegin; allowed: before WorldBegin"
+            )),
         }
     }
 
     pub(super) fn within_world(&self, word: &str) -> Result<(), String> {
         match self.is_world {
             true => Ok(()),
-            false => Err(format!("{word} before WorldBegin; allowed: after")),
+            false => Err(format!(
+                "{word} stands before WorldBegin; allowed: after WorldBegin"
+            )),
         }
     }
 
@@ -183,7 +187,7 @@ impl<'a> Builder<'a> {
         self.scene.materials.push(entity);
         match before {
             None => Ok(()),
-            Some(_) => Err(format!("a second material {shown}")),
+            Some(_) => Err(format!("material {shown} is defined twice")),
         }
     }
 

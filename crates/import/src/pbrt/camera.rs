@@ -56,7 +56,7 @@ impl PbrtReader<'_> {
             _ => return Err(entity.unsupported(self.report, ALLOWED)),
         };
         let placed = without_scale(map.inverse()).ok_or_else(|| {
-            let message = "a camera with shear, or with different scales along its axes";
+            let message = "the camera has shear, or different scales along its axes";
             self.report.cause(&entity.place, message);
             CauseGiven
         });
@@ -103,7 +103,9 @@ impl PbrtReader<'_> {
         if is_square && width > 0.0 && height > 0.0 {
             return Ok(window);
         }
-        let message = format!("pixels that are not square, {width} × {height} over {w} × {h}");
+        let message = format!(
+            "the pixels are not square: the screen of {width} × {height} has {w} × {h} pixels"
+        );
         self.report.cause(&entity.place, message);
         Err(CauseGiven)
     }

@@ -17,8 +17,12 @@ impl Builder<'_> {
             let done = match token {
                 Token::Word(word) if is_directive(word) => self.directive(word, &place, tokens),
                 Token::Word(word) => Err(format!("directive {} is not known", quoted(word))),
-                Token::Text(text) => Err(format!("{} outside of a directive", quoted(&text))),
-                Token::Open | Token::Close => Err("a bracket outside of a directive".to_owned()),
+                Token::Text(text) => {
+                    Err(format!("{} stands outside of a directive", quoted(&text)))
+                }
+                Token::Open | Token::Close => {
+                    Err("a bracket stands outside of a directive".to_owned())
+                }
                 Token::Broken(what) => Err(what.to_owned()),
             };
             if let Err(error) = done {
@@ -76,7 +80,7 @@ impl Builder<'_> {
         let product = self.state.to_world * map;
         if !holds(product) {
             return Err(format!(
-                "its product with the preceding transform has numbers out of range; allowed: up to {MAX_NUMBER:e}"
+                "the product with the preceding transform has numbers out of range; allowed: up to {MAX_NUMBER:e}"
             ));
         }
         self.state.to_world = product;
@@ -123,9 +127,9 @@ impl Builder<'_> {
         let name = text(tokens)?;
         match tokens.peek() {
             Some((Token::Word(word), _)) if is_directive(word) => {
-                return Err("an option without a value".to_owned());
+                return Err("an option has no value".to_owned());
             }
-            None => return Err("an option without a value".to_owned()),
+            None => return Err("an option has no value".to_owned()),
             Some(_) => tokens.next(),
         };
         let message = format!("option {} is left out", quoted(&name));

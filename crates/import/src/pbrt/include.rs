@@ -24,7 +24,9 @@ impl Builder<'_> {
             return Err(format!("file {} includes itself", quoted(name)));
         }
         if self.open.len() >= DEEPEST_FILES {
-            return Err(format!("includes nested more than {DEEPEST_FILES} deep"));
+            return Err(format!(
+                "includes are nested more than {DEEPEST_FILES} deep"
+            ));
         }
         self.included += 1;
         if self.included > MOST_FILES {

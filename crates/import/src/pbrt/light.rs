@@ -101,7 +101,7 @@ impl PbrtReader<'_> {
         let from = entity.point_or(report, "from", DVec3::ZERO);
         let way = self.way(entity, to_world);
         if without_scale(to_world).is_none() {
-            let message = "a spot with shear, or with different scales along its axes";
+            let message = "the spot has shear, or different scales along its axes";
             report.cause(&entity.place, message);
             return Err(CauseGiven);
         }

@@ -78,13 +78,13 @@ impl PbrtReader<'_> {
         entity.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS || self.depth > MAX_DEPTH {
-            let message = "it contains itself, or too many materials are nested";
+            let message = "the material contains itself, or too many materials are nested";
             self.cause_once(&entity.place, message.to_owned());
             return Err(CauseGiven);
         }
         for name in ["displacement", "normalmap"] {
             if entity.has(name) {
-                let message = format!("{name} is not supported: surfaces are smooth");
+                let message = format!("{name} is not supported: normals are those of the shape");
                 return Err(entity.fault(self.report, name, message));
             }
         }
@@ -131,7 +131,8 @@ impl PbrtReader<'_> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
             if entity.has("eta") || entity.has("k") {
-                let message = "reflectance together with eta or k; allowed: one of them".to_owned();
+                let message =
+                    "reflectance is given together with eta or k; allowed: one of them".to_owned();
                 return Err(entity.fault(self.report, "reflectance", message));
             }
             let share = self.constant_or(entity, "reflectance", ALBEDO, 1.0)?;
@@ -146,7 +147,7 @@ impl PbrtReader<'_> {
     }
 
     fn coated(&mut self, entity: &Entity, uv: Uv) -> Read<Plastic> {
-        let message = "approximated: a plastic, whose rough coat does not blur the light from the base; pbrt-v4 traces random walks between the layers";
+        let message = "approximated: the material is a plastic, whose rough coat does not blur the light from the base; pbrt-v4 traces random walks between the layers";
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
@@ -212,7 +213,7 @@ impl PbrtReader<'_> {
         let weight = self.texture_or(entity, "amount", Ask::Float, 0.5, uv);
         let names = entity.texts(self.report, "materials")?;
         let [first, second] = names else {
-            let message = format!("{} materials; allowed: 2", names.len());
+            let message = format!("a mix has {} materials; allowed: 2", names.len());
             return Err(entity.fault(self.report, "materials", message));
         };
         let [first, second] = [first, second].map(|name| self.part(entity, name, uv));
@@ -235,7 +236,7 @@ impl PbrtReader<'_> {
         let made = self.make_material(of, uv);
         self.depth -= 1;
         made?.ok_or_else(|| {
-            let message = format!("material {} is no surface", quoted(name));
+            let message = format!("material {} does not describe a surface", quoted(name));
             entity.fault(self.report, "materials", message)
         })
     }
@@ -284,7 +285,10 @@ pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {
         roughness.as_ref().is_some_and(|r| match &r.alpha {
-            #[expect(clippy::float_cmp, reason = "only identical numbers are isotropic")]
+            #[expect(
+                clippy::float_cmp,
+                reason = "a material is isotropic only if both numbers are identical"
+            )]
             [Texture::Constant(u), Texture::Constant(v)] => u != v,
             _ => true,
         })

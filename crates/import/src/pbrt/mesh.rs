@@ -144,7 +144,7 @@ impl PbrtReader<'_> {
         let size = along.length().max(across.length()).max(diagonal.length());
         let volume = along.cross(across).dot(diagonal).abs();
         if volume > FLAT * size * size * size {
-            let message = "a patch that is not flat; allowed: flat patches".to_owned();
+            let message = "a patch is not flat; allowed: flat patches".to_owned();
             return Err(entity.fault(self.report, "P", message));
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
@@ -166,12 +166,12 @@ impl PbrtReader<'_> {
         }
         if indices.is_empty() || !indices.len().is_multiple_of(N) {
             let count = indices.len();
-            let message = format!("{count} indices; allowed: {N} for each face");
+            let message = format!("{count} indices are given; allowed: {N} for each face");
             return Err(entity.fault(report, "indices", message));
         }
         let count = vertices.len() as f64;
         if let Some(wrong) = indices.iter().find(|i| !(0.0..count).contains(*i)) {
-            let message = format!("index {wrong} of {count} vertices");
+            let message = format!("an index is {wrong}, but there are only {count} vertices");
             return Err(entity.fault(report, "indices", message));
         }
         #[expect(

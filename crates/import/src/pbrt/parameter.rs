@@ -96,7 +96,7 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Pbr
         };
         let Some((_, kind)) = KINDS.iter().find(|(known, _)| *known == kind) else {
             let known = KINDS.map(|(known, _)| known).join(", ");
-            let message = format!("type {} of parameters; allowed: {known}", quoted(kind));
+            let message = format!("a parameter has type {}; allowed: {known}", quoted(kind));
             report.cause(&place, message);
             continue;
         };
@@ -131,7 +131,7 @@ fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> Para
                     None => break,
                 }
             }
-            report.cause(place, "a list without ]");
+            report.cause(place, "a list does not end with ]");
             return ParameterValues::Broken;
         }
         Some((Token::Word(word), _)) if is_directive(word) => {}
@@ -142,7 +142,7 @@ fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> Para
         }
         None => {}
     }
-    report.cause(place, "a parameter without a value");
+    report.cause(place, "a parameter has no value");
     ParameterValues::Broken
 }
 
@@ -158,7 +158,7 @@ impl List {
             // One message for each faulty parameter is sufficient.
             (Some(ParameterValues::Broken), _) => return,
             (_, Token::Broken(what)) => what.to_owned(),
-            (_, Token::Open | Token::Close) => "a bracket in place of a value".to_owned(),
+            (_, Token::Open | Token::Close) => "a bracket stands in place of a value".to_owned(),
             (None, Token::Text(text)) => {
                 self.found = Some(ParameterValues::Texts(vec![text.into_owned()]));
                 return;
@@ -184,7 +184,7 @@ impl List {
                 Ok(value) => return all.push(value),
                 Err(error) => error,
             },
-            (Some(_), _) => "values of different types in one list".to_owned(),
+            (Some(_), _) => "a list has values of different types".to_owned(),
         };
         report.cause(&tokens.place(at), error);
         self.found = Some(ParameterValues::Broken);

@@ -124,7 +124,7 @@ impl PbrtReader<'_> {
         if matches!(opacity, Texture::Constant(a) if a >= 1.0) {
             return number;
         }
-        let message = "approximated: passing a transparent part counts as a surface of the path";
+        let message = "approximated: a transparent part counts as a surface of the path";
         self.note_once(entity.place_of("alpha"), message);
         let of = Box::new(self.world.materials[number].clone());
         self.add_material(Material::Mask { opacity, of })
@@ -140,7 +140,7 @@ impl PbrtReader<'_> {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
         if turns && shines {
-            let message = "below a mirroring transform, pbrt shows this light on one side and emits from the other; the emitting side is used";
+            let message = "because of a mirroring transform, pbrt shows this light on one side and emits from the other side; the emitting side is used";
             self.note_once(&shape.entity.place, message);
         }
         shape.is_reversed != (turns && !shines)

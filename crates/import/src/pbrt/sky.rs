@@ -21,12 +21,12 @@ const WITHIN: usize = 4096;
 impl PbrtReader<'_> {
     pub(super) fn sky(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
         if entity.has("L") {
-            let message = "L together with filename; allowed: one of them".to_owned();
+            let message = "L is given together with filename; allowed: one of them".to_owned();
             return Err(entity.fault(self.report, "L", message));
         }
         let scale = self.scale_of(entity);
         let turned = without_scale(to_world).ok_or_else(|| {
-            let message = "a sky with shear, or with different scales along its axes";
+            let message = "the sky has shear, or different scales along its axes";
             self.report.cause(&entity.place, message);
             CauseGiven
         });
@@ -101,7 +101,7 @@ fn nearest(square: &Raster, toward: DVec3) -> f64 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "the number is from 0 to the side"
+        reason = "the number is between 0 and the side length of the picture"
     )]
     let [x, y] = place(toward).map(|v| ((v.clamp(0.0, 1.0) * side as f64) as usize).min(side - 1));
     square.values()[y * side + x].max(0.0)

@@ -79,7 +79,7 @@ impl PbrtReader<'_> {
                 }
                 _ if named::is_illuminant(&name) => {
                     return Err(fault(
-                        "has no colour here; allowed: conversion of colours to luminance",
+                        "is a standard illuminant whose colour is not known; allowed: with colours converted to luminance only",
                     ));
                 }
                 _ => {
@@ -121,7 +121,7 @@ impl PbrtReader<'_> {
             (kind, _) => {
                 let kind = kind.name();
                 let message =
-                    format!("{name} of type {kind}; allowed: one rgb, spectrum or blackbody");
+                    format!("{name} is of type {kind}; allowed: one rgb, spectrum or blackbody");
                 return Err(fault(message));
             }
         };

@@ -115,7 +115,7 @@ impl PbrtReader<'_> {
             return Err(fault(&format!("is not a known texture of type {kind}")));
         };
         if self.depth >= MAX_DEPTH {
-            return Err(fault("contains itself, or too many are nested"));
+            return Err(fault("contains itself, or too many textures are nested"));
         }
         entity.is_used.set(true);
         self.depth += 1;
@@ -140,7 +140,7 @@ impl PbrtReader<'_> {
     /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
-            let message = "a checkerboard of dimension 3; allowed: 2".to_owned();
+            let message = "a checkerboard has dimension 3; allowed: 2".to_owned();
             return Err(entity.fault(self.report, "dimension", message));
         }
         let first = self.constant_or(entity, "tex1", ask, 1.0);
@@ -162,7 +162,8 @@ impl PbrtReader<'_> {
             }
             _ => {
                 let message =
-                    "a product of two textures that vary; allowed: one that varies".to_owned();
+                    "both factors of a product are textures that vary; allowed: one of them"
+                        .to_owned();
                 Err(entity.fault(self.report, "tex", message))
             }
         }

@@ -112,7 +112,7 @@ impl<'a> Tokens<'a> {
         loop {
             let before = &start[..start.len() - self.rest.len()];
             let Some(c) = self.bump().filter(|c| *c != '\n') else {
-                return Token::Broken("a string without its end");
+                return Token::Broken("a string has no closing quotation mark");
             };
             let made = match c {
                 '"' => {
@@ -123,7 +123,9 @@ impl<'a> Tokens<'a> {
                     match self.bump().and_then(escape) {
                         Some(c) => c,
                         None => {
-                            return Token::Broken("a \\ before a character that it cannot escape");
+                            return Token::Broken(
+                                "a \\ stands before a character that cannot be escaped",
+                            );
                         }
                     }
                 }

@@ -10,7 +10,7 @@ const ALIKE: f64 = 1e-3;
 /// Returns a rotation by degrees about an axis of any length.
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     let axis = DVec3::new(x, y, z).try_normalize();
-    let axis = axis.ok_or("an axis of length 0")?;
+    let axis = axis.ok_or("the axis has length 0")?;
     let (sin, cos) = libm::sincos(angle.to_radians());
     let column =
         |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
@@ -35,7 +35,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     let matrix = DMat4::from_cols_array(numbers);
     if matrix.row(3) != DVec4::W {
-        return Err("the numbers 4, 8, 12 and 16 are not 0 0 0 1".to_owned());
+        return Err("the numbers 4, 8, 12 and 16 of the matrix are not 0 0 0 1".to_owned());
     }
     Ok(DAffine3::from_mat4(matrix))
 }

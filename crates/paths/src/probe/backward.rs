@@ -101,7 +101,7 @@ impl PhotonSource for BackwardProbe<'_> {
 fn point_of(ray: u64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "rays beyond the last point reuse points from the first on"
+        reason = "rays after the last point use the points again, beginning with the first"
     )]
     let point = ray as u32;
     point

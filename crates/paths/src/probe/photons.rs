@@ -86,7 +86,7 @@ impl<'a> PhotonProbe<'a> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "it follows one photon from surface to surface"
+        reason = "the function follows one photon from surface to surface"
     )]
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;

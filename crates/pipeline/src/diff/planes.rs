@@ -206,7 +206,7 @@ impl ResultPair<'_> {
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
-            return Some(format!("its {field} is {}", values.join(" and ")));
+            return Some(format!("the field {field} is {}", values.join(" and ")));
         }
         let names = ["azimuths", "frequencies ρ", "frequencies ν"];
         let mut axes = names.iter().zip(a.axes.iter().zip(&b.axes));
@@ -215,7 +215,7 @@ impl ResultPair<'_> {
             let last = axis.iter().copied().fold(0.0, f64::max);
             format!("{} up to {}", axis.len(), tidy(last))
         };
-        Some(format!("its {name} differ: {} and {}", brief(a), brief(b)))
+        Some(format!("the {name} differ: {} and {}", brief(a), brief(b)))
     }
 
     fn parameters(&self, a: &StoredPlane, b: &StoredPlane) -> Vec<ParameterDiff> {
@@ -282,7 +282,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: the light varies as if each batch held only {each:.1} of them"
+                    "a few photons carry most of the light of {folder}: the noise is that of only {each:.1} equal photons in each batch"
                 ));
             }
         }
@@ -296,12 +296,12 @@ impl ResultPair<'_> {
         let planes = a.planes.len().max(1) as f64;
         if test.p_shared.is_some_and(|p| p < SHARED / planes) {
             let seeds = if a.seed == b.seed {
-                format!("both have seed {}, and share photons", a.seed)
+                format!("both results have seed {}, and share photons", a.seed)
             } else {
-                "they share photons, or their noise is overstated".to_owned()
+                "the results share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "they differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
+                "the results differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());

@@ -108,9 +108,9 @@ impl StoredResult {
         let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let index: ResultIndex = serde_json::from_slice(&bytes)
-            .map_err(|e| fault(format!("it is not a summary of a run: {e}")))?;
+            .map_err(|e| fault(format!("the file is not a summary of a run: {e}")))?;
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed after it was written: its index_hash does not match the text before it";
+            let what = "the file was changed after it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         if index.batches < 3 {
@@ -158,7 +158,7 @@ impl StoredResult {
         };
         let sigma: Array3<f64> = file.array(sigma, lengths)?;
         if sigma.iter().any(|sigma| *sigma < 0.0) {
-            return Err(file.fault("sigma", "it holds a number below 0"));
+            return Err(file.fault("sigma", "the array holds a number below 0"));
         }
         let measured: Array3<Complex> = file.array("measured", lengths)?;
         let predicted: Array3<Complex> = file.array("predicted", lengths)?;

@@ -39,7 +39,7 @@ impl Rays {
     /// Returns the position in metres, the direction, and the power in W of a photon.
     fn ray(&self, crossing: &Crossing) -> io::Result<([f64; 3], [f64; 3], f64)> {
         let [point, along] = self.world.ray(&crossing.ray).ok_or_else(|| {
-            let what = "a photon crossed the plane where it has no ray: a bug in etendue";
+            let what = "the crossing of a photon has no ray: this is a bug in etendue";
             io::Error::other(what)
         })?;
         Ok((point.to_array(), along.to_array(), self.watts(crossing)))

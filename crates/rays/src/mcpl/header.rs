@@ -83,7 +83,7 @@ impl McplHeader {
         if size as usize != header.record_size() {
             let right = header.record_size();
             let message = format!(
-                "a particle takes {size} bytes according to the header, and {right} according to its options"
+                "a particle takes {size} bytes according to the header, but {right} bytes according to the options"
             );
             return Err(Fault::byte(size_at, message));
         }

@@ -103,10 +103,10 @@ impl Particle {
             .universal_weight
             .is_some_and(|w| w.to_bits() != self.weight.to_bits())
         {
-            return Err("its weight is not the universal weight".to_owned());
+            return Err("the weight of the particle is not the universal weight".to_owned());
         }
         if header.universal_pdg.is_some_and(|pdg| pdg != self.pdg) {
-            return Err("its PDG code is not the universal PDG code".to_owned());
+            return Err("the PDG code of the particle is not the universal PDG code".to_owned());
         }
         let numbers = ParticleNumbers { header };
         let (packed, negative) = direction::pack(self.direction);
@@ -153,7 +153,7 @@ impl ParticleNumbers<'_> {
             records.extend(ordered(value.to_le_bytes(), little));
             return Ok(());
         }
-        #[expect(clippy::cast_possible_truncation, reason = "the file holds f32")]
+        #[expect(clippy::cast_possible_truncation, reason = "the file stores f32")]
         let single = value as f32;
         if single.is_infinite() && value.is_finite() {
             return Err(format!("{value} does not fit single precision"));

@@ -72,7 +72,7 @@ fn parse(comment: &[u8]) -> Result<StatSum, Fault> {
         .all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
     let number: f64 = match digits.parse() {
         Ok(number) if decimal => number,
-        _ => return Err(refused("its value is not a decimal number")),
+        _ => return Err(refused("the value of a key is not a decimal number")),
     };
     let value = match number {
         v if v.to_bits() == (-1.0_f64).to_bits() => None,

@@ -286,7 +286,8 @@ impl Tm25Header {
     ) -> Result<(), Fault> {
         let start = cursor.at();
         if spectra > MOST_SPECTRA {
-            let message = format!("{spectra} spectra; allowed: at most {MOST_SPECTRA}");
+            let message =
+                format!("the file has {spectra} spectra; allowed: at most {MOST_SPECTRA}");
             return Err(Fault::byte(76, message));
         }
         for _ in 0..spectra {
@@ -297,7 +298,7 @@ impl Tm25Header {
             }
             if rows.saturating_mul(8) > cursor.left() {
                 let left = cursor.left();
-                let message = format!("a spectrum of {rows} rows, and {left} bytes are left");
+                let message = format!("a spectrum has {rows} rows, but only {left} bytes are left");
                 return Err(Fault::byte(at, message));
             }
             let mut table = Vec::with_capacity(rows);

@@ -79,7 +79,7 @@ impl Tm25File {
         header.check()?;
         if !numbers.len().is_multiple_of(header.columns()) {
             let message = format!(
-                "{} numbers, not a multiple of {} for each ray",
+                "the number of values is {}, which is not a multiple of the {} values of a ray",
                 numbers.len(),
                 header.columns()
             );
@@ -224,7 +224,7 @@ impl Tm25File {
                 let most = self.header.spectra.len();
                 if found.fract() != 0.0 || found < 1.0 || found > most as f64 {
                     return refused(format!(
-                        "its spectrum is number {found}; allowed: 1 to {most}"
+                        "its spectrum has number {found}; allowed: 1 to {most}"
                     ));
                 }
             }

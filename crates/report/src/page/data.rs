@@ -112,7 +112,7 @@ impl Grids {
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "the numbers are shown, and nothing is computed from them"
+    reason = "the page only shows the numbers"
 )]
 fn encoded(values: ArrayView2<'_, f64>) -> String {
     let bytes = values

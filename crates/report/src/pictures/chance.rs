@@ -52,7 +52,7 @@ impl Outliers {
             expected,
         } = self;
         format!(
-            "{found} of {cells} frequencies differ by more than 4 *σ*; by chance, {expected:.1} would on average; noise is correlated between neighbours."
+            "{found} of {cells} frequencies differ by more than 4 *σ*; chance alone gives {expected:.1} on average; noise is correlated between neighbours."
         )
     }
 }

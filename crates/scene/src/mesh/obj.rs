@@ -83,7 +83,7 @@ fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
             None | Some(b"f") => {}
             Some(word) if PASSED_OVER.contains(&word) => {}
             Some(word) => {
-                let allowed = "v, f and the other words of polygonal OBJ files";
+                let allowed = "v, f and the other keywords of polygonal OBJ files";
                 return Err(fault(place(line, "the word"), quoted(word), allowed));
             }
         }

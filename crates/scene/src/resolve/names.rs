@@ -29,7 +29,7 @@ impl Resolver<'_> {
         }
         for repeated in repeated(stops.iter().map(|stop| stop.name)) {
             let field = fields(file, repeated).nth(1).unwrap_or_default();
-            let allowed = "a name no other blockers or surface has";
+            let allowed = "a name that no other blockers or surface has";
             self.faults
                 .add(format!("{field}.name"), show(repeated), allowed);
         }
@@ -43,7 +43,7 @@ impl Resolver<'_> {
             let mut named = (0..folders.len()).filter(|i| folders[*i] == repeated);
             let field = format!("planes[{}].name", named.nth(1).unwrap_or_default());
             self.faults
-                .add(field, show(repeated), "a name no other plane has");
+                .add(field, show(repeated), "a name that no other plane has");
         }
         let usable = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         for (i, plane) in file.planes.iter().enumerate() {

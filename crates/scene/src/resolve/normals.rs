@@ -44,10 +44,10 @@ impl Resolver<'_> {
             let field = at.field(&format!("vertex {}", at.number(*first)));
             let left = share(&sums[*first as usize]);
             let value = format!(
-                "without a normal: the normals of its triangles cancel to {left:.1e} of their summed lengths"
+                "without a normal: the sum of its triangles' normals has only {left:.1e} of the sum of their lengths"
             );
             let allowed = format!(
-                "vertices of a smooth surface, whose normals sum to at least {MIN_NORMAL} of these lengths{}",
+                "vertices of a smooth surface, where this share is at least {MIN_NORMAL}{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);
@@ -85,12 +85,12 @@ impl Resolver<'_> {
         };
         let field = at.field(&format!("vertex {}", at.number(vertex)));
         let value = format!(
-            "on a fold: its normal is {:.1}° from that of {}",
+            "on a fold: its normal differs by {:.1}° from the normal of {}",
             libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees(),
             at.triangle(triangle)
         );
         let allowed = format!(
-            "vertices of a smooth surface, with normals at most {:.1}° from those of their triangles, which are all wound in the same direction{}",
+            "vertices of a smooth surface, with normals at most {:.1}° from the normals of their triangles, which all have the same winding{}",
             libm::acos(MIN_NORMAL).to_degrees(),
             others(turned.len())
         );

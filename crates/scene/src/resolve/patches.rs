@@ -100,8 +100,7 @@ impl Resolver<'_> {
             EventFile::Refraction { front, back } => Specular::Refraction { front, back },
             EventFile::ThinLens(focal_length) => {
                 if focal_length == 0.0 || !focal_length.is_finite() {
-                    let allowed =
-                        "a focal length in metres, negative if the lens spreads light, not 0";
+                    let allowed = "a focal length in metres, other than 0, and negative if the lens spreads light";
                     self.faults.add(of, show(event), allowed);
                 }
                 if form != FormFile::Plane {

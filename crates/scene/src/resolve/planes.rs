@@ -162,7 +162,7 @@ impl Resolver<'_> {
                 let stop = self.stop(of, place, name, file, path, stops)?;
                 let visited = stop.ends.is_some() || file.path.visits.contains(name);
                 if stop.surface && !visited {
-                    let allowed = "After(…) of a surface that the path visits";
+                    let allowed = "After(…) with a surface that the path visits";
                     self.faults.add_on_path(of, show(place), allowed);
                 }
                 let leg = stop.ends.map_or(0, |leg| leg + 1);
@@ -240,7 +240,7 @@ impl Resolver<'_> {
         let end = last.start + last.length;
         if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {} m, where the last surface is, and from there to {} m, where an object ends the path",
+                "0 m to the last surface at {} m, or from this surface to {} m, where an object ends the path",
                 tidy(last.start),
                 tidy(end)
             );

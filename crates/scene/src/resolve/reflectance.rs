@@ -47,7 +47,7 @@ impl Resolver<'_> {
             } else {
                 ("other", "blend")
             };
-            let allowed = format!("together with `{missing}` only");
+            let allowed = format!("only together with `{missing}`");
             self.faults.add(format!("{of}.{stated}"), "alone", allowed);
         }
         let resolved = self.brdf(&format!("{of}.brdf"), brdf);

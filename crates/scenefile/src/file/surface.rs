@@ -172,7 +172,7 @@ pub enum EventFile {
     },
     /// A flat thin lens with this focal length.
     ThinLens(
-        #[schemars(transform = depends("a focal length in metres, negative if the lens spreads light, not 0"))]
+        #[schemars(transform = depends("a focal length in metres, other than 0, and negative if the lens spreads light"))]
          f64,
     ),
     /// Reflects by a BRDF on the side that the surface faces; the other side is black.

@@ -116,7 +116,7 @@ impl FieldSpectrum {
     /// `axis`, if this ratio is a whole number up to Nyquist.
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "the multiple is below the number of cells"
+        reason = "the multiple of the frequency is below the number of cells"
     )]
     fn harmonic_at(&self, axis: usize, frequencies: &FrequencyAxis, index: usize) -> Option<isize> {
         let exact = frequencies.value(index) / self.grid.spacing(axis);

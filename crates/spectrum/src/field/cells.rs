@@ -61,7 +61,7 @@ impl FieldTransform {
         self.compensate(&mut data);
         let [nx, ny, nu, _] = self.grid.cells;
         let shape = (nx, ny, nu, self.fft.row());
-        let values = Array4::from_shape_vec(shape, data).expect("the grid's own size");
+        let values = Array4::from_shape_vec(shape, data).expect("the size of the grid");
         FieldSpectrum {
             grid: self.grid,
             assignment: self.assignment,

@@ -39,7 +39,10 @@ impl FieldSpectrum {
         let index = |axis: usize| {
             let n = self.grid.cells[axis];
             let modulus = harmonics[axis].unsigned_abs();
-            assert!(2 * modulus <= n, "{harmonics:?} is beyond Nyquist");
+            assert!(
+                2 * modulus <= n,
+                "{harmonics:?} is beyond the Nyquist frequency"
+            );
             if harmonics[axis] < 0 {
                 n - modulus
             } else {

@@ -43,7 +43,7 @@ fn cosines() {
     let clamped = block("cosplus_hat");
     assert_near("cos⁺", curve(&clamped, 20, cosine_hat));
     let series = curve(&clamped, 20, |omega| cosine_hat(omega) / TAU);
-    assert_seen("the series for the transform", series);
+    assert_seen("the series in place of the transform", series);
     let latitude = block("cos2_latitude_hat");
     assert_near("cos²", curve(&latitude, 10, cosine_squared_hat));
     assert_seen("cos for cos²", curve(&latitude, 10, cosine_hat));
@@ -61,7 +61,7 @@ fn phong_lobes() {
         deviation(8, pairs)
     };
     assert_near("Phong", off(1.0));
-    assert_seen("an exponent 5 % off", off(1.05));
+    assert_seen("an exponent with an error of 5 %", off(1.05));
 }
 
 #[test]
@@ -106,7 +106,10 @@ fn fresnel_and_cosine() {
     };
     let f0 = number(&schlick["F0"]);
     assert_near("Schlick · cos⁺", curve(schlick, 15, hat(f0)));
-    assert_seen("F₀ 5 % off", curve(schlick, 15, hat(1.05 * f0)));
+    assert_seen(
+        "F₀ with an error of 5 %",
+        curve(schlick, 15, hat(1.05 * f0)),
+    );
 }
 
 /// A Gaussian of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)).
@@ -205,7 +208,7 @@ fn every_step_of_a_reflection() {
     let twice = reflection(parameters, Factor::Other(&squared), Some(lobe));
     assert_seen("the cosine twice", last(&twice));
     let ideal = reflection(parameters, Factor::One, None);
-    assert_seen("an ideal mirror for the Dirac", mirror(&ideal));
+    assert_seen("an ideal mirror in place of the Dirac", mirror(&ideal));
     let hollow = PlanarReflection {
         curvature: -gloss.curvature,
         ..gloss.clone()
@@ -383,11 +386,11 @@ fn bandwidths() {
     let printed = "B_blocker_printed_eq21";
     assert_near("Eq. 21", off(printed, &Criterion::printed_blocker));
     assert_seen(
-        "Eq. 20 for B",
+        "Eq. 20 in place of B",
         off("B_env", &Criterion::printed_environment),
     );
     assert_seen(
-        "Eq. 21 for B'",
+        "Eq. 21 in place of B'",
         off("B_blocker_line", &Criterion::printed_blocker),
     );
     let unsigned = |c: &Criterion| {

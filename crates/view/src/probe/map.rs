@@ -138,7 +138,10 @@ fn write(
     let mut parts = Vec::new();
     for (name, of) in layers {
         npz = npz.add(name, &map.map(of))?;
-        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
         let samples = map.iter().map(|point| of(point) as f32).collect();
         parts.push(Part { name, samples });
     }
@@ -170,10 +173,10 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "Largest over directions, of the picture less its mean, in {}; grey where it is below that of the window. Criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone where that is larger",
+            "Measured: the largest bandwidth over directions, of the picture minus its mean, in {}; grey pixels are below the bandwidth of the window. Criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone if it is larger",
             match case.request.window {
                 Some(pixels) => format!("windows {pixels} pixels wide"),
-                None => "the narrowest windows that show it".to_owned(),
+                None => "the narrowest windows that show the bandwidth".to_owned(),
             }
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
@@ -213,14 +216,14 @@ fn words(map: &Array2<MapPoint>) -> String {
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "{seen} of {} bandwidths were measured, the others are dark, too noisy or below the bandwidth of the window; {all} are at surfaces with a lobe",
+        "bandwidths were measured at {seen} of {} pixels; the other pixels are dark, too noisy or below the bandwidth of the window; {all} of the measured pixels show surfaces with a lobe",
         map.len()
     )];
     if all > 0 {
         let at = |tenths: usize| ratios[(all - 1) * tenths / 10];
         let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();
         lines.push(format!(
-            "measured bandwidth over criterion: median {:.3}, first and last decile {:.3} and {:.3}; more than 1.1 at {:.1} % of these pixels",
+            "measured bandwidth divided by criterion: median {:.3}, first and last decile {:.3} and {:.3}; above 1.1 at {:.1} % of these pixels",
             at(5),
             at(1),
             at(9),

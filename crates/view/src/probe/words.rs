@@ -204,7 +204,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     let measured = |of: Uncertain| uncertain(of.value, of.error);
     let (own, limit) = (picture.of_window(), picture.limit());
     let mut lines = vec![
-        "bandwidth of the picture less its mean, by rays traced back alone".to_owned(),
+        "bandwidth of the picture minus its mean, from backward rays alone".to_owned(),
         format!("  in a window {} pixels wide", picture.pixels),
     ];
     let mut advice = None;
@@ -217,15 +217,15 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
         ));
         let across = picture.across();
         lines.push(match across {
-            Some(value) => line("across that direction", measured(value), value.value),
-            None => line("across that direction, below", number(limit), limit),
+            Some(value) => line("across this direction", measured(value), value.value),
+            None => line("across this direction, below", number(limit), limit),
         });
         if let Some(value) = picture.unblurred() {
             let what = "largest without the window's blur";
             lines.push(line(what, number(value), value));
         }
         advice = Some(format!(
-            "advice: shading samples {} at {degrees:.0}°, {} across it",
+            "advice: place shading samples {} at {degrees:.0}°, and {} across this direction",
             picture.spacing(value.value),
             picture.spacing(across.map_or(limit, |across| across.value)),
         ));
@@ -245,7 +245,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
         if picture.variation.is_some() {
             format!("the picture is smooth in this window; a wider one ({window}) shows its bandwidth")
         } else if picture.varies {
-            format!("the picture varies, but noise hides its bandwidth: more {rays} show it")
+            format!("the picture varies, but noise hides its bandwidth: more {rays} show the bandwidth")
         } else {
             let share = picture.noise_share().filter(|share| *share < 1.0);
             let share = share.map_or("all".to_owned(), |share| percent(share, 2));
@@ -273,7 +273,7 @@ fn covariances(found: &[&Found]) -> Vec<String> {
         let name = &found.comparison.report.name;
         rows.extend(covariance.measured.as_ref().map(|of| row(name.clone(), of)));
         let traced = covariance.propagated.as_ref();
-        rows.extend(traced.map(|of| row(format!("{name}, traced from leaving_1"), of)));
+        rows.extend(traced.map(|of| row(format!("{name}, propagated from leaving_1"), of)));
     }
     if rows.is_empty() {
         return Vec::new();

@@ -114,11 +114,14 @@ impl<'a> Body<'a> {
         let file_ends = || {
             let PlyElement { name, count, .. } = row.element;
             let allowed = format!("{count} rows of element {name}, as the header states");
-            ("missing, as the file ends".to_string(), allowed)
+            ("missing, because the file ends".to_string(), allowed)
         };
         let line_ends = || {
             let allowed = "a value for each property in the header";
-            ("missing, as the line ends".to_string(), allowed.to_string())
+            (
+                "missing, because the line ends".to_string(),
+                allowed.to_string(),
+            )
         };
         match &mut self.data {
             Data::Text { lines, words, .. } => match words.next() {
@@ -157,7 +160,7 @@ impl<'a> Body<'a> {
             return Ok(());
         }
         let value = format!("{} bytes long", rest.len());
-        let allowed = "empty, after as many elements as the header states";
+        let allowed = "empty, because the header states no more elements";
         Err(fault("the rest of the file", value, allowed))
     }
 }

@@ -89,7 +89,7 @@ impl PlyHeader {
                 [b"property", rest @ ..] => {
                     let new = property(rest).ok_or_else(|| refused(PROPERTIES))?;
                     let Some(element) = elements.last_mut() else {
-                        return Err(refused("an element before its properties"));
+                        return Err(refused("an element that stands before its properties"));
                     };
                     if !properties.insert(new.name.clone()) {
                         return Err(refused("each property once"));
@@ -110,7 +110,7 @@ impl PlyHeader {
         }
         Err(fault(
             "end_header",
-            "missing, as the file ends",
+            "missing, because the file ends",
             "a complete header",
         ))
     }

@@ -88,15 +88,15 @@ fn masks_agree_with_brute_force() {
         (0.3, None),
     ];
     assert_agrees("all", &chain_of(light(), steps.clone()));
-    assert_agrees("all behind a point", &chain_of(POINT, steps.clone()));
+    assert_agrees("all steps, lit by a point", &chain_of(POINT, steps.clone()));
     let all = with_cosine(chain_of(spot(disc([0.0, 0.0], 0.2), 20.0), steps));
-    assert_agrees("all with a round spot and a cosine", &all);
+    assert_agrees("all steps, lit by a round spot, and a cosine", &all);
 }
 
 #[test]
 fn differential_irradiance_agrees_with_brute_force() {
     assert_agrees("cosine", &with_cosine(bench(light(), None)));
-    assert_agrees("cosine below a point", &with_cosine(bench(POINT, None)));
+    assert_agrees("a cosine, lit by a point", &with_cosine(bench(POINT, None)));
 }
 
 /// Tests that a spot with the lobe cos⁴θ has the same spectrum as a chain with the factor G.
@@ -135,21 +135,27 @@ fn planted_faults_are_seen() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
     for (name, chain, power) in [
         (
-            "a point without its factor of slope",
+            "a point without the factor of the slope",
             bench(POINT, None),
             0.0,
         ),
         ("no G", with_cosine(bench(light(), None)), 0.0),
         ("g for G", with_cosine(bench(light(), None)), -1.5),
-        ("exponent off by 5 %", bench(spot(shape, 20.0), None), -10.5),
+        (
+            "an exponent with an error of 5 %",
+            bench(spot(shape, 20.0), None),
+            -10.5,
+        ),
     ] {
         assert_seen(name, &chain, |k| at_power(&chain, &hann(), power, k));
     }
     let chain = bench(light(), Some(grating(0, 3.0, 0.4)));
     let wrong = chain.with(Parameter::GratingPhase(1), 0.6).unwrap();
-    assert_seen("phase off by 0.2", &chain, |k| at(&wrong, &hann(), k));
+    assert_seen("a phase with an error of 0.2", &chain, |k| {
+        at(&wrong, &hann(), k)
+    });
     let wrong = chain.with(Parameter::GratingPhase(1), -0.4).unwrap();
-    assert_seen("phase with another sign", &chain, |k| {
+    assert_seen("a phase of the opposite sign", &chain, |k| {
         at(&wrong, &hann(), k)
     });
 }
