@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// 2005.
 const STEP: usize = 4;
 
-/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, whose cost
-/// would dominate.
+/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, which would
+/// take most of the time.
 pub const BLOCKER_RAYS: u32 = 16;
 
 /// Returns the nearness at each pixel. From each of the sparse points, `rays` rays go towards what

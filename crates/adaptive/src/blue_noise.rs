@@ -88,7 +88,7 @@ struct Crowd {
     queue: BinaryHeap<Candidate>,
 }
 
-/// A candidate with its weight, which may be outdated; weights only decrease.
+/// A candidate with its weight, which may be outdated because weights decrease.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     weight: f64,
@@ -272,7 +272,7 @@ mod tests {
     }
 
     /// At frequencies below the inverse distance of neighbours, blue noise has almost no power,
-    /// whereas random points have 1.
+    /// whereas random points have the power 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];

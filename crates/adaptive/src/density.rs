@@ -62,7 +62,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     }
 }
 
-/// Returns the metric whose density is this power of the given one.
+/// Returns the metric whose density is a power of the density of another metric.
 pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
     let density = metric.determinant().max(0.0).sqrt();
     if density > 0.0 {

@@ -3,9 +3,8 @@
 //!
 //! The guide shows where shadows and highlights end, which sparse samples cannot. The light of
 //! samples less their guide is smoother than the light itself, so planes are fitted to this
-//! difference, and the guide is added afterwards. A guide is noisy, and does not know indirect
-//! light. So the errors of the first samples decide for each object which share of the guide is
-//! used.
+//! difference, and the guide is added afterwards. A guide is noisy, and contains no indirect light.
+//! So the errors of the first samples decide for each object which share of the guide is used.
 
 use crate::criterion::shaded;
 use crate::cross::{CrossError, dark};
@@ -16,7 +15,7 @@ use crate::smooth::{EdgeFilter, PlaceValues, detailed};
 use crate::visible::{FOUR, SeenSurface, Visible, at, squared_distance};
 use rayon::prelude::*;
 
-/// Width in pixels of a tile. The paths of its points share a net.
+/// Width in pixels of a tile. The paths from the points of a tile share a net.
 const TILE: usize = 4;
 
 /// The filter of sharp shadows.
@@ -207,8 +206,8 @@ impl GuideShares {
 mod tests {
     use super::*;
 
-    /// A guide without noise whose errors are those of the planes is used whole; one with other
-    /// errors, or with much noise, is not used.
+    /// A guide without noise whose errors equal those of the planes is used whole. A guide with
+    /// other errors, or with much noise, is not used.
     #[test]
     fn shares_follow_errors() {
         let mut shares = GuideShares::default();

@@ -1,4 +1,5 @@
-//! Sums over the first samples of each object, which also use a little of the sums over all objects.
+//! Sums over the first samples of each object, to which a small share of the sums over all objects
+//! is added.
 
 use std::collections::BTreeMap;
 

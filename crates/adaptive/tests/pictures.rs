@@ -89,7 +89,7 @@ fn even_light_stays_even() {
             }
         }
         let mean = at_edge.iter().sum::<f64>() / at_edge.len() as f64;
-        // Twenty points find areas to 0.02; the four points of other pixels, only to 0.06.
+        // Twenty points find areas to 0.02, and the four points of other pixels find them to 0.06.
         assert!(at_edge.len() > 150 && mean < 0.03, "{method:?}: {mean}");
     }
 }
@@ -130,7 +130,7 @@ fn the_guide_shows_where_shadows_end() {
     };
     let exact = |x: f64, y: f64| {
         let [slope_x, slope_y] = [(x - 48.0) / 120.0, (y - 30.0) / 120.0];
-        // On the card, which is 3 in front of the eye, or on the floor.
+        // The point is on the card, which is 3 in front of the eye, or on the floor.
         if (3.0 * slope_x).abs().max((3.0 * slope_y).abs()) < 0.3 {
             return 0.0;
         }

@@ -22,7 +22,8 @@ pub enum PredictedField {
         /// The power without aliasing, [|Ωxy|, |Ωuv|]; `None` where the rays of a file are put on the grid.
         alias_free: Option<Array2<f64>>,
     },
-    /// Independent estimates of the expectation, by rays that are put on the grid as photons are.
+    /// Independent estimates of the expectation, by rays that are put on the grid in the same way
+    /// as photons.
     Sampled(Vec<FieldSpectrum>),
 }
 
@@ -97,7 +98,7 @@ impl PredictedField {
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
 /// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
-/// of a file, and where it would take too long.
+/// of a file, and where the closed form would take too long.
 fn closed_form(
     chain: &Chain,
     plane: &VirtualPlane,

@@ -22,8 +22,8 @@ pub struct FullRadialReport {
     pub relative_error: Option<f64>,
     /// The relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
-    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. Is `None`
-    /// where aliasing is not known separately.
+    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. The value is
+    /// `None` where aliasing is not known separately.
     pub aliasing: Option<f64>,
 }
 
@@ -45,7 +45,8 @@ pub struct FullRadialComparison {
 /// Group r holds the share a_r of the measurement, G_r, and the same share of the prediction, P_r;
 /// both have the expectation a_r F. Both powers are computed from pairs of groups, so their
 /// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r and S_r = G_r − α
-/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, this is
+/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, the difference
+/// is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///

@@ -37,7 +37,7 @@ const NORMALS: f64 = 72.0;
 
 impl Memory {
     /// Returns the memory of a run of a scene on `threads` threads. `theories` are the theories of
-    /// its planes.
+    /// the scene's planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);

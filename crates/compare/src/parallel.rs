@@ -160,7 +160,7 @@ pub(crate) fn passes(
         let frame = &legs[leg].frame;
         overlaps(points, frame, from, to, end) && !is_beside(points, frame, from, to, end)
     };
-    // After several reflections in a row there is no such tube, and the theory of parallel planes
+    // After several reflections in a row no tube is checked, because the theory of parallel planes
     // does not apply.
     let first = usize::from(on_way_back);
     (first..=plane.leg.min(1)).any(crosses)

@@ -29,8 +29,8 @@ pub struct PlaneComparison {
     pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
-    /// Standard deviation of |S| alone, with the same axes. It differs from `sigma` only where the
-    /// prediction has replicates and so noise of its own.
+    /// Standard deviation of |S| alone, with the same axes. This deviation differs from `sigma`
+    /// only where the prediction has replicates, and so noise of its own.
     pub measured_sigma: Option<Array3<f64>>,
     /// The measured radial spectrum.
     pub radial: RadialPower,
@@ -197,7 +197,7 @@ impl ComparedSides<'_> {
         let noise = agreement.resolution();
         let error = self.prediction.systematic_error().unwrap_or(0.0);
         if self.predicted.is_dark() {
-            // Theory may prove that no light arrives; finding no ray is no proof.
+            // A closed form can prove that no light arrives, but a search by rays cannot.
             self.prediction.is_statistical().then(|| {
                 format!(
                     "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if no photon reaches it, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence)"
@@ -319,7 +319,7 @@ impl ComparedSides<'_> {
         batches.any(|batch| batch.tally.inside == 0)
     }
 
-    /// Checks the same for the replicates of the prediction.
+    /// Checks whether a replicate of the prediction found no light.
     fn has_dark_replicate(&self) -> bool {
         self.prediction.replicates.iter().any(Slices::is_dark)
     }
