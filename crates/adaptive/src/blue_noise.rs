@@ -244,8 +244,8 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// The smallest distance between random points is almost 0. Yuksel's points keep three
-    /// quarters of the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    /// The smallest distance between random points is almost 0. The smallest distance between
+    /// Yuksel's points is about three quarters of the maximum (0.73 to 0.82 in his Table 1).
     #[test]
     fn points_keep_their_distance() {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];

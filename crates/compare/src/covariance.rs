@@ -47,8 +47,8 @@ pub struct CovarianceReport {
     /// The growth of each measured variance from half of the band to the whole band.
     pub growth: Option<[f64; 4]>,
     /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
-    /// mean of the two variances. The second number is the error of `measured`, divided in the same
-    /// way.
+    /// mean of the two variances. The second number is the error of `measured`, divided by the same
+    /// mean.
     pub off: Option<[f64; 2]>,
     /// Moments ρρ, ρν and νν of the slice at azimuth 0, where the frequencies along y are zero.
     pub slice: [SliceMoment; 3],

@@ -32,7 +32,7 @@ pub struct FirstOrderChain {
     pub error: f64,
     /// The error that remains as the neighbourhood of the central ray shrinks. The defect is zero,
     /// apart from rounding errors, if every map is right (see [`rays::defect`]). Where `slices`
-    /// come from the printed formulas, so does the defect.
+    /// come from the printed formulas, the defect is also that of the printed formulas.
     pub defect: f64,
     /// The relative error of the radiance that the chain assigns to the central ray. This error is
     /// the part of the defect that is due to the constant factor of the chain.

@@ -12,8 +12,8 @@ use etendue_spectrum::estimate::{self, TooFewBatches};
 /// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². The relative
 /// variance of this mean is that of the mean square of (tr C)²/tr C² independent numbers
 /// (Satterthwaite 1946). The batches give the sample covariance Ĉ of n = R − 1 degrees of freedom.
-/// For this, n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for normal
-/// noise (Srivastava 2005, Eq. 2.4).
+/// The expression n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for
+/// normal noise (Srivastava 2005, Eq. 2.4).
 ///
 /// Returns `None` without noise.
 ///

@@ -54,7 +54,7 @@ pub struct PlaneComparison {
 const DARK: f64 = 1e-12;
 
 /// Above this noise the residuals come from few photons and are not symmetric, although the p-value
-/// assumes that they are.
+/// assumes symmetric residuals.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
 /// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
@@ -266,8 +266,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// Returns the number of photons that would decide the comparison; `None` where that is not
-    /// known, or where more photons do not help.
+    /// Returns the number of photons that would decide the comparison; `None` where the number is
+    /// not known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -520,8 +520,8 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 
 impl PlaneComparison {
     /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value is
-    /// below the level of the test. It does not fail if a systematic error of the prediction, which
-    /// its replicates do not show, may be visible above the noise.
+    /// below the level of the test. The plane does not fail if a systematic error of the
+    /// prediction, which its replicates do not show, may be visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

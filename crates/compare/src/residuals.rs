@@ -175,8 +175,9 @@ impl Residuals {
     /// Returns χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies
     /// where σ > 0.
     ///
-    /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
-    /// (R − 1)/(R − 2), which is divided out. Returns `None` when no photon arrived.
+    /// σ² is itself estimated from R batches. For complex normal residuals this estimate raises the
+    /// mean by (R − 1)/(R − 2), and the mean is divided by this factor. Returns `None` when no
+    /// photon arrived.
     #[must_use]
     pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
         let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
@@ -302,8 +303,9 @@ impl Residuals {
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution. This includes correlations between neighbouring frequencies. The
-    /// p-value is the share of rounds, the observed one included, that reach the observed value.
+    /// its own distribution. The random signs also account for correlations between neighbouring
+    /// frequencies. The p-value is the share of rounds, the observed one included, that reach the
+    /// observed value.
     ///
     /// Returns `None` when all residuals are zero, as when no light is measured or predicted.
     #[must_use]

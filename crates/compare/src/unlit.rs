@@ -17,7 +17,8 @@ const ROUNDING: f64 = 1e-12;
 /// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
-/// Returns the reason why no light reaches a plane, in words; `None` where some light may.
+/// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
+/// plane.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if no ray passes. All rays are also stopped if a layer covers every place where

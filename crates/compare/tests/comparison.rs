@@ -98,7 +98,7 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
-/// Rays that find no light do not prove darkness, so light measured by photons is then no failure.
+/// Rays that find no light do not prove darkness, so light that photons measure is then no failure.
 #[test]
 fn rays_that_found_nothing_decide_nothing() {
     let [truth, _] = spectrum(0.3);
@@ -191,8 +191,8 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             let report = compared(1.0, seed);
             below += u32::from(report.p_value.unwrap() < 0.3);
             chi2 += report.chi2_per_dof.unwrap() / 50.0;
-            // An error of the prediction that replicates show is part of the noise and leaves
-            // nothing undecided.
+            // An error of the prediction that replicates show is part of the noise, and makes no
+            // plane undecided.
             assert_ne!(report.verdict, Verdict::Undecided);
         }
         // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
@@ -388,8 +388,8 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
-/// The total of photons of equal weight has no noise. A quadrature is never that exact, and its
-/// error does not count as disagreement.
+/// The total of photons of equal weight has no noise. A quadrature is never exact, and its error
+/// does not count as disagreement.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
@@ -406,7 +406,7 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert!(stated.unwrap() > 2e-4, "{stated:?}");
     assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
     assert_eq!(compared(1e-4, stated).verdict, Verdict::Pass);
-    // The fast transform of photons is no more accurate than this.
+    // The fast transform of photons is no more accurate than this tolerance.
     assert_eq!(compared(1e-7, None).verdict, Verdict::Pass);
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
@@ -491,7 +491,7 @@ fn a_batch_without_photons_decides_nothing() {
 }
 
 /// One heavy photon carries half of the light of a batch, or of a replicate of the prediction:
-/// others like it may not have come yet.
+/// other heavy photons may still be missing.
 #[test]
 fn light_of_a_few_heavy_photons_decides_nothing() {
     let [truth, _] = spectrum(1.0);
@@ -530,8 +530,9 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
     }
 }
 
-/// Noise is compared with the larger of both spectra: a prediction that is ten times too dim fails
-/// where a correct one passes, and agreement within noise above the resolution does not count.
+/// Noise is compared with the larger of both spectra. A prediction that is ten times too dim fails
+/// where a correct prediction passes, and agreement within noise above the resolution does not
+/// count.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);

@@ -60,7 +60,8 @@ impl FieldGrid {
         (i as f64 - self.cells[axis] as f64 / 2.0) * self.cell_width(axis)
     }
 
-    /// Returns a ray in units of cells: whole at the centre of a cell, 0 ≤ t < n inside the box.
+    /// Returns the coordinates t of a ray in units of cells: whole numbers at the centres of cells,
+    /// 0 ≤ t < n inside the box.
     #[inline]
     #[must_use]
     pub fn position(&self, ray: &TwoPlane) -> [f64; 4] {
@@ -169,8 +170,9 @@ mod tests {
 
     #[test]
     fn cells_reach_the_slices_frequencies() {
-        // The frequency 12/1.4 on a box of 2 · 0.7 is 12 spacings; on 2 · 0.5 it is 8.57, so 9;
-        // 9.9 on 0.8 is 7.92, so 8.
+        // The frequency 12/1.4 is 12 spacings on a box of width 1.4, and 8.57 on a box of width 1,
+        // rounded up to 9. The frequency 9.9 is 7.92 spacings on a box of width 0.8, rounded up to
+        // 8.
         let grid = grid(0.5, [12.0 / 1.4, 9.9]);
         assert_eq!(grid.cells, [24, 18, 16, 16]);
         assert!(grid.nyquist(1) >= 12.0 / 1.4);

@@ -8,12 +8,12 @@ use serde::Serialize;
 ///
 /// In coordinates (s, t, h) along X, Y and D of its frame, where D is the normal at the vertex, its
 /// points satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a plane through D is positive
-/// if the surface is convex as seen from D, as in docs/theory.md: a sphere of radius R has k =
+/// if the surface is convex as seen from D, as in docs/theory.md. A sphere of radius R has k =
 /// (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a paraboloid (k₁, k₂, 0), a
 /// plane zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
-    /// The frame: The frame: O at the vertex, D the normal there, X and Y the principal
+    /// The frame, with O at the vertex, D along the normal there, and X and Y along the principal
     /// directions.
     pub frame: Frame,
     /// Curvatures k₁, k₂ and k₃, per metre.

@@ -21,7 +21,8 @@ pub enum Quantity {
     #[default]
     Radiance,
     /// Differential irradiance: radiance times G = (1 + u² + v²)⁻² = cos θ dω / du dv
-    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)); on a surface, radiance times cos θ cos² φ = cos θ dω / dθ dφ.
+    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)). On a surface, differential
+    /// irradiance is radiance times cos θ cos² φ = cos θ dω / dθ dφ.
     DifferentialIrradiance,
 }
 

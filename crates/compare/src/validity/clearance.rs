@@ -107,7 +107,7 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the ray to meet the layer within the piece; it would be wrong only if
+            // Theory expects the ray to meet the layer within the piece, and would be wrong only if
             // the piece ended earlier.
             (to - t).max(0.0)
         };
@@ -117,8 +117,8 @@ impl Suspect {
 
 /// On a leg, all shapes of a layer are considered if there are at most this many.
 const MAX_SHAPES: usize = 64;
-/// The number of shapes considered if a layer has more: each costs thousands of rays traced
-/// through the scene.
+/// The number of shapes that are considered if a layer has more shapes: each shape costs thousands
+/// of rays.
 const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
 const CROSSINGS: usize = 300;
@@ -185,15 +185,15 @@ fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
     libm::hypot(x, y)
 }
 
-/// Returns how far a point in the plane of a half-plane lies outside it, metres.
+/// Returns how far a point in the plane of a half-plane lies outside the half-plane, metres.
 fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     let coordinate = if half.axis == 0 { at.x } else { at.y };
     let off = half.edge - coordinate;
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// Returns how far a piece of a path passes from a surface of the path where theory does not expect
-/// it.
+/// Returns the distance at which a piece of a path passes a surface of the path that theory does
+/// not expect there.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
@@ -237,7 +237,7 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
-        // This excludes the other half of a sphere or a cylinder.
+        // The distance `below` excludes the other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
         libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };

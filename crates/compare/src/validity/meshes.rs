@@ -83,8 +83,8 @@ impl Follower<'_> {
         })
     }
 
-    /// Measures this difference for at most a given number of rays. Returns `None` if no ray
-    /// brings light into the window.
+    /// Measures the difference between smooth meshes and their patches for at most a given number
+    /// of rays. Returns `None` if no ray brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,

@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Describes what light for a plane meets before or behind a surface with a BRDF although theory
-/// ignores it. Also returns the blockers that theory includes.
+/// Describes the objects that light for a plane meets before or behind a surface with a BRDF and
+/// that theory ignores. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,

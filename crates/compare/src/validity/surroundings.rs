@@ -88,7 +88,7 @@ pub(super) struct Surroundings<'a> {
 pub(crate) struct TakenLayer {
     /// Index among the layers of the scene.
     pub(crate) index: usize,
-    /// The first leg on which light meets them.
+    /// The first leg on which light meets the blockers.
     pub(crate) from: usize,
 }
 
@@ -163,7 +163,8 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// Returns the distance at which a ray meets an object beyond `from`, whatever it meets first.
+    /// Returns the distance at which a ray meets an object beyond `from`, even if the ray meets
+    /// another object first.
     pub(super) fn hit(&self, ray: &CheckRay, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
         let hits = forms.flat_map(|(_, form)| form.hits(ray));
@@ -245,7 +246,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// Returns the distances at which a ray meets the form; NaN for none.
+    /// Returns the distances at which a ray meets the form; NaN if the ray misses the form.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {

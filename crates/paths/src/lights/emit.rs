@@ -13,7 +13,7 @@ pub(crate) struct Emitted {
     pub(crate) ray: Ray,
     /// The photon's flux, W, times the number of photons.
     pub(crate) flux: f64,
-    /// The surface point that it was emitted from.
+    /// The surface point from which the photon was emitted.
     pub(crate) flash: Option<EmissionPoint>,
 }
 

@@ -219,7 +219,7 @@ impl Scatter {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
-                // The isotropic roughness whose circle has the area of the ellipse.
+                // The isotropic roughness is the geometric mean of the roughness along both axes.
                 let roughness = (a * b).sqrt();
                 Reflects::Lobe(of.distribution.lobe(roughness))
             })
