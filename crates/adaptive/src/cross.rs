@@ -5,7 +5,7 @@ use crate::criterion::shaded;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};
 use crate::visible::Visible;
 
-/// How many times farther away the neighbours used for errors may be than those used for the
+/// The maximum distance of neighbours for errors, as a multiple of the maximum distance for the
 /// reconstruction.
 pub(crate) const WIDER: f64 = 2.0;
 
@@ -32,7 +32,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
                 ..*sample
             })
             .collect();
-        // The first point of a sample's pixel that is on its object stands for the sample.
+        // A sample is represented by the first point of its pixel that is on its object.
         let point = |sample: &ShadedSample| {
             let mut near = visible.range(visible.pixel_at(sample.at));
             near.find(|i| {

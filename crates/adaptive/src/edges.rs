@@ -54,7 +54,7 @@ fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
     }
 }
 
-/// Whether the points of a pixel and of those beside it differ in object, normal, texture or
+/// Whether the points of a pixel and of its neighbours differ in object, normal, texture or
 /// emission.
 fn has_edge(visible: &Visible, [column, row]: [usize; 2]) -> bool {
     let [w, h] = visible.size;

@@ -96,8 +96,8 @@ impl LightGuide {
     }
 
     /// Chooses the share of the guide for each object, and returns the errors of planes through
-    /// samples without it. `plain` are the errors of planes through whole samples, `of_guide` those
-    /// of planes through `guides`.
+    /// samples without it. `plain` holds the errors of planes through whole samples, and `of_guide`
+    /// the errors of planes through `guides`.
     pub(crate) fn trust(
         &mut self,
         samples: &[(ShadedSample, f64)],
@@ -175,8 +175,8 @@ fn morton([column, row]: [usize; 2]) -> usize {
 /// the first samples. The noise of a guide does not fall with the number of samples.
 const SMALLER: f64 = 1.0 / 6.0;
 
-/// The shares of the guide that objects use, from sums for base and lobe: the product of both
-/// errors, the square of the guide's error, and the variance of the guide.
+/// The shares of the guide that objects use, for base and lobe. The shares are computed from sums
+/// of the product of both errors, the square of the guide's error, and the variance of the guide.
 #[derive(Debug, Default)]
 struct GuideShares([ObjectSums<3>; 2]);
 

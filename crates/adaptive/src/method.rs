@@ -106,7 +106,7 @@ pub struct Rendered {
     pub layers: Layers,
 }
 
-/// The share of samples that a method takes first if these determine the density of the others.
+/// The share of samples that a method takes first to determine the density of the other samples.
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
@@ -427,8 +427,8 @@ impl AdaptiveRun<'_> {
 /// Width in pixels of a patch that is far from all samples.
 const PATCH: f64 = 2.0;
 
-/// Number of the most recently added samples whose distance is checked, which are those of the
-/// last few rows.
+/// Number of the most recently added samples whose distance is checked: the samples of the last few
+/// rows.
 const RECENT: usize = 256;
 
 /// Minimum contrast, because the first quarter of the samples may have missed the contrast.

@@ -33,7 +33,7 @@ impl ShadedSample {
 const WIDTH: f64 = 0.5;
 
 /// Distances at which the filter ends, in standard deviations. The first distance is for the first
-/// round, the others are for later rounds at points that no sample has reached.
+/// round, and the other distances are for later rounds at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
 /// Standard deviation of the filter over normals. This value separates faces that meet at a right

@@ -72,8 +72,8 @@ fn covered([column, row]: [usize; 2]) -> f64 {
     (0..64 * 64).filter(inside).count() as f64 / 4096.0
 }
 
-/// A convex diffuse ball in uniform light reflects half of it everywhere, and a pixel at its edge
-/// mixes ball and background by their areas.
+/// A convex diffuse ball in uniform light reflects half of this light everywhere, and a pixel at
+/// its edge mixes ball and background by their areas.
 #[test]
 fn even_light_stays_even() {
     for method in ALL {
@@ -169,7 +169,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// As many samples are shaded as requested, except those whose points hit nothing.
+/// All requested samples are shaded, except samples whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {

@@ -1,5 +1,5 @@
-//! Compares the covariance that is traced along a chain with those of the exact and of the
-//! measured spectrum.
+//! Compares the covariance that is traced along a chain with the covariances of the exact and of
+//! the measured spectrum.
 
 use crate::applicability::Applicability;
 use crate::class::Class;

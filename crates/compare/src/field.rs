@@ -132,7 +132,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at the frequencies of a grid; along v, only at those from zero on.
+/// Returns the spectrum at the frequencies of a grid, along v only at frequencies from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

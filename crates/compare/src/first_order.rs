@@ -47,7 +47,7 @@ pub struct FirstOrderChain {
     /// Distances from the last surface, metres, at which rays that leave the light in parallel
     /// meet.
     pub foci: Vec<f64>,
-    /// Whether `slices` are those of the paper's printed formulas.
+    /// Whether `slices` come from the paper's printed formulas.
     pub as_printed: bool,
 }
 
@@ -160,8 +160,8 @@ impl FirstOrder {
         })
     }
 
-    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction with the
-    /// residuals from it.
+    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction, with the
+    /// residuals from this prediction.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,

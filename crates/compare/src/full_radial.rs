@@ -50,8 +50,8 @@ pub struct FullRadialComparison {
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
-/// If the prediction is true, each D_r is as likely as its negative, whatever the other D and the S
-/// are (docs/theory.md (45)).
+/// If the prediction is true, each D_r is as likely as its negative, for all values of the other D
+/// and of the S (docs/theory.md (45)).
 struct BinDifference {
     /// The linear terms 2 Σ_(s≠r) D_r·S_s/(1 − Σa²), for each group r.
     linear: Vec<f64>,
@@ -60,8 +60,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// Computes the difference from the products of the spectra in a bin. The spectra are those of
-    /// the groups, which have the shares `a`, and those of the prediction.
+    /// Computes the difference from the products of the spectra in a bin. The spectra are the
+    /// spectra of the groups, whose shares are `a`, and of the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;

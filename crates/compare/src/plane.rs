@@ -118,7 +118,7 @@ pub fn compare(
     })
 }
 
-/// Both sides of a comparison, with their difference.
+/// The measurement and the prediction of a plane, with their difference.
 struct ComparedSides<'a> {
     measurement: &'a Measurement,
     index: usize,

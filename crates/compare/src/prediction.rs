@@ -26,7 +26,7 @@ pub struct Prediction {
     /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
     /// the quadrature error. The error is `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces such meshes by
+    /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces smooth meshes by
     /// osculating patches, and the two tracers of a reference deflect rays at them differently. The
     /// error is `None` without a smooth mesh.
     pub mesh_error: Option<f64>,

@@ -16,9 +16,9 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the difference. This error combines those of the measured and of the
-    /// predicted value where the prediction has replicates. For a shear slope, this error includes
-    /// the possible error of the prediction's quadrature.
+    /// Standard error of the difference. Where the prediction has replicates, this error combines
+    /// the errors of the measured and of the predicted value. For a shear slope, this error
+    /// includes the possible error of the prediction's quadrature.
     pub error: Option<f64>,
 }
 
@@ -142,8 +142,8 @@ pub struct PlaneReport {
     pub bandwidth_95: Bandwidth,
     /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
-    /// Second central moments of the windowed light field over the coordinates of the plane. Is
-    /// `None` where no light arrived.
+    /// Second central moments of the windowed light field over the coordinates of the plane. The
+    /// moments are `None` where no light arrived.
     pub covariance: Option<Covariance>,
     /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,

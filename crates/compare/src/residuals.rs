@@ -90,7 +90,7 @@ impl Residuals {
     }
 
     /// Returns the residuals from the spectrum closest to the measurement among those near the
-    /// prediction. At each frequency such a spectrum is within `error`|F| of F, plus the fast
+    /// prediction. At each frequency this spectrum is within `error`|F| of F, plus the fast
     /// transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
@@ -363,7 +363,7 @@ pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
 }
 
 /// Computes Σ a b in eight parallel sums. Matrix products of libraries round differently on
-/// different processors; these sums round in the same way on all.
+/// different processors, whereas these sums round in the same way on all processors.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

@@ -46,9 +46,9 @@ impl TwoSamples {
     /// χ² over the independent frequencies is treated as that of ν independent numbers, with
     /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w are the mean shares in the variance.
     /// This number is exact if the noise of both samples has the same correlations, and
-    /// conservative if not (Cauchy–Schwarz for tr C_A C_B). Here σ has only n = 1/Σ w²/(R − 1)
-    /// degrees of freedom. So χ² is larger by n/(n − 1) and its relative variance by n/(n − 2), as
-    /// for an F distribution (docs/theory.md, section 6).
+    /// conservative if not (Cauchy–Schwarz for tr C_A C_B). The estimate of σ has only n = 1/Σ
+    /// w²/(R − 1) degrees of freedom. Therefore χ² is larger by n/(n − 1) and its relative variance
+    /// by n/(n − 2), as for an F distribution (docs/theory.md, section 6).
     ///
     /// # Panics
     /// Panics if the arrays have other shapes than the grid.
@@ -163,7 +163,7 @@ pub struct Estimate {
 }
 
 /// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of
-/// a pull at least as far from zero if both estimate the same.
+/// a pull at least as far from zero if both estimates have the same true value.
 ///
 /// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. Returns `None` where neither estimate has an error.

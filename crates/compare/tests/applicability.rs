@@ -115,7 +115,7 @@ fn a_bowl_that_shadows_itself() {
     }
 }
 
-/// The second of two mirrors is beside the first leg.
+/// The second of two mirrors stands beside the first leg.
 #[test]
 fn a_mirror_that_is_met_out_of_turn() {
     let mirrors = format!(

@@ -175,8 +175,8 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
 }
 
 /// The numbers of replicates and batches differ: fewer replicates, more replicates, and numbers
-/// that do not divide each other. p is uniform if both sides agree, and a spectrum 5 % too wide is
-/// detected.
+/// that do not divide each other. The p-value is uniform if both sides agree, and a spectrum 5 %
+/// too wide is detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -530,9 +530,8 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
     }
 }
 
-/// Noise is compared with the larger of both spectra. A prediction that is ten times too dim fails
-/// where a correct prediction passes, and agreement within noise above the resolution does not
-/// count.
+/// Noise is compared with the larger of both spectra. A prediction ten times too dim fails where a
+/// correct one passes. Agreement within noise above the resolution does not count.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);

@@ -98,8 +98,8 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by ray tracing, each with its values in
-    /// the order of `spectrum` and `field`; empty if those are already exact.
+    /// The spectrum and then the light field at a plane by ray tracing, with values in the order of
+    /// `spectrum` and `field`. The list is empty if `spectrum` and `field` are already exact.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
         let plane = PathPlace::all(&self.setup)[plane];

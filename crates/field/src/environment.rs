@@ -183,7 +183,7 @@ impl LatLong {
     }
 }
 
-/// Returns the direction of a position on a raster of this width and with these poles.
+/// Returns the direction of a position on a raster with the given width and poles.
 fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3 {
     let longitude = TAU * (0.5 - column / width);
     let latitude = PI * (0.5 - (row - top) / (bottom - top));

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A 4D grid over the support of a window, axes in the order x, y, u, v.
 ///
 /// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred
-/// at (i − n/2) · 2h/n. So the plane's origin is the centre of cell n/2, and half of cell 0 lies at
-/// either edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist
-/// frequency n/(4h).
+/// at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2, and half of cell 0
+/// lies at either edge. The frequencies of its transform are the multiples of 1/(2h) up to the
+/// Nyquist frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.
@@ -31,7 +31,7 @@ impl FieldGrid {
         Self { cells, half_widths }
     }
 
-    /// Returns the number of bytes of one such grid of f64, or of its transform. Saturates at
+    /// Returns the number of bytes of one grid of f64, or of its transform. Saturates at
     /// `u64::MAX`, so a caller can check the size of a grid before allocating it.
     #[must_use]
     pub fn bytes(&self) -> u64 {
@@ -105,7 +105,7 @@ impl FieldGrid {
 }
 
 /// The assignment of a weighted ray to the cells of a [`FieldGrid`]: by a B-spline in units of a
-/// cell, along each axis (Hockney and Eastwood 1981, section 5-3; the names are theirs).
+/// cell, along each axis (Hockney and Eastwood 1981, section 5-3, which also gives the names).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Assignment {
     /// Nearest grid point, order 1: all weight in the cell of the ray.

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 /// A smooth piece of a quadric around its vertex: plane, sphere, cylinder or paraboloid.
 ///
-/// In coordinates (s, t, h) along X, Y and D of its frame, where D is the normal at the vertex, its
-/// points satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a plane through D is positive
-/// if the surface is convex as seen from D, as in docs/theory.md. A sphere of radius R has k =
-/// (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a paraboloid (k₁, k₂, 0), a
-/// plane zeros.
+/// In coordinates (s, t, h) along X, Y and D of the patch's frame, where D is the normal at the
+/// vertex, the points of the patch satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a
+/// plane through D is positive if the surface is convex as seen from D, as in docs/theory.md. A
+/// sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a
+/// paraboloid (k₁, k₂, 0), a plane zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
     /// The frame, with O at the vertex, D along the normal there, and X and Y along the principal
@@ -99,7 +99,7 @@ impl Patch {
             self.value(start),
         );
         // To avoid cancellation, the other root is computed as the constant term divided by this
-        // one.
+        // root.
         let q = -(b + (b * b - a * c).sqrt().copysign(b));
         let on_patch = |t: f64| {
             let on = t.is_finite() && self.contains(start + t * direction);

@@ -29,8 +29,8 @@ pub enum Quantity {
 /// The reference for the coordinates of a plane's rays.
 ///
 /// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
-/// point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin
-/// θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
+/// point away from the surface, so the directions of arriving light are reversed. A direction is
+/// cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane orthogonal to the central ray, in two-plane parameterisation.

@@ -266,7 +266,8 @@ mod tests {
                     .iter()
                     .map(|c| c.weight * libm::cos(std::f64::consts::TAU * c.frequency * t))
                     .sum();
-                // The Gaussian's copies and dropped terms stay below 1e-15; the rest is rounding.
+                // The Gaussian's copies and dropped terms stay below 1e-15; the rest of the
+                // tolerance covers rounding errors.
                 assert!((sum - profile.value(t)).abs() < 3e-15, "{profile:?} at {t}");
             }
         }

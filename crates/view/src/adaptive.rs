@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// The files that are written in addition to those of a reference picture.
+/// The files that are written in addition to the files of a reference picture.
 pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
 /// Renders and writes a picture; returns a text that states the number of samples and the time.

@@ -87,7 +87,7 @@ impl Falloff {
 /// Distant radiance by direction.
 #[derive(Clone, Debug)]
 pub struct SkyMap {
-    /// Rotates directions of the map to those of the world.
+    /// Rotates directions of the map to directions of the world.
     pub to_world: DMat3,
     /// W m⁻² sr⁻¹.
     pub radiance: Arc<LatLong>,

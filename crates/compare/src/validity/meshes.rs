@@ -127,8 +127,9 @@ impl Follower<'_> {
         })
     }
 
-    /// Returns how much the slices change when rays arrive by triangles: the mean of the changes
-    /// from two halves of the rays, plus its standard error, which is half of their difference.
+    /// Returns how much the slices change when rays arrive by triangles. The result is the mean of
+    /// the changes from two halves of the rays, plus its standard error, which is half of their
+    /// difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();

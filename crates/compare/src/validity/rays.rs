@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// Returns the first `most` rays that carry light into the window, without those that are
-/// relatively dark. Only light inside the window determines which rays count as dark, because the
-/// strongest part of the sky may lie outside it.
+/// Returns the first `most` rays that carry light into the window, without relatively dark rays.
+/// Only light inside the window determines which rays count as dark, because the strongest part of
+/// the sky may lie outside it.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -107,7 +107,7 @@ impl CheckRay {
         };
         let curved = DVec3::from(patch.curvature) * direction;
         let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-        // This avoids cancellation: the other root is the constant term divided by q.
+        // To avoid cancellation, the other root is computed as the constant term divided by q.
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
@@ -269,8 +269,8 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     }
 }
 
-/// Returns a point of a surface, drawn over all of it but mostly near where the central ray hits
-/// it.
+/// Returns a point of a surface, drawn from the whole surface but mostly near the point that the
+/// central ray hits.
 pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
     let center = patch.frame.to_local(hit);
     let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));

@@ -123,8 +123,8 @@ impl CheckedScatterer<'_> {
         })
     }
 
-    /// Returns a ray that leaves the surface. It starts at a point of the surface or, for every
-    /// other draw of a plane across the leg, is traced back from the window.
+    /// Returns a ray that leaves the surface. The ray starts at a point of the surface. For every
+    /// other draw of a plane across the leg, the ray is traced back from the window.
     fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);

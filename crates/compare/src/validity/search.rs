@@ -2,9 +2,9 @@
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
 //! object that occludes little of the light may lie between these rays, at the edge or in the
-//! corner of the window. So for each object that theory ignores, the rays that pass nearest are
-//! moved until they meet the object or come no nearer. The distance falls along a smooth path, so
-//! even the smallest object is found.
+//! corner of the window. For each object that theory ignores, the rays that pass nearest are moved
+//! until they meet the object or come no nearer. The distance falls along a smooth path, so even
+//! the smallest object is found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -12,7 +12,7 @@ use super::surroundings::{Meets, Surroundings};
 
 /// Number of rays with light in the window that are followed for a plane.
 const LIT_RAYS: usize = 3000;
-/// Number of rays tried to find those with light in the window.
+/// Number of rays that are tried to find rays with light in the window.
 const TRIED_RAYS: u32 = 60_000;
 /// Number of rays nearest to an object that are moved towards it.
 const STARTS: usize = 4;

@@ -86,7 +86,7 @@ impl Followed for FollowedRays<'_> {
     }
 }
 
-/// A ray at the plane, and the share of it that masks on the first leg transmit.
+/// A ray at the plane, and the share of its light that masks on the first leg transmit.
 pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
 /// Distances whose relative difference is below this limit count as equal.
@@ -147,9 +147,9 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// Returns a ray that theory predicts to arrive in the window. Rays drawn at the window are
-    /// needed because few rays drawn at the light may reach a narrow window, or the part of a wide
-    /// window that is close to the light. Light without extent is aimed at places in the window if
+    /// Returns a ray that theory predicts to arrive in the window. Rays drawn at the light may
+    /// rarely reach a narrow window, or the part of a wide window that is close to the light, so
+    /// rays are also drawn in the window. Light without extent is aimed at places in the window if
     /// no surface deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;

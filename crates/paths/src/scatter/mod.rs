@@ -295,7 +295,7 @@ impl Scatter {
     }
 }
 
-/// A function that flips directions, so that a chosen side is in front.
+/// A function that flips directions to put a chosen side in front.
 type Turn = fn(DVec3) -> DVec3;
 
 /// Returns the flip that puts `wo` in front.

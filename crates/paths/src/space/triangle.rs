@@ -48,7 +48,7 @@ impl TriangleRay {
     }
 }
 
-/// Permutes the axes so that the given one is last.
+/// Permutes the axes to put the given axis last.
 #[inline]
 fn turned(v: DVec3, last: usize) -> DVec3 {
     match last {

@@ -92,8 +92,8 @@ impl Kernel {
     /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
     /// cycles per cell.
     ///
-    /// It is the transform of the polynomials that are used for spreading, by a Gauss–Legendre rule
-    /// on each cell, exact apart from rounding errors for |ξ| ≤ 1/2.
+    /// The result is the transform of the polynomials that are used for spreading. A Gauss–Legendre
+    /// rule on each cell computes it, exactly for |ξ| ≤ 1/2 apart from rounding errors.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
