@@ -18,8 +18,8 @@ const STEP: usize = 4;
 /// take most of the time.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// Returns the nearness at each pixel. From each of the sparse points, `rays` rays go towards what
-/// the point reflects, and as many towards lights.
+/// Returns the nearness of blockers at each pixel. From each of the sparse points, `rays` rays go
+/// towards the objects that the point reflects, and equally many go towards lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),

@@ -11,7 +11,7 @@ use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Number of candidates per point kept.
+/// Number of candidates for each point that is kept.
 const CANDIDATES: usize = 5;
 
 /// Returns the eighth power, which Eq. 3 of Yuksel 2015 uses.
@@ -184,7 +184,7 @@ impl Crowd {
     }
 }
 
-/// A grid of the points by squares of the picture.
+/// A grid that sorts the points into squares of the picture.
 #[derive(Debug)]
 struct PointGrid {
     cells: Vec<Vec<u32>>,
@@ -267,7 +267,8 @@ mod tests {
             .collect();
         let points = blue_noise(&metrics, 120, 1200, 5);
         let left = points.iter().filter(|point| point.at[0] < 60.0).count();
-        // The expected number is 0.02 · 6000; elimination moves some points across the edge.
+        // The expected number of points is 0.02 · 6000; elimination moves some points across the
+        // edge.
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
     }
 

@@ -100,7 +100,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     0.5 * both + root.copysign(both)
 }
 
-/// Returns the surface at a point, if it scatters light.
+/// Returns the surface at a point if the surface scatters light.
 pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface

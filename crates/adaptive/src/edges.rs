@@ -6,7 +6,7 @@ use crate::reconstruct::{LightMean, bell, unlike};
 use crate::shading::Shader;
 use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance};
 
-/// Rows and columns of further points in a pixel.
+/// Number of rows and columns of additional points in a pixel.
 const FINE: usize = 4;
 
 /// Relative difference of texture factors and of emission that makes an edge.

@@ -96,8 +96,8 @@ impl LightGuide {
     }
 
     /// Chooses the share of the guide for each object, and returns the errors of planes through
-    /// samples without it. `plain` holds the errors of planes through whole samples, and `of_guide`
-    /// the errors of planes through `guides`.
+    /// samples without this share. `plain` holds the errors of planes through whole samples, and
+    /// `of_guide` the errors of planes through `guides`.
     pub(crate) fn trust(
         &mut self,
         samples: &[(ShadedSample, f64)],

@@ -74,7 +74,8 @@ pub enum Stage {
 /// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
-    /// The bandwidth by the criterion, cycles per pixel, along the direction where it is larger.
+    /// The bandwidth by the criterion, cycles per pixel, along the direction where the bandwidth is
+    /// larger.
     pub bandwidth: Vec<f64>,
     /// The principal curvature of larger magnitude by finite differences on the screen, per unit
     /// of length, positive if convex.

@@ -8,7 +8,7 @@ use etendue_paths::{Paths, SurfaceHit};
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// What is needed to shade points: the paths of the world, the camera, the cutoffs of lobes, and
+/// The data that shading needs: the paths of the world, the camera, the cutoffs of lobes, and
 /// settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader<'a> {

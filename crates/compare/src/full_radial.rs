@@ -27,7 +27,8 @@ pub struct FullRadialReport {
     pub aliasing: Option<f64>,
 }
 
-/// A comparison of a full radial spectrum: the report, and the arrays behind it, [|Ωxy|, |Ωuv|].
+/// A comparison of a full radial spectrum: the report, and the arrays from which the report is
+/// computed, [|Ωxy|, |Ωuv|].
 #[derive(Clone, Debug)]
 pub struct FullRadialComparison {
     /// Every number.

@@ -16,9 +16,9 @@ pub struct Memory {
     pub batches: f64,
     /// The fine grids over which each thread spreads photons.
     pub threads: f64,
-    /// Predictions with their derivatives, and the working memory of computing one.
+    /// Predictions with their derivatives, and the working memory of computing a prediction.
     pub predictions: f64,
-    /// The comparison, one plane at a time.
+    /// The comparison, which handles one plane at a time.
     pub comparison: f64,
     /// Triangles and the hierarchies over them.
     pub meshes: f64,

@@ -464,7 +464,7 @@ fn covariance(
 }
 
 /// Rounds up to one digit, with a margin of a tenth, because the noise of one run only estimates
-/// what another run needs.
+/// the number of photons that another run needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());

@@ -83,7 +83,7 @@ impl Prediction {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// Returns ‖error‖/‖slices‖ of all kinds combined.
+    /// Returns the combined ‖error‖/‖slices‖ of all kinds of error.
     pub(crate) fn error(&self) -> Option<f64> {
         both(self.quadrature_error, self.mesh_error)
     }

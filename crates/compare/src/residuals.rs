@@ -46,7 +46,7 @@ impl Residuals {
     }
 
     /// Returns the residuals from slices that are the mean of replicates, or that are exact if
-    /// there are none.
+    /// there are no replicates.
     ///
     /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
     /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches

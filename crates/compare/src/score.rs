@@ -33,7 +33,8 @@ const DETECTABLE: f64 = 3.858;
 /// error of δ is its spread over the residuals. This error includes correlations between
 /// frequencies and the noise of a prediction's replicates. A further error of the prediction,
 /// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz).
-/// The bound is added to the standard error in quadrature. Step and error hold to first order in δ.
+/// The bound is added to the standard error in quadrature. The step and its error are correct to
+/// first order in δ.
 ///
 /// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(

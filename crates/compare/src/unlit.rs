@@ -12,7 +12,7 @@ type Extent = [[f64; 2]; 2];
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// The share of the rays of a section that rounding errors may leave.
+/// The share of the rays of a section that may remain because of rounding errors.
 const ROUNDING: f64 = 1e-12;
 /// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;

@@ -170,8 +170,7 @@ fn a_wall_that_leans_away() {
     }
 }
 
-/// A plane to which no path is open is dark, whatever the light and the surface, and keeps its
-/// class.
+/// A plane to which no path is open is dark for every light and surface, and keeps its class.
 #[test]
 fn darkness_has_a_reason() {
     let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
@@ -216,7 +215,7 @@ fn darkness_has_a_reason() {
             for (blockers, reason) in closed {
                 let scene = built(blockers);
                 let found = of(&scene);
-                // A receiver has no edge, so light may pass beside any lid.
+                // A receiver has no edge, so light may pass beside a blocker of any size.
                 if *class == Class::Exact && blockers == lid {
                     assert_eq!(found.dark, None);
                     continue;

@@ -153,7 +153,7 @@ fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     (0..count).map(replicate).collect()
 }
 
-/// Returns the prediction of a spectrum of this width, known to theory through replicates.
+/// Returns a prediction of a spectrum of the given width, as the mean of replicates.
 fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     let [truth, _] = spectrum(width);
     let replicates = replicates(&truth, size, count, seed);
@@ -230,7 +230,7 @@ fn replicates_that_are_taken_for_exact_are_rejected() {
     }
 }
 
-/// Residuals add up to the difference of the means, whatever the numbers of parts.
+/// Residuals add up to the difference of the means, for any numbers of parts.
 #[test]
 fn residuals_have_the_mean_of_the_difference() {
     let [truth, _] = spectrum(1.0);

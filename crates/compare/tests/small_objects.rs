@@ -170,8 +170,8 @@ fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
         let crosses = (second[0] - from).dot(second[1]) / (on_first - from).dot(second[1]);
         let beyond = !(0.0..1.0).contains(&crosses);
         let reaches = on_second.distance(second[0]);
-        // The second mirror must be large enough to reflect the ray; to stop it, its radius must
-        // reach this distance.
+        // The second mirror must be large enough to reflect the ray, and its radius must reach this
+        // distance to stop the ray.
         let stops = from.lerp(on_first, crosses).distance(second[0]);
         (!beyond && stops > reaches).then_some(stops)
     };

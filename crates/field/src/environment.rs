@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// Light from infinity: radiance that depends on direction alone.
 ///
-/// Environments shine forward: a ray of a leg goes along (u, v, 1). So only directions from the
-/// hemisphere in which the central ray begins carry light, whatever the map contains. The light
+/// Environments shine forward: a ray of a leg goes along (u, v, 1). Therefore only directions from
+/// the hemisphere in which the central ray begins carry light, whatever the map contains. The light
 /// begins in the plane across the central ray's start, and nothing behind that plane occludes it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
@@ -72,8 +72,8 @@ impl Environment {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Returns the direction that light travelling along a direction comes from: of unit length, in
-    /// the coordinates of the map.
+    /// Returns the unit vector towards the origin of light that travels along a direction, in the
+    /// coordinates of the map.
     #[inline]
     #[must_use]
     pub fn origin_of(&self, along: DVec3) -> DVec3 {

@@ -67,8 +67,8 @@ impl Patch {
         self.frame.vector_to_world(gradient).normalize()
     }
 
-    /// Returns k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of its frame: zero on the surface,
-    /// positive in front of it.
+    /// Returns k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of the patch's frame: zero on the
+    /// surface, positive in front of the surface.
     #[inline]
     #[must_use]
     pub fn value(&self, point: DVec3) -> f64 {
@@ -77,9 +77,9 @@ impl Patch {
         a * x * x + b * y * y + c * z * z + 2.0 * z
     }
 
-    /// Returns half the gradient of [`value`](Self::value), in its frame: along the normal, on the
-    /// side of D. The last component is positive on the half of the quadric that contains the
-    /// vertex.
+    /// Returns half the gradient of [`value`](Self::value), in the patch's frame: along the normal,
+    /// on the side of D. The last component is positive on the half of the quadric that contains
+    /// the vertex.
     #[inline]
     #[must_use]
     pub fn gradient(&self, point: DVec3) -> DVec3 {
@@ -88,7 +88,7 @@ impl Patch {
     }
 
     /// Returns the parameters of the points start + t · direction, in its frame, that lie on the
-    /// patch, ascending; NaN if there is none.
+    /// patch, ascending; NaN if no point does.
     #[inline]
     #[must_use]
     pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {

@@ -63,8 +63,8 @@ pub struct VirtualPlane {
     pub name: String,
     /// Distance from the light along the central ray, in metres, accumulated over all legs.
     pub distance: f64,
-    /// The leg of the path that the plane is on: the number of surfaces the light has left before
-    /// it.
+    /// The leg of the path that the plane is on: the number of surfaces that the light has left
+    /// before the plane.
     pub leg: usize,
     /// The side of the mask or surface at the plane's distance.
     pub side: Side,

@@ -343,7 +343,7 @@ fn direct_light_is_that_of_the_shortest_paths() {
         (direct, paths.shade(&seen, 4096, 1, 0).0[0])
     };
     let [(direct, all), (_, shortest)] = [None, Some(1)].map(of);
-    // Nets of 4,096 points are even to some 10⁻³.
+    // Means over nets of 4,096 points have errors of some 10⁻³.
     assert!(
         (direct / shortest - 1.0).abs() < 5e-3,
         "{direct} {shortest}"

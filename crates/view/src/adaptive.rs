@@ -80,7 +80,7 @@ pub(crate) fn render(
     ))
 }
 
-/// Advances a progress bar by this many steps.
+/// Advances a progress bar by the given number of steps.
 fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
     let bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(bar) = bar.as_ref() {

@@ -59,7 +59,7 @@ impl Suspect {
         (0..legs).flat_map(on_leg).collect()
     }
 
-    /// Returns the description of the obstacle once a ray meets it.
+    /// Returns the description of the obstacle, for a ray that meets the obstacle.
     pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
@@ -202,7 +202,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
         // Theory expects the ray to end at this surface.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that returns to the surface it has left is lost, wherever the plane is.
+        // Light that returns to the surface it has left is lost, for every position of the plane.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };

@@ -148,8 +148,8 @@ impl CheckedScatterer<'_> {
     }
 
     /// Returns the occluder between a point of the surface and the plane. The surface itself counts
-    /// at any distance, because photons that would meet it again are lost, whatever stops them
-    /// before.
+    /// at any distance, because a photon that would meet the surface again is lost, even if
+    /// something stops the photon before.
     fn beyond(&self, ray: &CheckRay) -> Option<Meets> {
         let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);

@@ -87,7 +87,7 @@ pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
 struct Search<'a, R> {
     rays: &'a R,
     suspect: Suspect,
-    /// Light weaker than this does not count.
+    /// Light weaker than this limit does not count.
     faint: f64,
 }
 

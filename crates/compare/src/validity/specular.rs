@@ -307,8 +307,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would return to the surface it has left is lost, wherever the plane is and
-        // whatever stops the photon earlier.
+        // A photon that would return to the surface it has left is lost for every position of the
+        // plane, even if something stops the photon earlier.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))
