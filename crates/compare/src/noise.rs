@@ -4,9 +4,9 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the effective number of independent real numbers in the noise of plane `plane`. The
-/// mean square of that many normal numbers fluctuates as much as the mean square of the noise, if
-/// the noise at each frequency is divided by its σ.
+/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
+/// square of this many normal numbers fluctuates as much as the mean square of the noise, if the
+/// noise at each frequency is divided by its σ.
 ///
 /// The window correlates neighbouring frequencies. If C is the covariance of the noise divided by
 /// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². The relative

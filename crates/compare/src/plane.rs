@@ -18,7 +18,7 @@ use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
-/// The comparison of a plane: the report, and the arrays behind it.
+/// The comparison of a plane: the report, and the arrays from which the report is computed.
 #[derive(Clone, Debug)]
 pub struct PlaneComparison {
     /// Every number, and the verdict.

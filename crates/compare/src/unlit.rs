@@ -22,7 +22,7 @@ const MOST_PARTS: usize = 4096;
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if no ray passes. All rays are also stopped if a layer covers every place where
-/// they cross it.
+/// they cross the layer.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
@@ -159,8 +159,8 @@ fn covers(
     open.is_empty()
 }
 
-/// Returns the region where lines from the light to the first surface, if it is smooth, cross a
-/// plane.
+/// Returns the region where lines from the light to the first surface, if this surface is smooth,
+/// cross a plane.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;

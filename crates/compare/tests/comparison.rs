@@ -331,9 +331,9 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
-/// The possible error of a quadrature is included in the errors of measured numbers. Here there is
-/// almost no noise, and the prediction is wrong by just its stated error, along a derivative or by
-/// a shear.
+/// The possible error of a quadrature is included in the errors of measured numbers. The noise is
+/// almost zero, and the prediction is wrong by just its stated error, along a derivative or by a
+/// shear.
 #[test]
 fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
     const STATED: f64 = 1e-3;
@@ -411,7 +411,7 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
 
-/// Where noise exceeds the spectrum the plane is undecided, whatever p is.
+/// Where noise exceeds the spectrum, the plane is undecided for every p-value.
 #[test]
 fn noise_decides_nothing() {
     let [truth, _] = spectrum(1.0);
@@ -467,7 +467,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
 
-/// A batch without a photon shows that there are too few for a decision, whatever p is.
+/// A batch without a photon shows that there are too few photons for a decision, for every p-value.
 #[test]
 fn a_batch_without_photons_decides_nothing() {
     let [truth, _] = spectrum(1.02);

@@ -32,7 +32,7 @@ impl FieldGrid {
     }
 
     /// Returns the number of bytes of one grid of f64, or of its transform. Saturates at
-    /// `u64::MAX`, so a caller can check the size of a grid before allocating it.
+    /// `u64::MAX`, so a caller can check the size of a grid before allocating the grid.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let [nx, ny, nu, nv] = self.cells.map(|n| n as u64);

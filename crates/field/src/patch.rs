@@ -87,8 +87,8 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
-    /// Returns the parameters of the points start + t · direction, in its frame, that lie on the
-    /// patch, ascending; NaN if no point does.
+    /// Returns the parameters of the points start + t · direction, in the patch's frame, that lie
+    /// on the patch, ascending; NaN if no point does.
     #[inline]
     #[must_use]
     pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {
@@ -109,7 +109,7 @@ impl Patch {
         [s.min(t), s.max(t)]
     }
 
-    /// Checks whether a point of the quadric, in its frame, belongs to the patch.
+    /// Checks whether a point of the quadric, in the patch's frame, belongs to the patch.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {

@@ -75,8 +75,8 @@ pub struct VirtualPlane {
     /// The angle θ of the central ray on a surface, radians; 0 on an orthogonal plane. The
     /// coordinates of rays are (x, y, θ − longitude, φ).
     pub longitude: f64,
-    /// The frame: The plane's frame: O on the central ray and D along it; on a surface X = T, Y =
-    /// B and D = N.
+    /// The plane's frame, with O on the central ray and D along the central ray; on a surface X =
+    /// T, Y = B and D = N.
     pub frame: Frame,
     /// The window that multiplies the light field.
     pub window: Window,

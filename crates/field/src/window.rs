@@ -51,7 +51,7 @@ const COSINE: [f64; TERMS] = {
 };
 
 /// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
-/// evaluated for each photon; this function takes a small part of the time of a library's cosine,
+/// evaluated for each photon. This function takes a small part of the time of a library's cosine,
 /// and its results are bitwise identical on every machine.
 #[inline]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {

@@ -138,7 +138,7 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // The camera sees a point that the spot lights with the reduced intensity between its two
+    // The camera sees a point that a spot lights with the reduced intensity between the spot's two
     // angles.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),

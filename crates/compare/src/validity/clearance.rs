@@ -79,8 +79,8 @@ impl Suspect {
         }
     }
 
-    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where it
-    /// meets the obstacle unexpectedly, infinite where it cannot meet it.
+    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where the
+    /// piece meets the obstacle unexpectedly, infinite where the piece cannot meet the obstacle.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),

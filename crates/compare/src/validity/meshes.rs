@@ -152,8 +152,8 @@ impl Follower<'_> {
         norm(&a + &b) + norm(a - b)
     }
 
-    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh
-    /// or meets one again.
+    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if the ray misses a
+    /// mesh or meets a mesh again.
     fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;

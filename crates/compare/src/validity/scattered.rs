@@ -101,7 +101,7 @@ struct LightPath {
 }
 
 impl CheckedScatterer<'_> {
-    /// Returns a path from the light to the window; `None` if it brings no light.
+    /// Returns a path from the light to the window; `None` if the path brings no light.
     fn follow(&self, draw: &RayDraw) -> Option<LightPath> {
         let leaving = self.leaving(draw)?;
         let CheckRay { point, direction } = leaving;

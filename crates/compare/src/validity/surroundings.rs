@@ -39,8 +39,8 @@ impl Meets {
 /// Returns descriptions of what light meets and theory ignores, each once. Also returns the
 /// blockers that light meets at places where the central ray does not; theory then includes them.
 ///
-/// A ray reports only the first thing that it meets. So blockers are included in the theory and
-/// rays are traced again, until they meet no further blockers.
+/// A ray reports only the first thing that it meets. Therefore these blockers are included in the
+/// theory and rays are traced again, until the rays meet no further blockers.
 pub(super) fn unforeseen<'a>(
     scene: &Scene,
     mut around: Surroundings<'a>,
@@ -104,7 +104,7 @@ const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
     /// Collects the surroundings. Meshes that the plane's light has left are excluded: theory
-    /// represents each by the surface that osculates it where the central ray hits.
+    /// represents each mesh by the surface that osculates the mesh where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {

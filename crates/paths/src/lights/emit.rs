@@ -1,5 +1,5 @@
-//! Emission of photons from lights: half of them follow the natural distribution, and half of them
-//! are aimed.
+//! Emission of photons from lights: half of the photons follow the natural distribution, and half
+//! of them are aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};

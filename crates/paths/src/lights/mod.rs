@@ -212,7 +212,7 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// Returns the intensity of a spot along a direction in its own coordinates, W sr⁻¹.
+    /// Returns the intensity of a spot along a direction in the spot's own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {
             intensity,

@@ -3,7 +3,7 @@
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
 //! are BSDFs for radiance, times |cos| of wi. Radiance is divided by the squared index of its
-//! medium, so it does not change where light is refracted.
+//! medium, so the quotient does not change where light is refracted.
 
 mod place;
 mod reflects;
