@@ -16,7 +16,8 @@ use std::f64::consts::{PI, TAU};
 /// The prediction of the chain of affine maps.
 #[derive(Clone, Debug)]
 pub struct FirstOrder {
-    /// The slices of the chain, by the paper's printed formulas where a scene asks for them.
+    /// The slices of the chain, by the paper's printed formulas where a scene asks for these
+    /// formulas.
     pub slices: Slices,
     /// Independent replicates, of which `slices` is the mean. The list is empty where the slices
     /// have no statistical error.

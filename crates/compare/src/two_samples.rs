@@ -26,8 +26,8 @@ pub struct TwoSamples {
     pub chi2_per_dof: Option<f64>,
     /// Probability of differences at least as large if both samples have the same true slices.
     pub p_value: Option<f64>,
-    /// Probability of differences as small, or smaller, if the noise of both is independent. A value
-    /// near 0 means that the samples share photons, or that σ is overstated.
+    /// Probability of differences as small, or smaller, if the noise of both samples is independent.
+    /// A value near 0 means that the samples share photons, or that σ is overstated.
     pub p_shared: Option<f64>,
     /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
     /// are dark.
@@ -113,7 +113,7 @@ struct FrequencySums {
     noise: f64,
     /// Σ|A|² and Σ|B|².
     norms: [f64; 2],
-    /// Whether the samples differ at a frequency where neither has noise.
+    /// Whether the samples differ at a frequency where neither sample has noise.
     without_noise: bool,
 }
 

@@ -288,7 +288,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
                 (View::SphereInside, Behind::Medium(index)) => index * index,
                 _ => 1.0,
             };
-            // Each row is tested alone, and then the whole picture.
+            // Each row is tested alone, and then the whole picture is tested.
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");

@@ -20,7 +20,7 @@ pub(super) struct PathPiece {
     pub(super) is_last: bool,
 }
 
-/// An obstacle that a ray may meet on a leg where theory does not expect it.
+/// An obstacle that a ray may meet on a leg where theory does not expect the obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Suspect {
     pub(super) leg: usize,

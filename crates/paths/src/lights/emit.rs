@@ -42,7 +42,7 @@ struct Draw<'a> {
 }
 
 impl LightSampler {
-    /// Emits a photon from seven numbers; `None` for one without flux.
+    /// Emits a photon from seven numbers; `None` for a photon without flux.
     pub(crate) fn emit(
         &self,
         geometry: &SceneGeometry,
