@@ -767,7 +767,7 @@ MeshSource = Union["MeshSourceFile", "MeshSourceParaboloid", "MeshSourceStar"]
 """The source of a mesh."""
 
 Orientation = Union[Literal["Orthogonal"], Literal["Tangent"], Literal["LocalNormals"], Literal["Mirrored"]]
-"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
+"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, so the directions of arriving light are reversed. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
 
 Pattern = Union["PatternCosine", "PatternCheckerboard", "PatternPicture"]
 """A number from 0 to 1 at each place of a surface."""

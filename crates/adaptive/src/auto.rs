@@ -1,12 +1,12 @@
 //! The default distribution of samples: the criteria, calibrated by the errors of even samples.
 //!
-//! A criterion bounds how fast light may change, but not how much of the light changes. So the
-//! first samples are evenly distributed, and planes fitted to one half of them are compared with
-//! the other half. If the criterion is right up to a factor k, the squared error e² at a density n
-//! is k n_c²/n², where n_c is the density by the criterion. The factor k is measured for each
-//! object, and the best density is (k n_c²)^(1/3). Half of the remaining samples have this
-//! density, and half are distributed by the errors themselves, which also show what the criterion
-//! has missed, such as shadows.
+//! A criterion bounds how fast light may change, but not how much of the light changes. Therefore
+//! the first samples are evenly distributed, and planes fitted to one half of them are compared
+//! with the other half. If the criterion is right up to a factor k, the squared error e² at a
+//! density n is k n_c²/n², where n_c is the density that the criterion gives. The factor k is
+//! measured for each object, and the best density is (k n_c²)^(1/3). Half of the remaining samples
+//! have this density, and half follow the measured errors, which also show light that the criterion
+//! misses, such as shadows.
 
 use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
@@ -50,7 +50,8 @@ impl AdaptiveRun<'_> {
         self.both(&first, pilot, &then, rest)
     }
 
-    /// Makes the guide, and returns the squared errors at the first samples that remain with it.
+    /// Makes the guide, and returns the squared errors that remain at the first samples when the
+    /// guide is used.
     fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let visible = self.visible;
         let samples = values(pilot);
@@ -86,8 +87,8 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// The ratios k of measured squared errors to those by the criterion, up to a common factor, from
-/// sums of e² n² and n_c².
+/// The ratios k of measured squared errors to predicted ones, up to a common factor, from sums of
+/// e² n² and n_c².
 #[derive(Debug, Default)]
 struct Factors(ObjectSums<2>);
 

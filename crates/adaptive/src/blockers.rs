@@ -14,12 +14,12 @@ use rayon::prelude::*;
 /// 2005.
 const STEP: usize = 4;
 
-/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, whose cost
-/// would dominate.
+/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, which would
+/// take most of the time.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// Returns the nearness at each pixel. From each of the sparse points, `rays` rays go towards what
-/// the point reflects, and as many towards lights.
+/// Returns the nearness of blockers at each pixel. From each of the sparse points, `rays` rays go
+/// towards the objects that the point reflects, and equally many go towards lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),

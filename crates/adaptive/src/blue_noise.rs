@@ -11,7 +11,7 @@ use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Number of candidates per point kept.
+/// Number of candidates for each point that is kept.
 const CANDIDATES: usize = 5;
 
 /// Returns the eighth power, which Eq. 3 of Yuksel 2015 uses.
@@ -88,7 +88,7 @@ struct Crowd {
     queue: BinaryHeap<Candidate>,
 }
 
-/// A candidate with its weight, which may be outdated; weights only decrease.
+/// A candidate with its weight, which may be outdated because weights decrease.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     weight: f64,
@@ -184,7 +184,7 @@ impl Crowd {
     }
 }
 
-/// A grid of the points by squares of the picture.
+/// A grid that sorts the points into squares of the picture.
 #[derive(Debug)]
 struct PointGrid {
     cells: Vec<Vec<u32>>,
@@ -244,8 +244,8 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// The smallest distance between random points is almost 0. Yuksel's points keep three
-    /// quarters of the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    /// The smallest distance between random points is almost 0. The smallest distance between
+    /// Yuksel's points is about three quarters of the maximum (0.73 to 0.82 in his Table 1).
     #[test]
     fn points_keep_their_distance() {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];
@@ -267,12 +267,13 @@ mod tests {
             .collect();
         let points = blue_noise(&metrics, 120, 1200, 5);
         let left = points.iter().filter(|point| point.at[0] < 60.0).count();
-        // The expected number is 0.02 · 6000; elimination moves some points across the edge.
+        // The expected number of points is 0.02 · 6000; elimination moves some points across the
+        // edge.
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
     }
 
     /// At frequencies below the inverse distance of neighbours, blue noise has almost no power,
-    /// whereas random points have 1.
+    /// whereas random points have the power 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];

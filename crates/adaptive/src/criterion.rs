@@ -1,12 +1,12 @@
 //! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
 //! 21, corrected.
 //!
-//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the
-//! axis r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then
-//! moves relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth
-//! along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of
-//! incidence of a sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of
-//! a pixel, which is Eq. 21 with its missing factors. Without the term in d' this bandwidth is
+//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
+//! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
+//! relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth along a
+//! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
+//! sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel. This
+//! bandwidth is that of Eq. 21 with its missing factors. Without the term in d' this bandwidth is
 //! that of Eq. 20. Finite differences on the screen include the angle of view, the distance and
 //! both curvatures, as the paper states. The equations as printed use the larger curvature alone,
 //! and are isotropic.
@@ -100,7 +100,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     0.5 * both + root.copysign(both)
 }
 
-/// Returns the surface at a point, if it scatters light.
+/// Returns the surface at a point if the surface scatters light.
 pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface
@@ -141,7 +141,7 @@ fn across(step: DVec3, along: DVec3) -> DVec3 {
     step - step.dot(along) * along
 }
 
-/// Returns JᵀJ for the Jacobian J with these columns.
+/// Returns JᵀJ for the Jacobian J with the given columns.
 fn of_columns(right: DVec3, down: DVec3) -> Metric {
     Metric {
         xx: right.length_squared(),

@@ -5,15 +5,17 @@ use crate::criterion::shaded;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};
 use crate::visible::Visible;
 
-/// Errors use neighbours up to this many times farther away than those of the reconstruction.
+/// The maximum distance of neighbours for errors, as a multiple of the maximum distance for the
+/// reconstruction.
 pub(crate) const WIDER: f64 = 2.0;
 
-/// The plane through other samples at a sample, less the sample.
+/// The error at a sample: the value of the plane through other samples, less the value of the
+/// sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrossError {
     /// The index of the sample.
     pub(crate) index: usize,
-    /// The differences of base and lobe.
+    /// The errors of base and lobe.
     pub(crate) off: [f64; 2],
 }
 
@@ -30,7 +32,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
                 ..*sample
             })
             .collect();
-        // The first point of a sample's pixel that is on its object stands for the sample.
+        // A sample is represented by the first point of its pixel that is on its object.
         let point = |sample: &ShadedSample| {
             let mut near = visible.range(visible.pixel_at(sample.at));
             near.find(|i| {
@@ -56,7 +58,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
 }
 
 /// Returns the squared relative errors of the light after noise removal, as values of samples. `samples`
-/// have the variance of their light.
+/// hold the variance of their light.
 pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) -> Vec<ShadedSample> {
     let dark = dark(samples);
     let of = |error: &CrossError| {

@@ -12,7 +12,7 @@ const MAX_SPACING: f64 = 32.0;
 const LONGEST: f64 = 3.0;
 
 /// Returns metrics proportional to `wanted` within the bounds. The square root of the determinant
-/// of a metric is the number of samples in its pixel, and the sum of these is `samples`.
+/// of a metric is the number of samples in its pixel, and these numbers add up to `samples`.
 pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metric>> {
     let rates: Vec<Option<f64>> = wanted
         .iter()
@@ -62,7 +62,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     }
 }
 
-/// Returns the metric whose density is this power of the given one.
+/// Returns the metric whose density is a power of the density of another metric.
 pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
     let density = metric.determinant().max(0.0).sqrt();
     if density > 0.0 {

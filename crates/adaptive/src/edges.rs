@@ -1,12 +1,12 @@
-//! Pixels with edges of objects or textures: more points of such a pixel are looked at than are
-//! stored, and each takes the light of the stored points that are like it.
+//! Pixels with edges of objects or textures. Such a pixel is examined at more points than are
+//! stored, and each of these points takes the light of similar stored points.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{LightMean, bell, unlike};
 use crate::shading::Shader;
 use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance};
 
-/// Rows and columns of further points in a pixel.
+/// Number of rows and columns of additional points in a pixel.
 const FINE: usize = 4;
 
 /// Relative difference of texture factors and of emission that makes an edge.
@@ -54,7 +54,7 @@ fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
     }
 }
 
-/// Whether the points of a pixel and of those beside it differ in object, normal, texture or
+/// Whether the points of a pixel and of its neighbours differ in object, normal, texture or
 /// emission.
 fn has_edge(visible: &Visible, [column, row]: [usize; 2]) -> bool {
     let [w, h] = visible.size;
@@ -85,8 +85,8 @@ fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
         }
 }
 
-/// Returns the mean light of the stored points in and around a pixel that are on the object of a point, by
-/// their likeness to it.
+/// Returns the mean light of the stored points in and around a pixel that are on the object of a point,
+/// weighted by their similarity to this point.
 fn like(
     visible: &Visible,
     values: &Values,
@@ -102,7 +102,7 @@ fn like(
             };
             if seen.shape == surface.shape {
                 let square = squared_distance(point, at(near, i));
-                // Half a pixel is the standard deviation.
+                // The standard deviation is half a pixel.
                 mean.add(bell(4.0 * square + unlike(surface, seen)), value);
             }
         }

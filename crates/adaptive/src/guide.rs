@@ -3,9 +3,8 @@
 //!
 //! The guide shows where shadows and highlights end, which sparse samples cannot. The light of
 //! samples less their guide is smoother than the light itself, so planes are fitted to this
-//! difference, and the guide is added afterwards. A guide is noisy, and does not know indirect
-//! light. So the errors of the first samples decide for each object which share of the guide is
-//! used.
+//! difference, and the guide is added afterwards. A guide is noisy, and contains no indirect light.
+//! So the errors of the first samples decide for each object which share of the guide is used.
 
 use crate::criterion::shaded;
 use crate::cross::{CrossError, dark};
@@ -16,7 +15,7 @@ use crate::smooth::{EdgeFilter, PlaceValues, detailed};
 use crate::visible::{FOUR, SeenSurface, Visible, at, squared_distance};
 use rayon::prelude::*;
 
-/// Width in pixels of a tile. The paths of its points share a net.
+/// Width in pixels of a tile. The paths from the points of a tile share a net.
 const TILE: usize = 4;
 
 /// The filter of sharp shadows.
@@ -97,8 +96,8 @@ impl LightGuide {
     }
 
     /// Chooses the share of the guide for each object, and returns the errors of planes through
-    /// samples without it. `plain` are the errors of planes through whole samples, `of_guide` those
-    /// of planes through `guides`.
+    /// samples without this share. `plain` holds the errors of planes through whole samples, and
+    /// `of_guide` the errors of planes through `guides`.
     pub(crate) fn trust(
         &mut self,
         samples: &[(ShadedSample, f64)],
@@ -176,8 +175,8 @@ fn morton([column, row]: [usize; 2]) -> usize {
 /// the first samples. The noise of a guide does not fall with the number of samples.
 const SMALLER: f64 = 1.0 / 6.0;
 
-/// The shares of the guide that objects use, from sums for base and lobe: the product of both
-/// errors, the square of the guide's error, and the variance of the guide.
+/// The shares of the guide that objects use, for base and lobe. The shares are computed from sums
+/// of the product of both errors, the square of the guide's error, and the variance of the guide.
 #[derive(Debug, Default)]
 struct GuideShares([ObjectSums<3>; 2]);
 
@@ -207,8 +206,8 @@ impl GuideShares {
 mod tests {
     use super::*;
 
-    /// A guide without noise whose errors are those of the planes is used whole; one with other
-    /// errors, or with much noise, is not used.
+    /// A guide without noise whose errors equal those of the planes is used whole. A guide with
+    /// other errors, or with much noise, is not used.
     #[test]
     fn shares_follow_errors() {
         let mut shares = GuideShares::default();

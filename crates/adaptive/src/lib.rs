@@ -2,11 +2,12 @@
 //! 6.2 and Figs. 15 to 17).
 //!
 //! Points visible to the camera are found at full resolution (`visible`). From the visible points
-//! and from the distance of blockers at sparse points (`blockers`), the criteria give the
-//! bandwidth of light across the picture (`criterion`), and so the sampling density (`density`).
-//! The default method calibrates the criteria by the errors of first, evenly distributed samples
-//! (`auto`). Samples are blue noise of this density (`blue_noise`), and only samples are shaded.
-//! Between samples the picture is reconstructed from similar points (`reconstruct`).
+//! and the distance of blockers at sparse points (`blockers`), the criteria give the bandwidth of
+//! light across the picture (`criterion`). The bandwidth determines the sampling density
+//! (`density`). The default method calibrates the criteria by the errors of first, evenly
+//! distributed samples (`auto`). Samples are blue noise of this density (`blue_noise`), and only
+//! samples are shaded. Between samples the picture is reconstructed from similar points
+//! (`reconstruct`).
 
 mod auto;
 mod blockers;

@@ -18,22 +18,22 @@ use etendue_world::Camera;
 /// The distribution of shading samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleMethod {
-    /// Uniformly over all shaded pixels.
+    /// Samples are uniform over all shaded pixels.
     Uniform,
-    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
+    /// Samples follow the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
     Predicted,
-    /// By the criteria as printed, to show the cost of their approximations.
+    /// Samples follow the criteria as printed, to show the cost of their approximations.
     Printed,
-    /// Half by the criteria and half by the measured light. A first quarter of the samples
-    /// measures the light: planes are fitted to one half of this quarter, and their error is
-    /// evaluated at the other half.
+    /// Half of the samples follow the criteria, and half follow the measured light. A first quarter
+    /// of the samples measures the light: planes are fitted to one half of this quarter, and their
+    /// error is evaluated at the other half.
     Weighted,
-    /// The default: the first samples evenly, then half of the rest by the criteria and half by
-    /// the errors that the first samples reveal. The errors of the first samples also decide,
-    /// object by object, how many samples the criteria are worth.
+    /// The default: the first samples are evenly distributed. Half of the rest follow the criteria,
+    /// and half follow the errors at the first samples. The errors at the first samples also
+    /// calibrate the criteria for each object.
     Auto,
-    /// By the measured light alone: the standard deviation of a first quarter of the samples, which
-    /// are distributed uniformly.
+    /// Samples follow the measured light alone: the standard deviation of a first quarter of the
+    /// samples, which is distributed uniformly.
     Variance,
 }
 
@@ -74,7 +74,8 @@ pub enum Stage {
 /// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
-    /// The bandwidth by the criterion, cycles per pixel, along the direction where it is larger.
+    /// The bandwidth by the criterion, cycles per pixel, along the direction where the bandwidth is
+    /// larger.
     pub bandwidth: Vec<f64>,
     /// The principal curvature of larger magnitude by finite differences on the screen, per unit
     /// of length, positive if convex.
@@ -106,8 +107,7 @@ pub struct Rendered {
     pub layers: Layers,
 }
 
-/// The share of samples that are taken first in methods whose first samples determine where the
-/// others go.
+/// The share of samples that a method takes first to determine the density of the other samples.
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
@@ -214,7 +214,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// Shades the `rest` of the samples, and returns all samples with the metric of all together.
+    /// Shades the `rest` of the samples, and returns all samples, with their common metric.
     pub(crate) fn both(
         &mut self,
         first: &[Option<Metric>],
@@ -373,8 +373,8 @@ impl AdaptiveRun<'_> {
         }
     }
 
-    /// The light at all points: planes through samples, or the guide and planes through what it
-    /// does not explain.
+    /// The light at all points: planes through samples, or the guide plus planes through the
+    /// differences of samples from the guide.
     fn reconstructed(&self, samples: &[ShadedSample]) -> Vec<Option<[f64; 2]>> {
         let Some(guide) = &self.guide else {
             return reconstruct(self.visible, samples, SampleFit::Plane);
@@ -428,8 +428,8 @@ impl AdaptiveRun<'_> {
 /// Width in pixels of a patch that is far from all samples.
 const PATCH: f64 = 2.0;
 
-/// Number of the most recently added samples whose distance is checked, which are those of the
-/// last few rows.
+/// Number of the most recently added samples whose distance is checked: the samples of the last few
+/// rows.
 const RECENT: usize = 256;
 
 /// Minimum contrast, because the first quarter of the samples may have missed the contrast.
@@ -451,7 +451,7 @@ pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<M
     pairs.map(of).collect()
 }
 
-/// Returns the metrics of two sets of samples together, which are sums.
+/// Returns the metrics of two sets of samples together: the sums of both metrics.
 pub(crate) fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
     let both = a.iter().zip(b);
     both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))

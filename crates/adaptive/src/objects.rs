@@ -1,9 +1,10 @@
-//! Sums over the first samples of each object, which also use a little of the sums over all objects.
+//! Sums over the first samples of each object, to which a small share of the sums over all objects
+//! is added.
 
 use std::collections::BTreeMap;
 
-/// The weight, in samples, with which the mean over all objects enters the sums of each object. So
-/// an object with few samples has about the ratios of all objects.
+/// The weight, in samples, with which the mean over all objects enters the sums of each object. An
+/// object with few samples thus has about the ratios of all objects.
 const SHARED: f64 = 4.0;
 
 /// Sums of `N` numbers for each object and for all.

@@ -32,8 +32,8 @@ impl ShadedSample {
 /// that the samples show.
 const WIDTH: f64 = 0.5;
 
-/// Distances at which the filter ends, in standard deviations: the first for the first round, the
-/// others for later rounds at points that no sample has reached.
+/// Distances at which the filter ends, in standard deviations. The first distance is for the first
+/// round, and the other distances are for later rounds at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
 /// Standard deviation of the filter over normals. This value separates faces that meet at a right
@@ -65,7 +65,7 @@ pub(crate) fn reconstruct(
     reconstruct_where(visible, samples, fit, &|_| true)
 }
 
-/// Does the same as [`reconstruct()`], but only at points whose index is wanted.
+/// Reconstructs values like [`reconstruct()`], but only at points whose index is wanted.
 pub(crate) fn reconstruct_where(
     visible: &Visible,
     samples: &[ShadedSample],
@@ -250,8 +250,8 @@ impl LightMean {
     }
 }
 
-/// Returns a bell-shaped weight at a squared distance, in squared standard deviations. It is close
-/// to exp(−square/2) up to 2 standard deviations, and faster to compute.
+/// Returns a bell-shaped weight at a squared distance, in squared standard deviations. The weight
+/// is close to exp(−square/2) up to 2 standard deviations, and faster to compute.
 pub(crate) fn bell(square: f64) -> f64 {
     (1.0 + square / 16.0).powi(-8)
 }

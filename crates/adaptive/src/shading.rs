@@ -8,7 +8,7 @@ use etendue_paths::{Paths, SurfaceHit};
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// What is needed to shade points: the paths of the world, the camera, the cutoffs of lobes, and
+/// The data that shading needs: the paths of the world, the camera, the cutoffs of lobes, and
 /// settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader<'a> {
@@ -64,8 +64,8 @@ impl Shader<'_> {
         SeenPlace::new(self.paths, self.camera, self.cutoffs, at)
     }
 
-    /// Computes the direct light of base and lobe by one path, without these texture factors. The
-    /// path has the point `index` of the net `number`.
+    /// Computes the direct light of base and lobe by one path, without the given texture factors.
+    /// The path has the point `index` of the net `number`.
     pub(crate) fn direct(
         &self,
         seen: &SurfaceHit,
@@ -77,7 +77,7 @@ impl Shader<'_> {
     }
 }
 
-/// The first number of nets for direct light; nets below it belong to blockers.
+/// The number of the first net for direct light; nets with smaller numbers belong to blockers.
 const OF_GUIDE: u64 = 1 << 40;
 
 /// Divides base and lobe by their texture factors.

@@ -21,8 +21,8 @@ pub(crate) struct EdgeFilter {
 }
 
 impl EdgeFilter {
-    /// Smooths values. Each of the points of a pixel uses only those points of other pixels that
-    /// have its number, so the errors of the points of a pixel are independent.
+    /// Smooths values. A point of a pixel uses only the points with the same number in other
+    /// pixels, so the errors of the points of a pixel are independent.
     pub(crate) fn smoothed(&self, visible: &Visible, values: &[[f64; 2]]) -> PlaceValues {
         let variance = (self.width * self.step as f64).powi(2);
         let of = |index: usize| {
@@ -60,8 +60,8 @@ impl EdgeFilter {
 /// Pixels to each side over which the power of details and their noise are averaged.
 const AROUND: usize = 2;
 
-/// Adds to smooth values the detail of sharper ones, as far as it is not noise: the share
-/// 1 − noise/square, where the noise is found from the differences of the points of a pixel.
+/// Adds to smooth values the share 1 − noise/square of the detail of sharper values. The noise is
+/// found from the differences of the points of a pixel.
 pub(crate) fn detailed(visible: &Visible, sharp: &[[f64; 2]], smooth: &[[f64; 2]]) -> PlaceValues {
     let powers = visible.pixels(|pixel| {
         let places = visible.range(pixel);

@@ -72,8 +72,8 @@ fn covered([column, row]: [usize; 2]) -> f64 {
     (0..64 * 64).filter(inside).count() as f64 / 4096.0
 }
 
-/// A convex diffuse ball in uniform light reflects half of it everywhere, and a pixel at its edge
-/// mixes ball and background by their areas.
+/// A convex diffuse ball in uniform light reflects half of this light everywhere, and a pixel at
+/// its edge mixes ball and background by their areas.
 #[test]
 fn even_light_stays_even() {
     for method in ALL {
@@ -89,7 +89,7 @@ fn even_light_stays_even() {
             }
         }
         let mean = at_edge.iter().sum::<f64>() / at_edge.len() as f64;
-        // Twenty points find areas to 0.02; the four points of other pixels, only to 0.06.
+        // Twenty points find areas to 0.02, and the four points of other pixels find them to 0.06.
         assert!(at_edge.len() > 150 && mean < 0.03, "{method:?}: {mean}");
     }
 }
@@ -130,7 +130,7 @@ fn the_guide_shows_where_shadows_end() {
     };
     let exact = |x: f64, y: f64| {
         let [slope_x, slope_y] = [(x - 48.0) / 120.0, (y - 30.0) / 120.0];
-        // On the card, which is 3 in front of the eye, or on the floor.
+        // The point is on the card, which is 3 in front of the eye, or on the floor.
         if (3.0 * slope_x).abs().max((3.0 * slope_y).abs()) < 0.3 {
             return 0.0;
         }
@@ -169,7 +169,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// As many samples are shaded as requested, except those whose points hit nothing.
+/// All requested samples are shaded, except samples whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {

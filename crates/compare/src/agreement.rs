@@ -81,8 +81,8 @@ impl Agreement {
     }
 
     /// Returns the number of photons that brings the noise down to the resolution. Returns `None`
-    /// where the error of the prediction alone exceeds the resolution, or where noise is not what
-    /// prevents a verdict.
+    /// where the error of the prediction alone exceeds the resolution, or where noise does not
+    /// prevent a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

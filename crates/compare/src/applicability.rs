@@ -16,13 +16,13 @@ use etendue_theory::{rays, reflections, scattering};
 pub struct Applicability {
     /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// Descriptions of what light meets on its way that no theory covers; empty where a theory
+    /// Descriptions of the things on the light's way that no theory covers; empty where a theory
     /// applies.
     pub reasons: Vec<String>,
-    /// Descriptions of what rules out a theory of fewer surfaces where the theory of several
-    /// surfaces is used instead; otherwise empty.
+    /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces;
+    /// otherwise empty.
     pub declined: Vec<String>,
-    /// Why no light reaches the plane, in words; `None` where some light may.
+    /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
     /// The difference between rays that smooth meshes deflect and the same rays deflected by
     /// osculating patches; `None` without a smooth mesh.
@@ -30,9 +30,8 @@ pub struct Applicability {
 }
 
 impl Theory {
-    /// Describes in words which parts of a scene violate the assumptions of the theory. Adds an
-    /// obstacle to the theory for blockers that light meets on a leg where the central ray does
-    /// not.
+    /// Describes in words which parts of a scene violate the assumptions of the theory. Adds, as an
+    /// obstacle of the theory, blockers that light meets beside the central ray on a leg.
     fn obstacles(
         &mut self,
         scene: &Scene,

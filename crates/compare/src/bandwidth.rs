@@ -15,8 +15,8 @@ use etendue_theory::{Model, scattering};
 /// Returns the criterion for a plane across the ray that leaves a surface with a BRDF; `None` for
 /// any other plane. The share [`BANDWIDTH_FRACTION`] of a lobe's energy lies below its cutoff.
 ///
-/// The edge that limits the light is that of the last blockers. Without blockers it is the edge of
-/// the light itself, unless the light is far away.
+/// The edge that limits the light is the edge of the last blockers. Without blockers, the limiting
+/// edge is the edge of the light itself, unless the light is far away.
 #[must_use]
 pub fn criterion(
     scene: &Scene,

@@ -5,8 +5,8 @@ use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
 /// Returns the chain that leads from the light to a virtual plane: travels, visibilities and
-/// diffuse reflections in the order in which the central ray meets them. Anything else is left out
-/// and reported by [`Applicability`](crate::Applicability).
+/// diffuse reflections in the order in which the central ray meets them. Anything else on the way
+/// is left out, and reported by [`Applicability`](crate::Applicability).
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = ChainWalk {

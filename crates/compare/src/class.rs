@@ -9,7 +9,7 @@ use std::fmt;
 pub enum Class {
     /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// An exact prediction by rays exists, and beside it the paper's first-order chain with its
+    /// Two predictions exist: an exact one by rays, and the paper's first-order chain with its
     /// computed error.
     FirstOrder,
     /// No theory applies. The other tracer's measurement serves as the prediction.

@@ -17,9 +17,9 @@ pub struct Convergence {
     pub plane: String,
     /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
     pub steps: Vec<[f64; 2]>,
-    /// The order n in error ∝ eⁿ, by least squares over the last three steps. Is `None` where the
-    /// error is not clearly above that of the quadrature; this is not checked where several
-    /// surfaces scatter.
+    /// The order n in error ∝ eⁿ, by least squares over the last three steps. The order is `None`
+    /// where the error is not clearly above that of the quadrature. This condition is not checked
+    /// where several surfaces scatter.
     pub order: Option<f64>,
 }
 
@@ -94,8 +94,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// Returns the error of the chain where several surfaces scatter. It is a difference of sums over
-/// the same paths, and this difference has an error of a few per cent.
+/// Returns the error of the chain where several surfaces scatter. The chain's error is a difference
+/// of sums over the same paths, and is known to a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,

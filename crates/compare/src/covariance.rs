@@ -1,5 +1,5 @@
-//! Compares the covariance that is traced along a chain with those of the exact and of the
-//! measured spectrum.
+//! Compares the covariance that is traced along a chain with the covariances of the exact and of
+//! the measured spectrum.
 
 use crate::applicability::Applicability;
 use crate::class::Class;
@@ -30,10 +30,10 @@ pub struct CovarianceReport {
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// The result of covariance tracing, the window included as the last step. Is `None` where
-    /// covariance tracing gives no result or an infinite spectrum.
+    /// The result of covariance tracing, the window included as the last step. The covariance is
+    /// `None` where covariance tracing gives no result or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
-    /// Why covariance tracing gives no result, in words.
+    /// The reason why covariance tracing gives no result, in words.
     pub untraced: Option<String>,
     /// The covariance, over the band, of the Gaussian that was traced.
     pub traced_in_band: Option<Matrix<4>>,
@@ -47,8 +47,8 @@ pub struct CovarianceReport {
     /// The growth of each measured variance from half of the band to the whole band.
     pub growth: Option<[f64; 4]>,
     /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
-    /// mean of the two variances. The second number is the error of `measured`, divided in the same
-    /// way.
+    /// mean of the two variances. The second number is the error of `measured`, divided by the same
+    /// mean.
     pub off: Option<[f64; 2]>,
     /// Moments ρρ, ρν and νν of the slice at azimuth 0, where the frequencies along y are zero.
     pub slice: [SliceMoment; 3],
@@ -203,16 +203,16 @@ impl CovarianceReport {
     }
 }
 
-/// Growth beyond this many standard errors is not noise, which exceeds it once in a thousand
-/// cases.
+/// Growth beyond this many standard errors is not noise: noise exceeds this limit once in a
+/// thousand cases.
 const NOISE: f64 = 3.0;
 
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 
-/// A variance that grows by more than this from half of the band to all of it is limited by the
-/// band. The variance of a Gaussian grows by 10 % where the band ends at five of its standard
-/// deviations, and by 3 % at six.
+/// A variance that grows by more than this share from half of the band to the whole band is limited
+/// by the band. The variance of a Gaussian grows by 10 % where the band ends at five of its
+/// standard deviations, and by 3 % at six.
 const ENDLESS: f64 = 1.15;
 
 /// Divides each entry by the geometric mean of the variances of its two axes in a matrix, and
@@ -272,9 +272,9 @@ fn slice(
     }))
 }
 
-/// Returns |F|² of theory at azimuth 0, [ρ, ν]. It is computed from pairs of replicates, as a
-/// measured power is from pairs of batches. Returns `None` where the measurement of another tracer
-/// replaces theory.
+/// Returns |F|² of theory at azimuth 0, [ρ, ν]. The power is computed from pairs of replicates, as
+/// a measured power is computed from pairs of batches. Returns `None` where the measurement of
+/// another tracer replaces theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;

@@ -22,7 +22,8 @@ pub enum PredictedField {
         /// The power without aliasing, [|Ωxy|, |Ωuv|]; `None` where the rays of a file are put on the grid.
         alias_free: Option<Array2<f64>>,
     },
-    /// Independent estimates of the expectation, by rays that are put on the grid as photons are.
+    /// Independent estimates of the expectation, by rays that are put on the grid in the same way
+    /// as photons.
     Sampled(Vec<FieldSpectrum>),
 }
 
@@ -97,7 +98,7 @@ impl PredictedField {
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
 /// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
-/// of a file, and where it would take too long.
+/// of a file, and where the closed form would take too long.
 fn closed_form(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -131,7 +132,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at the frequencies of a grid; along v, only at those from zero on.
+/// Returns the spectrum at the frequencies of a grid, along v only at frequencies from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

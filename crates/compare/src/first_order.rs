@@ -16,10 +16,11 @@ use std::f64::consts::{PI, TAU};
 /// The prediction of the chain of affine maps.
 #[derive(Clone, Debug)]
 pub struct FirstOrder {
-    /// The slices of the chain, by the paper's printed formulas where a scene asks for them.
+    /// The slices of the chain, by the paper's printed formulas where a scene asks for these
+    /// formulas.
     pub slices: Slices,
-    /// Independent replicates, of which `slices` is the mean. They are empty where the slices have
-    /// no statistical error.
+    /// Independent replicates, of which `slices` is the mean. The list is empty where the slices
+    /// have no statistical error.
     pub replicates: Vec<Slices>,
     /// The numbers that describe the chain.
     pub chain: FirstOrderChain,
@@ -30,12 +31,12 @@ pub struct FirstOrder {
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
-    /// The error that remains as the neighbourhood of the central ray shrinks. It is zero, apart
-    /// from rounding errors, if every map is right (see [`rays::defect`]). Where `slices` come from
-    /// the printed formulas, so does the defect.
+    /// The error that remains as the neighbourhood of the central ray shrinks. The defect is zero,
+    /// apart from rounding errors, if every map is right (see [`rays::defect`]). Where `slices`
+    /// come from the printed formulas, the defect is also that of the printed formulas.
     pub defect: f64,
-    /// The relative error of the radiance that the chain assigns to the central ray. It is the part
-    /// of the defect that is due to the constant factor of the chain.
+    /// The relative error of the radiance that the chain assigns to the central ray. This error is
+    /// the part of the defect that is due to the constant factor of the chain.
     #[serde(default)]
     pub radiance_defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
@@ -47,7 +48,7 @@ pub struct FirstOrderChain {
     /// Distances from the last surface, metres, at which rays that leave the light in parallel
     /// meet.
     pub foci: Vec<f64>,
-    /// Whether `slices` are those of the paper's printed formulas.
+    /// Whether `slices` come from the paper's printed formulas.
     pub as_printed: bool,
 }
 
@@ -135,8 +136,8 @@ impl FirstOrder {
     }
 
     /// Returns the chain past surfaces that scatter light, with its defect and the matrix of its
-    /// rays along the mirror directions. Its noise is that of the exact prediction, because the
-    /// difference of the two has little noise of its own.
+    /// rays along the mirror directions. The chain has the noise of the exact prediction, because
+    /// the difference of chain and exact prediction has little noise.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -160,8 +161,8 @@ impl FirstOrder {
         })
     }
 
-    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction with the
-    /// residuals from it.
+    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction, with the
+    /// residuals from this prediction.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,

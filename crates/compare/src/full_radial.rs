@@ -22,12 +22,13 @@ pub struct FullRadialReport {
     pub relative_error: Option<f64>,
     /// The relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
-    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. Is `None`
-    /// where aliasing is not known separately.
+    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. The value is
+    /// `None` where aliasing is not known separately.
     pub aliasing: Option<f64>,
 }
 
-/// A comparison of a full radial spectrum: the report, and the arrays behind it, [|Ωxy|, |Ωuv|].
+/// A comparison of a full radial spectrum: the report, and the arrays from which the report is
+/// computed, [|Ωxy|, |Ωuv|].
 #[derive(Clone, Debug)]
 pub struct FullRadialComparison {
     /// Every number.
@@ -45,12 +46,13 @@ pub struct FullRadialComparison {
 /// Group r holds the share a_r of the measurement, G_r, and the same share of the prediction, P_r;
 /// both have the expectation a_r F. Both powers are computed from pairs of groups, so their
 /// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r and S_r = G_r − α
-/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, this is
+/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, the difference
+/// is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
-/// If the prediction is true, each D_r is as likely as its negative, whatever the other D and the S
-/// are (docs/theory.md (45)).
+/// If the prediction is true, each D_r is as likely as its negative, for all values of the other D
+/// and of the S (docs/theory.md (45)).
 struct BinDifference {
     /// The linear terms 2 Σ_(s≠r) D_r·S_s/(1 − Σa²), for each group r.
     linear: Vec<f64>,
@@ -59,8 +61,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// Computes the difference from the products of the spectra in a bin. The spectra are those of
-    /// the groups, which have the shares `a`, and those of the prediction.
+    /// Computes the difference from the products of the spectra in a bin. The spectra are the
+    /// spectra of the groups, whose shares are `a`, and of the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;

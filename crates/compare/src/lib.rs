@@ -1,13 +1,13 @@
 //! Compares measurement and prediction in units of statistical error.
 //!
 //! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
-//! holds what that theory needs to know of the scene. A [`Prediction`] holds everything that the
-//! theory predicts for the plane. [`compare`] compares a measurement with it and returns a
-//! [`Verdict`]. [`Residuals`] are the differences, with the tests made on them. [`TwoSamples`]
-//! compares two measurements.
+//! holds the facts of the scene that this theory needs. A [`Prediction`] holds everything that the
+//! theory predicts for the plane. The function [`compare`] compares a measurement with the
+//! prediction and returns a [`Verdict`]. The [`Residuals`] are the differences, with the tests made
+//! on them. The test [`TwoSamples`] compares two measurements.
 //!
-//! This crate traces no photons, and nothing is tuned: the only freedom is the level α of the test,
-//! which the scene sets.
+//! This crate traces no photons. Its only free parameter is the level α of the test, which the
+//! scene sets.
 
 mod agreement;
 mod applicability;

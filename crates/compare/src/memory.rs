@@ -16,9 +16,9 @@ pub struct Memory {
     pub batches: f64,
     /// The fine grids over which each thread spreads photons.
     pub threads: f64,
-    /// Predictions with their derivatives, and the working memory of computing one.
+    /// Predictions with their derivatives, and the working memory of computing a prediction.
     pub predictions: f64,
-    /// The comparison, one plane at a time.
+    /// The comparison, which handles one plane at a time.
     pub comparison: f64,
     /// Triangles and the hierarchies over them.
     pub meshes: f64,
@@ -37,7 +37,7 @@ const NORMALS: f64 = 72.0;
 
 impl Memory {
     /// Returns the memory of a run of a scene on `threads` threads. `theories` are the theories of
-    /// its planes.
+    /// the scene's planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);

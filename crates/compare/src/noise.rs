@@ -4,16 +4,16 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the effective number of independent real numbers in the noise of plane `plane`. The
-/// mean square of that many normal numbers fluctuates as much as the mean square of the noise, if
-/// the noise at each frequency is divided by its σ.
+/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
+/// square of this many normal numbers fluctuates as much as the mean square of the noise, if the
+/// noise at each frequency is divided by its σ.
 ///
 /// The window correlates neighbouring frequencies. If C is the covariance of the noise divided by
-/// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². Its relative
-/// variance is that of the mean square of (tr C)²/tr C² independent numbers (Satterthwaite 1946).
-/// The batches give the sample covariance Ĉ of n = R − 1 degrees of freedom. For this, n²/((n −
-/// 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for normal noise (Srivastava
-/// 2005, Eq. 2.4).
+/// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². The relative
+/// variance of this mean is that of the mean square of (tr C)²/tr C² independent numbers
+/// (Satterthwaite 1946). The batches give the sample covariance Ĉ of n = R − 1 degrees of freedom.
+/// The expression n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for
+/// normal noise (Srivastava 2005, Eq. 2.4).
 ///
 /// Returns `None` without noise.
 ///
@@ -32,7 +32,8 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
 /// Returns the effective number of independent real numbers, from the difference of each batch to
 /// the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
-    // tr Ĉ and tr Ĉ² are those of the matrix of products, which has the same eigenvalues as Ĉ.
+    // tr Ĉ and tr Ĉ² are computed from the matrix of products, which has the same non-zero
+    // eigenvalues as Ĉ.
     let products = centred.products(true);
     let trace = products.diag().sum();
     if trace <= 0.0 {

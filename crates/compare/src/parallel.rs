@@ -5,7 +5,7 @@ use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
 /// Describes in words what rules out the theory for a plane: oblique incidence, other objects in
-/// the way, and light that it does not cover. The list is empty where the theory applies.
+/// the way, and light that the theory does not cover. The list is empty where the theory applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
@@ -55,7 +55,7 @@ const ROUNDING: f64 = 1e-6;
 /// path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
-    // An object that light visits on a later leg may block it on an earlier one.
+    // An object that light visits on a later leg may block the light on an earlier leg.
     let ends = (0..=plane.leg).filter_map(|leg| scene.path.ends_at(leg));
     let ends: Vec<Object> = ends.map(|hit| hit.object).collect();
     let visited = |object| ends.contains(&object);
@@ -160,7 +160,7 @@ pub(crate) fn passes(
         let frame = &legs[leg].frame;
         overlaps(points, frame, from, to, end) && !is_beside(points, frame, from, to, end)
     };
-    // After several reflections in a row there is no such tube, and the theory of parallel planes
+    // After several reflections in a row no tube is checked, because the theory of parallel planes
     // does not apply.
     let first = usize::from(on_way_back);
     (first..=plane.leg.min(1)).any(crosses)

@@ -18,7 +18,7 @@ use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
-/// The comparison of a plane: the report, and the arrays behind it.
+/// The comparison of a plane: the report, and the arrays from which the report is computed.
 #[derive(Clone, Debug)]
 pub struct PlaneComparison {
     /// Every number, and the verdict.
@@ -29,8 +29,8 @@ pub struct PlaneComparison {
     pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
-    /// Standard deviation of |S| alone, with the same axes. It differs from `sigma` only where the
-    /// prediction has replicates and so noise of its own.
+    /// Standard deviation of |S| alone, with the same axes. This deviation differs from `sigma`
+    /// only where the prediction has replicates, and so noise of its own.
     pub measured_sigma: Option<Array3<f64>>,
     /// The measured radial spectrum.
     pub radial: RadialPower,
@@ -54,7 +54,7 @@ pub struct PlaneComparison {
 const DARK: f64 = 1e-12;
 
 /// Above this noise the residuals come from few photons and are not symmetric, although the p-value
-/// assumes that they are.
+/// assumes symmetric residuals.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
 /// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
@@ -118,7 +118,7 @@ pub fn compare(
     })
 }
 
-/// Both sides of a comparison, with their difference.
+/// The measurement and the prediction of a plane, with their difference.
 struct ComparedSides<'a> {
     measurement: &'a Measurement,
     index: usize,
@@ -197,7 +197,7 @@ impl ComparedSides<'_> {
         let noise = agreement.resolution();
         let error = self.prediction.systematic_error().unwrap_or(0.0);
         if self.predicted.is_dark() {
-            // Theory may prove that no light arrives; finding no ray is no proof.
+            // A closed form can prove that no light arrives, but a search by rays cannot.
             self.prediction.is_statistical().then(|| {
                 format!(
                     "no ray of the prediction reached the window, and {inside} of {emitted} photons reached it. If no photon reached the window, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence"
@@ -266,8 +266,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// Returns the number of photons that would decide the comparison; `None` where that is not
-    /// known, or where more photons do not help.
+    /// Returns the number of photons that would decide the comparison; `None` where the number is
+    /// not known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -319,7 +319,7 @@ impl ComparedSides<'_> {
         batches.any(|batch| batch.tally.inside == 0)
     }
 
-    /// Checks the same for the replicates of the prediction.
+    /// Checks whether a replicate of the prediction found no light.
     fn has_dark_replicate(&self) -> bool {
         self.prediction.replicates.iter().any(Slices::is_dark)
     }
@@ -464,7 +464,7 @@ fn covariance(
 }
 
 /// Rounds up to one digit, with a margin of a tenth, because the noise of one run only estimates
-/// what another run needs.
+/// the number of photons that another run needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());
@@ -520,8 +520,8 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 
 impl PlaneComparison {
     /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value is
-    /// below the level of the test. It does not fail if a systematic error of the prediction, which
-    /// its replicates do not show, may be visible above the noise.
+    /// below the level of the test. The plane does not fail if a systematic error of the
+    /// prediction, which its replicates do not show, may be visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

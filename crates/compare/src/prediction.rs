@@ -24,18 +24,18 @@ pub struct Prediction {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
-    /// the quadrature error. Is `None` for a closed form, and for a reference.
+    /// the quadrature error. The error is `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces such meshes by
-    /// osculating patches, and the two tracers of a reference deflect rays at them differently. Is
-    /// `None` without a smooth mesh.
+    /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces smooth meshes by
+    /// osculating patches, and the two tracers of a reference deflect rays at them differently. The
+    /// error is `None` without a smooth mesh.
     pub mesh_error: Option<f64>,
     /// The first-order chain. Where a first-order chain exists, `slices` and all other fields are
     /// those of the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
-    /// Independent replicates, of which `slices` is the mean: batches of a reference, or
-    /// randomised rules of theory. The list is empty where the slices have no statistical error.
-    /// With n replicates a p-value is no smaller than 2¹⁻ⁿ, so there should be 16 or more.
+    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
+    /// rules of theory. The list is empty where the slices have no statistical error. With n
+    /// replicates a p-value is no smaller than 2¹⁻ⁿ, so at least 16 replicates should be used.
     pub replicates: Vec<Slices>,
     /// ∫ L W without occluders, the scale relative to which slices of theory are small or large;
     /// zero for a reference.
@@ -83,7 +83,7 @@ impl Prediction {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// Returns ‖error‖/‖slices‖ of all kinds combined.
+    /// Returns the combined ‖error‖/‖slices‖ of all kinds of error.
     pub(crate) fn error(&self) -> Option<f64> {
         both(self.quadrature_error, self.mesh_error)
     }
@@ -237,9 +237,9 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Returns two cuts. The first is twice the frequency 1/half-width at which the main lobe of a
-/// Hann window's transform ends. The second is 1.5 times the first, to show whether H depends on
-/// the cut. The list is empty where light does not leave a surface.
+/// Returns two cuts. The first cut is twice the frequency 1/half-width at which the main lobe of a
+/// Hann window's transform ends. The second cut is 1.5 times the first, to show whether H depends
+/// on the cut. The list is empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

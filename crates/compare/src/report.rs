@@ -16,9 +16,9 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the difference. It combines the error of the measured value with that of
-    /// the predicted value where the prediction has replicates. For a shear slope it includes the
-    /// possible error of the prediction's quadrature.
+    /// Standard error of the difference. Where the prediction has replicates, this error combines
+    /// the errors of the measured and of the predicted value. For a shear slope, this error
+    /// includes the possible error of the prediction's quadrature.
     pub error: Option<f64>,
 }
 
@@ -55,9 +55,9 @@ pub struct Bandwidth {
 
 /// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
 ///
-/// They are finite because the window is bounded. Second moments of the spectrum may be infinite:
-/// where the field has an edge they grow with the frequency grid. For this reason the bandwidth is
-/// a percentile.
+/// The moments are finite because the window is bounded. Second moments of the spectrum may be
+/// infinite: where the field has an edge they grow with the frequency grid. For this reason the
+/// bandwidth is a percentile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covariance {
     /// The moments of the photons.
@@ -102,7 +102,7 @@ pub struct PlaneReport {
     /// The chain, one line for each step.
     pub chain: Vec<String>,
     /// Estimated ‖error‖/‖F‖ of a prediction that is not in closed form. Where the prediction has
-    /// replicates it is their standard error, which is also included in the noise.
+    /// replicates, this error is their standard error, which is also included in the noise.
     pub quadrature_error: Option<f64>,
     /// The plane's frame, world coordinates.
     pub frame: Frame,
@@ -136,20 +136,20 @@ pub struct PlaneReport {
     /// Shear slope of the radial spectrum, metres.
     pub slope: Pair,
     /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. For a field with edges
-    /// they grow with the grid, and the bandwidth is the better measure.
+    /// the moments grow with the grid, and the bandwidth is the better measure.
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
     /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
-    /// Second central moments of the windowed light field over the coordinates of the plane. Is
-    /// `None` where no light arrived.
+    /// Second central moments of the windowed light field over the coordinates of the plane. The
+    /// moments are `None` where no light arrived.
     pub covariance: Option<Covariance>,
     /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
     /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
-    /// first wedge lies between the nearest and the farthest blocker. The second reaches back to
-    /// the light, because the light has edges too. The list is empty for any other plane.
+    /// first wedge lies between the nearest and the farthest blocker. The second wedge reaches back
+    /// to the light, because the light has edges too. The list is empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -159,18 +159,18 @@ pub struct PlaneReport {
     pub first_order: Option<FirstOrderReport>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why an undecided plane is undecided, in words.
+    /// The reason why an undecided plane is undecided, in words.
     pub undecided: Option<String>,
-    /// Number of photons that would decide an undecided plane. Is `None` where that is not known,
-    /// or where more photons do not help.
+    /// Number of photons that would decide an undecided plane. The number is `None` where it is not
+    /// known, or where more photons do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }
 
 impl PlaneReport {
-    /// Returns the verdict on the exact prediction. It does not depend on the verdict on a
-    /// first-order chain.
+    /// Returns the verdict on the exact prediction. This verdict does not depend on the verdict on
+    /// a first-order chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {
         let chain = self.first_order.as_ref();

@@ -46,7 +46,7 @@ impl Residuals {
     }
 
     /// Returns the residuals from slices that are the mean of replicates, or that are exact if
-    /// there are none.
+    /// there are no replicates.
     ///
     /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
     /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches
@@ -90,7 +90,7 @@ impl Residuals {
     }
 
     /// Returns the residuals from the spectrum closest to the measurement among those near the
-    /// prediction. At each frequency such a spectrum is within `error`|F| of F, plus the fast
+    /// prediction. At each frequency this spectrum is within `error`|F| of F, plus the fast
     /// transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
@@ -175,8 +175,9 @@ impl Residuals {
     /// Returns χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies
     /// where σ > 0.
     ///
-    /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
-    /// (R − 1)/(R − 2), which is divided out. Returns `None` when no photon arrived.
+    /// σ² is itself estimated from R batches. For complex normal residuals this estimate raises the
+    /// mean by (R − 1)/(R − 2), and the mean is divided by this factor. Returns `None` when no
+    /// photon arrived.
     #[must_use]
     pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
         let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
@@ -302,8 +303,9 @@ impl Residuals {
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution. This includes correlations between neighbouring frequencies. The
-    /// p-value is the share of rounds, the observed one included, that reach the observed value.
+    /// its own distribution. The random signs also account for correlations between neighbouring
+    /// frequencies. The p-value is the share of rounds, the observed one included, that reach the
+    /// observed value.
     ///
     /// Returns `None` when all residuals are zero, as when no light is measured or predicted.
     #[must_use]
@@ -361,7 +363,7 @@ pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
 }
 
 /// Computes Σ a b in eight parallel sums. Matrix products of libraries round differently on
-/// different processors; these sums round in the same way on all.
+/// different processors, whereas these sums round in the same way on all processors.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

@@ -29,11 +29,12 @@ const DETECTABLE: f64 = 3.858;
 /// Returns the score test of one parameter (docs/theory.md, section 6): projects S − F on
 /// ∂F/∂parameter, weighted by 1/σ².
 ///
-/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter;
-/// the error of δ is its spread over the residuals. This error includes correlations between
+/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; the
+/// error of δ is its spread over the residuals. This error includes correlations between
 /// frequencies and the noise of a prediction's replicates. A further error of the prediction,
 /// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz).
-/// This bound is added in quadrature. Step and error hold to first order in δ.
+/// The bound is added to the standard error in quadrature. The step and its error are correct to
+/// first order in δ.
 ///
 /// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(

@@ -21,7 +21,7 @@ pub enum Theory {
     /// Light that several surfaces scatter in turn, or that one surface scatters with its own
     /// shadow or edges.
     Reflections(Box<Observed<reflections::ReflectionSystem>>),
-    /// No theory: another measurement takes its place.
+    /// No theory applies, and another measurement takes the place of a prediction.
     None,
 }
 

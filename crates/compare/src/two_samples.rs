@@ -21,13 +21,13 @@ pub struct Sample {
 /// The result of a test of two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoSamples {
-    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if they differ by noise
-    /// only.
+    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if A and B differ by
+    /// noise only.
     pub chi2_per_dof: Option<f64>,
-    /// Probability of differences at least as large if both measure the same.
+    /// Probability of differences at least as large if both samples have the same true slices.
     pub p_value: Option<f64>,
-    /// Probability of differences as small, or smaller, if the noise of both is independent. Nearly 0
-    /// means that they share photons, or that σ is overstated.
+    /// Probability of differences as small, or smaller, if the noise of both samples is independent.
+    /// A value near 0 means that the samples share photons, or that σ is overstated.
     pub p_shared: Option<f64>,
     /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
     /// are dark.
@@ -45,10 +45,10 @@ impl TwoSamples {
     ///
     /// χ² over the independent frequencies is treated as that of ν independent numbers, with
     /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w are the mean shares in the variance.
-    /// This is exact if the noise of both has the same correlations, and conservative if not
-    /// (Cauchy–Schwarz for tr C_A C_B). Because σ is known from only n = 1/Σ w²/(R − 1) degrees of
-    /// freedom, χ² is larger by n/(n − 1) and its relative variance by n/(n − 2), as for an F
-    /// distribution (docs/theory.md, section 6).
+    /// This number is exact if the noise of both samples has the same correlations, and
+    /// conservative if not (Cauchy–Schwarz for tr C_A C_B). The estimate of σ has only n = 1/Σ
+    /// w²/(R − 1) degrees of freedom. Therefore χ² is larger by n/(n − 1) and its relative variance
+    /// by n/(n − 2), as for an F distribution (docs/theory.md, section 6).
     ///
     /// # Panics
     /// Panics if the arrays have other shapes than the grid.
@@ -113,7 +113,7 @@ struct FrequencySums {
     noise: f64,
     /// Σ|A|² and Σ|B|².
     norms: [f64; 2],
-    /// Whether the samples differ at a frequency where neither has noise.
+    /// Whether the samples differ at a frequency where neither sample has noise.
     without_noise: bool,
 }
 
@@ -163,10 +163,10 @@ pub struct Estimate {
 }
 
 /// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of
-/// a pull at least as far from zero if both estimate the same.
+/// a pull at least as far from zero if both estimates have the same true value.
 ///
 /// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
-/// freedom. Returns `None` where neither has an error.
+/// freedom. Returns `None` where neither estimate has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {
     let squares = [a, b].map(|e| (e.error * e.error, e.batches as f64 - 1.0));

@@ -12,16 +12,17 @@ type Extent = [[f64; 2]; 2];
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// The share of the rays of a section that rounding errors may leave.
+/// The share of the rays of a section that may remain because of rounding errors.
 const ROUNDING: f64 = 1e-12;
 /// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
-/// Returns the reason why no light reaches a plane, in words; `None` where some light may.
+/// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
+/// plane.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if no ray passes. All rays are also stopped if a layer covers every place where
-/// they cross it.
+/// they cross the layer.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
@@ -158,8 +159,8 @@ fn covers(
     open.is_empty()
 }
 
-/// Returns the region where lines from the light to the first surface, if it is smooth, cross a
-/// plane.
+/// Returns the region where lines from the light to the first surface, if this surface is smooth,
+/// cross a plane.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;

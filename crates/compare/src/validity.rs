@@ -1,8 +1,8 @@
 //! Checks whether light follows the paths that theory assumes.
 //!
-//! Theory follows rays from surface to surface as if nothing else were there. This module traces a
-//! few thousand rays with light in the window, the same in every run. It traces each ray twice: to
-//! the first object that it meets in the whole scene, as photons do, and to the place where theory
+//! Theory follows rays from surface to surface and ignores all other objects. This module traces a
+//! few thousand rays with light in the window, the same in every run. The module traces each ray
+//! twice: to the first object in the whole scene, as for a photon, and to the place where theory
 //! looks for the next surface. Where the two results differ, the plane is not predicted. Rays are
 //! drawn more densely near the central ray, down to a thousandth of the surface, so that a window
 //! of any size receives many rays.

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// The parameters of the test of each plane of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
-    /// A plane agrees with its prediction when the p-value is not below this.
+    /// A plane agrees with its prediction when the p-value is not below this level.
     pub level: f64,
-    /// A plane passes when its noise, as a share of the spectrum, does not exceed this.
+    /// A plane passes when its noise, as a share of the spectrum, does not exceed this resolution.
     pub resolution: f64,
     /// The seed of the random signs of the p-value.
     pub seed: u64,

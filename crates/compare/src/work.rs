@@ -78,8 +78,8 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
     None
 }
 
-/// Seconds on one core for each photon, plane and azimuth. Measured were 37e-9 for `fig9b` and 33e-9
-/// for `ggx_sphere`, on an AMD EPYC processor.
+/// Seconds on one core for each photon, plane and azimuth. The measured times are 37e-9 s for
+/// `fig9b` and 33e-9 s for `ggx_sphere`, on an AMD EPYC processor.
 const SECONDS: f64 = 4e-8;
 
 /// Returns the approximate seconds on one core to trace the photons of a scene, and the upper limit

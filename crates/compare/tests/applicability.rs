@@ -68,7 +68,8 @@ fn half_planes(shapes: &str) -> String {
 
 const AT_45: &str = "facing: (0.7071067811865476, 0, -0.7071067811865476)";
 
-/// Light leaves sideways behind a half-plane that it has passed, and some of it comes back through.
+/// Light passes a half-plane and is reflected sideways, and some of the reflected light crosses the
+/// half-plane again.
 #[test]
 fn a_blocker_that_reaches_into_a_later_leg() {
     let edge = half_planes("HalfPlane(axis: X, edge: 0.5, opaque: Above)");
@@ -114,7 +115,7 @@ fn a_bowl_that_shadows_itself() {
     }
 }
 
-/// The second of two mirrors is beside the first leg.
+/// The second of two mirrors stands beside the first leg.
 #[test]
 fn a_mirror_that_is_met_out_of_turn() {
     let mirrors = format!(
@@ -150,8 +151,8 @@ fn a_surface_that_the_path_does_not_visit() {
     assert_eq!(obstacles(found.theory), ["beside"]);
 }
 
-/// A wall that leans away from the first leg is not in the way although the box around it is; a
-/// wall that leans over the leg is.
+/// A wall that leans away from the first leg is not in the way although its bounding box is. A wall
+/// that leans over the leg is in the way.
 #[test]
 fn a_wall_that_leans_away() {
     for (facing, reasons) in [
@@ -169,8 +170,7 @@ fn a_wall_that_leans_away() {
     }
 }
 
-/// A plane to which no path is open is dark, whatever the light and the surface, and keeps its
-/// class.
+/// A plane to which no path is open is dark for every light and surface, and keeps its class.
 #[test]
 fn darkness_has_a_reason() {
     let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
@@ -215,7 +215,7 @@ fn darkness_has_a_reason() {
             for (blockers, reason) in closed {
                 let scene = built(blockers);
                 let found = of(&scene);
-                // A receiver has no edge, so light may pass beside any lid.
+                // A receiver has no edge, so light may pass beside a blocker of any size.
                 if *class == Class::Exact && blockers == lid {
                     assert_eq!(found.dark, None);
                     continue;
@@ -234,7 +234,7 @@ fn darkness_has_a_reason() {
     }
 }
 
-/// A light of kilometres shines past a half-plane that would cover its middle.
+/// A light that is kilometres wide shines past a half-plane that would cover its middle.
 #[test]
 fn a_huge_light_is_not_taken_for_dark() {
     let light = "Rectangle(center: (0, 0, 0), size: (5_000, 5_000))";
@@ -250,8 +250,8 @@ fn a_huge_light_is_not_taken_for_dark() {
     }
 }
 
-/// A tilted mirror extends in front of the half-planes, where light does not meet them, so it is
-/// not dark.
+/// A tilted mirror extends in front of the half-planes, where light does not meet them, so the
+/// plane is not dark.
 #[test]
 fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     let one = half_planes("HalfPlane(axis: X, edge: 0, opaque: Below)");

@@ -98,7 +98,7 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
-/// Rays that find no light do not prove darkness, so light measured by photons is then no failure.
+/// Rays that find no light do not prove darkness, so light that photons measure is then no failure.
 #[test]
 fn rays_that_found_nothing_decide_nothing() {
     let [truth, _] = spectrum(0.3);
@@ -153,7 +153,7 @@ fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     (0..count).map(replicate).collect()
 }
 
-/// Returns the prediction of a spectrum of this width, known to theory through replicates.
+/// Returns a prediction of a spectrum of the given width, as the mean of replicates.
 fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     let [truth, _] = spectrum(width);
     let replicates = replicates(&truth, size, count, seed);
@@ -175,8 +175,8 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
 }
 
 /// The numbers of replicates and batches differ: fewer replicates, more replicates, and numbers
-/// that do not divide each other. p is uniform if both sides agree, and a spectrum 5 % too wide is
-/// detected.
+/// that do not divide each other. The p-value is uniform if both sides agree, and a spectrum 5 %
+/// too wide is detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -191,8 +191,8 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             let report = compared(1.0, seed);
             below += u32::from(report.p_value.unwrap() < 0.3);
             chi2 += report.chi2_per_dof.unwrap() / 50.0;
-            // An error of the prediction that replicates show is part of the noise and leaves
-            // nothing undecided.
+            // An error of the prediction that replicates show is part of the noise, and makes no
+            // plane undecided.
             assert_ne!(report.verdict, Verdict::Undecided);
         }
         // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
@@ -230,7 +230,7 @@ fn replicates_that_are_taken_for_exact_are_rejected() {
     }
 }
 
-/// Residuals add up to the difference of the means, whatever the numbers of parts.
+/// Residuals add up to the difference of the means, for any numbers of parts.
 #[test]
 fn residuals_have_the_mean_of_the_difference() {
     let [truth, _] = spectrum(1.0);
@@ -331,9 +331,9 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
-/// The possible error of a quadrature is included in the errors of measured numbers. Here there is
-/// almost no noise, and the prediction is wrong by just its stated error, along a derivative or by
-/// a shear.
+/// The possible error of a quadrature is included in the errors of measured numbers. The noise is
+/// almost zero, and the prediction is wrong by just its stated error, along a derivative or by a
+/// shear.
 #[test]
 fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
     const STATED: f64 = 1e-3;
@@ -388,8 +388,8 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
-/// The total of photons of equal weight has no noise. A quadrature is never that exact, and its
-/// error does not count as disagreement.
+/// The total of photons of equal weight has no noise. A quadrature is never exact, and its error
+/// does not count as disagreement.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
@@ -406,12 +406,12 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert!(stated.unwrap() > 2e-4, "{stated:?}");
     assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
     assert_eq!(compared(1e-4, stated).verdict, Verdict::Pass);
-    // The fast transform of photons is no more accurate than this.
+    // The fast transform of photons is no more accurate than this tolerance.
     assert_eq!(compared(1e-7, None).verdict, Verdict::Pass);
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
 
-/// Where noise exceeds the spectrum the plane is undecided, whatever p is.
+/// Where noise exceeds the spectrum, the plane is undecided for every p-value.
 #[test]
 fn noise_decides_nothing() {
     let [truth, _] = spectrum(1.0);
@@ -467,7 +467,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
 
-/// A batch without a photon shows that there are too few for a decision, whatever p is.
+/// A batch without a photon shows that there are too few photons for a decision, for every p-value.
 #[test]
 fn a_batch_without_photons_decides_nothing() {
     let [truth, _] = spectrum(1.02);
@@ -491,7 +491,7 @@ fn a_batch_without_photons_decides_nothing() {
 }
 
 /// One heavy photon carries half of the light of a batch, or of a replicate of the prediction:
-/// others like it may not have come yet.
+/// other heavy photons may still be missing.
 #[test]
 fn light_of_a_few_heavy_photons_decides_nothing() {
     let [truth, _] = spectrum(1.0);
@@ -530,8 +530,8 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
     }
 }
 
-/// Noise is compared with the larger of both spectra: a prediction that is ten times too dim fails
-/// where a correct one passes, and agreement within noise above the resolution does not count.
+/// Noise is compared with the larger of both spectra. A prediction ten times too dim fails where a
+/// correct one passes. Agreement within noise above the resolution does not count.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);

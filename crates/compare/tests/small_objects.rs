@@ -118,8 +118,9 @@ fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
     point - 2.0 * (point - on).dot(normal) * normal
 }
 
-/// A second mirror whose edge just reaches into the light on its way to the first. A million random
-/// rays, traced by the images of the light in both planes, determine how far the edge may reach.
+/// A second mirror whose edge just reaches into the light on its way to the first mirror. A million
+/// random rays, traced by the images of the light in both planes, determine how far the edge may
+/// reach.
 #[test]
 fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     const RAYS: u32 = 1_000_000;
@@ -169,8 +170,8 @@ fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
         let crosses = (second[0] - from).dot(second[1]) / (on_first - from).dot(second[1]);
         let beyond = !(0.0..1.0).contains(&crosses);
         let reaches = on_second.distance(second[0]);
-        // The second mirror must be large enough to reflect the ray; to stop it, its radius must
-        // reach this distance.
+        // The second mirror must be large enough to reflect the ray, and its radius must reach this
+        // distance to stop the ray.
         let stops = from.lerp(on_first, crosses).distance(second[0]);
         (!beyond && stops > reaches).then_some(stops)
     };

@@ -137,8 +137,9 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
 
 #[test]
 fn noise_amounts_to_as_many_numbers_as_its_correlation_leaves() {
-    // Neighbours along ν have the correlation 2/3, and the next ones 1/6. So a line of n cells has
-    // tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that for complex numbers.
+    // Neighbours along ν have the correlation 2/3, and second neighbours have 1/6. Therefore a line
+    // of n cells has tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that for complex
+    // numbers.
     let squares = |n: f64| n + (n - 1.0) * 8.0 / 9.0 + (n - 2.0) / 18.0;
     let found: Vec<f64> = (0..50)
         .map(|seed| sample(seed, BATCHES, SIZE).noise_dof.unwrap())

@@ -86,7 +86,8 @@ fn scenes_of_the_repository_end() {
     assert!(found > 40, "{found} scenes");
 }
 
-/// Quadratures that would take too long, or that nodes do not resolve, become nets with a budget.
+/// Quadratures that would take too long, or that nodes do not resolve, are replaced by nets with a
+/// budget.
 #[test]
 fn wide_lights_and_fine_gratings_before_a_receiver() {
     for edits in [
@@ -173,7 +174,7 @@ fn a_thousand_lobes() {
     assert_eq!(too_much(&scene), None);
 }
 
-/// Each plane is within the limit but the sum of the planes is not; the error names the plane that
+/// Each plane is within the limit, but the sum of the planes is not. The error names the plane that
 /// takes most.
 #[test]
 fn many_planes() {

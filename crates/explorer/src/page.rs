@@ -98,8 +98,8 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by ray tracing, each with its values in
-    /// the order of `spectrum` and `field`; empty if those are already exact.
+    /// The spectrum and then the light field at a plane by ray tracing, with values in the order of
+    /// `spectrum` and `field`. The list is empty if `spectrum` and `field` are already exact.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
         let plane = PathPlace::all(&self.setup)[plane];
@@ -112,8 +112,9 @@ impl Explorer {
         spectrum.chain(field.values.iter().copied()).collect()
     }
 
-    /// The axes as a list: the number of cells of a light field along each axis, the half-widths
-    /// in x and u, and along ρ and along ν the number of steps to each side and their spacing.
+    /// The axes as a list: the number of cells of a light field along each axis, and the
+    /// half-widths in x and u. The number of steps to each side and their spacing follow, along ρ
+    /// and then along ν.
     #[must_use]
     pub fn axes(&self) -> Vec<f64> {
         let grid = grid(&self.setup);
@@ -129,10 +130,10 @@ impl Explorer {
         ]
     }
 
-    /// The sampling criterion for an eye one metre from the glossy receiver: the cutoff
-    /// of the lobe (99 %), cycles per radian, then bandwidths under an environment (Eq.
-    /// 20 of Durand et al. 2005) and behind an edge of the blockers (Eq. 21), both
-    /// corrected.
+    /// The sampling criterion for an eye one metre from the glossy receiver: the cutoff of the lobe
+    /// (99 %), cycles per radian, then two corrected bandwidths. The first bandwidth is under an
+    /// environment (Eq. 20 of Durand et al. 2005), the second behind an edge of the blockers (Eq.
+    /// 21).
     #[must_use]
     pub fn criterion(&self) -> Vec<f64> {
         let get = |key| self.setup.get(key);

@@ -78,7 +78,7 @@ fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
     vec![(setup.get(SettingKey::Distance), mask)]
 }
 
-/// Returns the receiver in the frame at the light, facing it.
+/// Returns the receiver in the frame at the light, facing the light.
 fn patch(setup: &Setup) -> Patch {
     let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {

@@ -104,8 +104,8 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
     )
 }
 
-/// Writes a plane of the scene file. Without blockers, the planes before and after them keep their
-/// distance from the light.
+/// Writes a plane of the scene file. If the setup has no blockers, the planes around the place of
+/// the blockers keep their distance from the light.
 fn plane(plane: PathPlace, setup: &Setup) -> String {
     let distance = setup.get(SettingKey::Distance);
     let are_there = setup.get(SettingKey::Fill) > 0.0;

@@ -272,8 +272,8 @@ impl Setup {
         self.get(key) > 0.5
     }
 
-    /// Changes a setting to the permitted value that is nearest to the given one; its range and the
-    /// scene limit it.
+    /// Changes a setting to the permitted value that is nearest to the given one. The setting's
+    /// range and the scene limit the value.
     pub fn set(&mut self, key: SettingKey, value: f64) {
         let SettingEntry {
             range: [low, high],
@@ -300,8 +300,8 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// Returns the fragment of a URL, after #: all settings that differ from their defaults; it is
-    /// never empty.
+    /// Returns the fragment of a URL, after #: all settings that differ from their defaults; the
+    /// fragment is never empty.
     #[must_use]
     pub fn fragment(&self) -> String {
         let mut text = String::new();

@@ -17,9 +17,9 @@ use std::sync::Arc;
 /// | Beckmann, GGX | albedo · D(h) G₁(ωi) G₁(ωo) F(h·ωi) / (4 cos θi cos θo) (Walter et al. 2007, Eq. 20) |
 ///
 /// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, with the exact G₁ of
-/// Beckmann. The BRDF is zero unless both cosines are positive. It is multiplied by f(θi) and h(θo)
-/// if it has such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal unless it has a
-/// Fresnel factor of the angle of incidence, or f and h differ.
+/// Beckmann. The BRDF is zero unless both cosines are positive. The lobe is multiplied by f(θi) and
+/// h(θo) if the BRDF has such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal
+/// unless it has a Fresnel factor of the angle of incidence, or f and h differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Brdf {
     /// The lobe.

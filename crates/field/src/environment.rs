@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// Light from infinity: radiance that depends on direction alone.
 ///
-/// Environments shine forward: a ray of a leg goes along (u, v, 1). So whatever the map contains,
-/// only directions from the hemisphere in which the central ray begins carry light. The light
+/// Environments shine forward: a ray of a leg goes along (u, v, 1). Therefore only directions from
+/// the hemisphere in which the central ray begins carry light, whatever the map contains. The light
 /// begins in the plane across the central ray's start, and nothing behind that plane occludes it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
@@ -42,12 +42,12 @@ pub struct SphericalGaussian {
 }
 
 /// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of
-/// pixels, periodic in longitude. Between the centres of the first or the last row and the poles it
-/// is constant along the meridian.
+/// pixels, periodic in longitude. Between the centres of the first or the last row and the poles,
+/// radiance is constant along the meridian.
 ///
 /// The axes are those of `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude π/2.
 /// Longitude is 0 in the middle, to the front (Z), and grows to the left; π/2 is along X. So the
-/// map is seen from inside. A pixel is an area, as in other renderers: the centre of column i of w
+/// map is seen from inside. A pixel is an area, as in other renderers. The centre of column i of w
 /// is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π (½ − (j +
 /// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
 /// centre of row j at latitude π (½ − j/(h − 1)).
@@ -72,8 +72,8 @@ impl Environment {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Returns the direction that light travelling along a direction comes from: of unit length, in
-    /// the coordinates of the map.
+    /// Returns the unit vector towards the origin of light that travels along a direction, in the
+    /// coordinates of the map.
     #[inline]
     #[must_use]
     pub fn origin_of(&self, along: DVec3) -> DVec3 {
@@ -98,7 +98,7 @@ impl SphericalGaussian {
     #[inline]
     #[must_use]
     pub fn radiance_from(&self, from: DVec3) -> f64 {
-        // 1 − cos γ, without cancellation for small γ.
+        // The value is 1 − cos γ, without cancellation for small γ.
         let fall = 0.5 * (from - self.from).length_squared();
         self.radiance * libm::exp(-fall / (self.width * self.width))
     }
@@ -130,7 +130,8 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns the map with `radiance` at the direction of each pixel's centre; at least one pixel.
+    /// Returns a map of at least one pixel, with `radiance` at the direction of each pixel's
+    /// centre.
     #[must_use]
     pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
         let (width, height) = (width.max(1), height.max(1));
@@ -182,7 +183,7 @@ impl LatLong {
     }
 }
 
-/// Returns the direction of a position on a raster of this width and with these poles.
+/// Returns the direction of a position on a raster with the given width and poles.
 fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3 {
     let longitude = TAU * (0.5 - column / width);
     let latitude = PI * (0.5 - (row - top) / (bottom - top));
@@ -244,7 +245,7 @@ mod tests {
             environment.radiance(DVec3::new(-(libm::cos(0.1_f64)), libm::sin(0.1_f64), 0.0));
         let expected = 2.0 * libm::exp((libm::cos(0.1_f64) - 1.0) / 0.09);
         assert!((aside - expected).abs() < 1e-14); // rounding of unit vectors
-        // ∫ over the sphere by the midpoint rule in cos γ: an error of (step/σ²)²/24.
+        // The integral over the sphere by the midpoint rule in cos γ has an error of (step/σ²)²/24.
         let n = 20_000;
         let sum: f64 = (0..n)
             .map(|i| {

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A 4D grid over the support of a window, axes in the order x, y, u, v.
 ///
 /// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred
-/// at (i − n/2) · 2h/n. So the plane's origin is the centre of cell n/2, and half of cell 0 lies at
-/// either edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist
-/// frequency n/(4h).
+/// at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2, and half of cell 0
+/// lies at either edge. The frequencies of its transform are the multiples of 1/(2h) up to the
+/// Nyquist frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.
@@ -31,8 +31,8 @@ impl FieldGrid {
         Self { cells, half_widths }
     }
 
-    /// Returns the number of bytes of one such grid of f64, or of its transform. Saturates at
-    /// `u64::MAX`, so a caller can check the size of a grid before allocating it.
+    /// Returns the number of bytes of one grid of f64, or of its transform. Saturates at
+    /// `u64::MAX`, so a caller can check the size of a grid before allocating the grid.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let [nx, ny, nu, nv] = self.cells.map(|n| n as u64);
@@ -60,7 +60,8 @@ impl FieldGrid {
         (i as f64 - self.cells[axis] as f64 / 2.0) * self.cell_width(axis)
     }
 
-    /// Returns a ray in units of cells: whole at the centre of a cell, 0 ≤ t < n inside the box.
+    /// Returns the coordinates t of a ray in units of cells: whole numbers at the centres of cells,
+    /// 0 ≤ t < n inside the box.
     #[inline]
     #[must_use]
     pub fn position(&self, ray: &TwoPlane) -> [f64; 4] {
@@ -104,7 +105,7 @@ impl FieldGrid {
 }
 
 /// The assignment of a weighted ray to the cells of a [`FieldGrid`]: by a B-spline in units of a
-/// cell, along each axis (Hockney and Eastwood 1981, section 5-3; the names are theirs).
+/// cell, along each axis (Hockney and Eastwood 1981, section 5-3, which also gives the names).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Assignment {
     /// Nearest grid point, order 1: all weight in the cell of the ray.
@@ -169,8 +170,9 @@ mod tests {
 
     #[test]
     fn cells_reach_the_slices_frequencies() {
-        // The frequency 12/1.4 on a box of 2 · 0.7 is 12 spacings; on 2 · 0.5 it is 8.57, so 9;
-        // 9.9 on 0.8 is 7.92, so 8.
+        // The frequency 12/1.4 is 12 spacings on a box of width 1.4, and 8.57 on a box of width 1,
+        // rounded up to 9. The frequency 9.9 is 7.92 spacings on a box of width 0.8, rounded up to
+        // 8.
         let grid = grid(0.5, [12.0 / 1.4, 9.9]);
         assert_eq!(grid.cells, [24, 18, 16, 16]);
         assert!(grid.nyquist(1) >= 12.0 / 1.4);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Beyond this distance the picture is below 10⁻¹² of its peak.
 const PICTURE: f64 = 3.0;
 
-/// A light in a plane perpendicular to the central ray; it shines along the ray.
+/// A light in a plane perpendicular to the central ray; the light shines along the ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Light {
     /// A flat area light.

@@ -6,14 +6,14 @@ use serde::Serialize;
 
 /// A smooth piece of a quadric around its vertex: plane, sphere, cylinder or paraboloid.
 ///
-/// In coordinates (s, t, h) along X, Y and D of its frame, where D is the normal at the vertex, its
-/// points satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a plane through D is positive
-/// if the surface is convex as seen from D, as in docs/theory.md: a sphere of radius R has k =
-/// (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a paraboloid (k₁, k₂, 0), a
-/// plane zeros.
+/// In coordinates (s, t, h) along X, Y and D of the patch's frame, where D is the normal at the
+/// vertex, the points of the patch satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a
+/// plane through D is positive if the surface is convex as seen from D, as in docs/theory.md. A
+/// sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a
+/// paraboloid (k₁, k₂, 0), a plane zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
-    /// The frame: The frame: O at the vertex, D the normal there, X and Y the principal
+    /// The frame, with O at the vertex, D along the normal there, and X and Y along the principal
     /// directions.
     pub frame: Frame,
     /// Curvatures k₁, k₂ and k₃, per metre.
@@ -67,8 +67,8 @@ impl Patch {
         self.frame.vector_to_world(gradient).normalize()
     }
 
-    /// Returns k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of its frame: zero on the surface,
-    /// positive in front of it.
+    /// Returns k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of the patch's frame: zero on the
+    /// surface, positive in front of the surface.
     #[inline]
     #[must_use]
     pub fn value(&self, point: DVec3) -> f64 {
@@ -77,9 +77,9 @@ impl Patch {
         a * x * x + b * y * y + c * z * z + 2.0 * z
     }
 
-    /// Returns half the gradient of [`value`](Self::value), in its frame: along the normal, on the
-    /// side of D. The last component is positive on the half of the quadric that contains the
-    /// vertex.
+    /// Returns half the gradient of [`value`](Self::value), in the patch's frame: along the normal,
+    /// on the side of D. The last component is positive on the half of the quadric that contains
+    /// the vertex.
     #[inline]
     #[must_use]
     pub fn gradient(&self, point: DVec3) -> DVec3 {
@@ -87,8 +87,8 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
-    /// Returns the parameters of the points start + t · direction, in its frame, that lie on the
-    /// patch, ascending; NaN if there is none.
+    /// Returns the parameters of the points start + t · direction, in the patch's frame, that lie
+    /// on the patch, ascending; NaN if no point does.
     #[inline]
     #[must_use]
     pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {
@@ -99,7 +99,7 @@ impl Patch {
             self.value(start),
         );
         // To avoid cancellation, the other root is computed as the constant term divided by this
-        // one.
+        // root.
         let q = -(b + (b * b - a * c).sqrt().copysign(b));
         let on_patch = |t: f64| {
             let on = t.is_finite() && self.contains(start + t * direction);
@@ -109,7 +109,7 @@ impl Patch {
         [s.min(t), s.max(t)]
     }
 
-    /// Checks whether a point of the quadric, in its frame, belongs to the patch.
+    /// Checks whether a point of the quadric, in the patch's frame, belongs to the patch.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {

@@ -9,8 +9,8 @@ use std::sync::Arc;
 pub enum Pattern {
     /// ½ (1 + m cos(2π f t + p)) along an axis.
     Cosine(Grating),
-    /// Alternating 1 and 0 on squares with edges along both axes; 1 on the first square beyond the
-    /// vertex along both.
+    /// Alternating 1 and 0 on squares with edges along both axes; the first square beyond the
+    /// vertex along both axes has the value 1.
     Checkerboard {
         /// The period: the length of two sides of a square, in metres.
         period: f64,
@@ -22,8 +22,8 @@ pub enum Pattern {
 /// A picture on a surface: bilinear between the centres of pixels, constant from the outermost
 /// centres to the edge, 0 beyond the edge.
 ///
-/// It appears upright and unmirrored to a viewer in front of the surface with X to the right and Y
-/// up: the first pixel is at the top left.
+/// The picture appears upright and unmirrored to a viewer in front of the surface with X to the
+/// right and Y up: the first pixel is at the top left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Picture {
     /// Width along X and height along Y, in metres.

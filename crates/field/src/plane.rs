@@ -21,15 +21,16 @@ pub enum Quantity {
     #[default]
     Radiance,
     /// Differential irradiance: radiance times G = (1 + u² + v²)⁻² = cos θ dω / du dv
-    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)); on a surface, radiance times cos θ cos² φ = cos θ dω / dθ dφ.
+    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)). On a surface, differential
+    /// irradiance is radiance times cos θ cos² φ = cos θ dω / dθ dφ.
     DifferentialIrradiance,
 }
 
 /// The reference for the coordinates of a plane's rays.
 ///
 /// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
-/// point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin
-/// θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
+/// point away from the surface, so the directions of arriving light are reversed. A direction is
+/// cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane orthogonal to the central ray, in two-plane parameterisation.
@@ -62,8 +63,8 @@ pub struct VirtualPlane {
     pub name: String,
     /// Distance from the light along the central ray, in metres, accumulated over all legs.
     pub distance: f64,
-    /// The leg of the path that the plane is on: the number of surfaces the light has left before
-    /// it.
+    /// The leg of the path that the plane is on: the number of surfaces that the light has left
+    /// before the plane.
     pub leg: usize,
     /// The side of the mask or surface at the plane's distance.
     pub side: Side,
@@ -74,8 +75,8 @@ pub struct VirtualPlane {
     /// The angle θ of the central ray on a surface, radians; 0 on an orthogonal plane. The
     /// coordinates of rays are (x, y, θ − longitude, φ).
     pub longitude: f64,
-    /// The frame: The plane's frame: O on the central ray and D along it; on a surface X = T, Y =
-    /// B and D = N.
+    /// The plane's frame, with O on the central ray and D along the central ray; on a surface X =
+    /// T, Y = B and D = N.
     pub frame: Frame,
     /// The window that multiplies the light field.
     pub window: Window,

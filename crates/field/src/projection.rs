@@ -54,8 +54,8 @@ impl ProjectionGrid {
 
 /// The windowed light field integrated over y and v: ∫∫ L W dy dv, as means over cells of (x, u).
 ///
-/// By the Fourier slice theorem it is the primal counterpart of the slice at azimuth 0. The array
-/// has the axes [x, u], both ascending. Unit: W m⁻² sr⁻¹ · m.
+/// By the Fourier slice theorem the integral is the primal counterpart of the slice at azimuth 0.
+/// The array has the axes [x, u], both ascending. Unit: W m⁻² sr⁻¹ · m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projection {
     /// The grid of cells.

@@ -20,7 +20,7 @@ pub struct FluxRay {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLight {
     rays: Vec<FluxRay>,
-    /// For each ray, the flux of all rays up to and including it, W.
+    /// For each ray, the flux of all rays up to and including this ray, W.
     upto: Vec<f64>,
     /// Flux of rays that do not go forward, W; these rays are left out.
     behind: f64,
@@ -87,7 +87,7 @@ impl RayLight {
     pub fn at_share(&self, share: f64) -> &FluxRay {
         let flux = share * self.flux();
         let index = self.upto.partition_point(|upto| *upto <= flux);
-        // The last ray with non-zero flux is used if rounding leads beyond it.
+        // If rounding leads beyond the last ray with non-zero flux, this ray is used.
         let last = || self.upto.partition_point(|upto| *upto < self.flux());
         self.rays.get(index).unwrap_or_else(|| &self.rays[last()])
     }

@@ -107,8 +107,8 @@ pub struct HalfPlane {
     pub axis: usize,
     /// The coordinate of the edge, in metres.
     pub edge: f64,
-    /// Whether the half-plane contains the coordinates above the edge; otherwise it contains those
-    /// below.
+    /// Whether the half-plane contains the coordinates above the edge; otherwise it contains the
+    /// coordinates below the edge.
     pub above: bool,
 }
 

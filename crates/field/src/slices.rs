@@ -114,7 +114,8 @@ impl SliceGrid {
         unfold(self, half, |value| value)
     }
 
-    /// Spreads values averaged over the azimuths in the same way: from [ρ ≥ 0, ν] to [ρ, ν].
+    /// Spreads even values that are averaged over the azimuths, from [ρ ≥ 0, ν] over all
+    /// frequencies [ρ, ν].
     #[must_use]
     pub fn unfold_radial(&self, half: ArrayView2<'_, f64>) -> Array2<f64> {
         let one = Self {

@@ -51,7 +51,7 @@ const COSINE: [f64; TERMS] = {
 };
 
 /// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
-/// evaluated for each photon; this function takes a small part of the time of a library's cosine,
+/// evaluated for each photon. This function takes a small part of the time of a library's cosine,
 /// and its results are bitwise identical on every machine.
 #[inline]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
@@ -266,7 +266,8 @@ mod tests {
                     .iter()
                     .map(|c| c.weight * libm::cos(std::f64::consts::TAU * c.frequency * t))
                     .sum();
-                // The Gaussian's copies and dropped terms stay below 1e-15; the rest is rounding.
+                // The Gaussian's copies and dropped terms stay below 1e-15; the rest of the
+                // tolerance covers rounding errors.
                 assert!((sum - profile.value(t)).abs() < 3e-15, "{profile:?} at {t}");
             }
         }

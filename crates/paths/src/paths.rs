@@ -22,8 +22,8 @@ pub struct Paths {
     pub(crate) hides_sources: bool,
 }
 
-/// Number of the surface from which on a path continues only with a probability, given by its
-/// throughput (Russian roulette).
+/// From the surface with this number on, a path continues only with a probability that its
+/// throughput determines (Russian roulette).
 pub(crate) const ROULETTE: u32 = 6;
 
 /// Maximum path length, which ends paths between mirrors whose throughput is below the rounding

@@ -85,7 +85,7 @@ fn mask(of: Material) -> Material {
 /// The medium behind a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Behind {
-    /// The medium behind the surface is that in front of it.
+    /// The same medium is in front of the surface and behind it.
     Same,
     /// A medium of this index, in which radiance is larger by the square of the index.
     Medium(f64),
@@ -196,8 +196,8 @@ impl View {
         match behind {
             Behind::Same => all,
             Behind::Nothing => &all[1..],
-            // A material with another medium behind it encloses a body. Total reflection traps some
-            // light inside a denser body for ever.
+            // A material with different media on its two sides encloses a body. Total reflection
+            // traps some light inside a denser body for ever.
             Behind::Medium(index) if index > 1.0 => &all[1..3],
             Behind::Medium(_) => &all[..3],
         }
@@ -288,7 +288,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
                 (View::SphereInside, Behind::Medium(index)) => index * index,
                 _ => 1.0,
             };
-            // Each row is tested alone, and then the whole picture.
+            // Each row is tested alone, and then the whole picture is tested.
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");

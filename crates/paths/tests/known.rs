@@ -138,7 +138,7 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // The camera sees a point that the spot lights with the reduced intensity between its two
+    // The camera sees a point that a spot lights with the reduced intensity between the spot's two
     // angles.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
@@ -308,7 +308,7 @@ fn lenses_focus() {
 }
 
 /// Direct light at a point is the light of paths that end at the first surface; a wall beside the
-/// floor adds indirect light, which it leaves out.
+/// floor adds indirect light, which direct light excludes.
 #[test]
 fn direct_light_is_that_of_the_shortest_paths() {
     let turned = DQuat::from_rotation_y(-0.5 * PI);
@@ -343,7 +343,7 @@ fn direct_light_is_that_of_the_shortest_paths() {
         (direct, paths.shade(&seen, 4096, 1, 0).0[0])
     };
     let [(direct, all), (_, shortest)] = [None, Some(1)].map(of);
-    // Nets of 4,096 points are even to some 10⁻³.
+    // Means over nets of 4,096 points have errors of some 10⁻³.
     assert!(
         (direct / shortest - 1.0).abs() < 5e-3,
         "{direct} {shortest}"
@@ -352,7 +352,7 @@ fn direct_light_is_that_of_the_shortest_paths() {
 }
 
 /// An ellipsoid under a distant light: its highest point has the brightness of a plane, and its
-/// silhouette has its own half-axes.
+/// silhouette has the ellipsoid's half-axes.
 #[test]
 fn ellipsoids_have_their_own_normals() {
     let axes = DVec3::new(2.0, 0.5, 1.0);
@@ -384,8 +384,9 @@ fn ellipsoids_have_their_own_normals() {
     }
 }
 
-/// The picture of a spot has the first value where both texture coordinates are below or above ½:
-/// towards X and −Y of the floor, which are X and Y of the spot, or opposite to both.
+/// The picture of a spot has the first value where both texture coordinates are below or above ½.
+/// These places are towards X and −Y of the floor, which are X and Y of the spot, or opposite to
+/// both.
 #[test]
 fn spots_may_have_pictures() {
     let picture = Texture::Checkerboard {

@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 /// Returns Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx,
 /// Ωy, Ωu, Ωv).
 ///
-/// Exact to rounding. Divided by the number of emitted photons, it estimates the transform of L W at Ω.
+/// Exact to rounding. Divided by the number of emitted photons, the sum estimates the transform of L W
+/// at Ω.
 pub fn at<'a>(
     crossings: impl IntoIterator<Item = &'a Crossing>,
     window: impl Fn(&TwoPlane) -> f64,

@@ -223,7 +223,7 @@ mod tests {
             let random = ((1.0_f64 + 0.25 / 12.0).powi(factors) - 1.0) / f64::from(N);
             assert!(power < less * random, "{from}..{to}: {:e}", power / random);
             let mean = errors.iter().sum::<f64>() / NETS as f64;
-            // The limit is four of its standard errors.
+            // The limit is four standard errors of the mean.
             assert!(
                 mean.abs() < 4.0 * (power / NETS as f64).sqrt(),
                 "{from}..{to}"
@@ -231,8 +231,9 @@ mod tests {
         }
     }
 
-    /// These are points 5, 16 and 32, times 64, as `scipy.stats.qmc.Sobol(8, scramble=False)` of
-    /// SciPy 1.17 returns them. SciPy counts in Gray code, where they are points 6, 31 and 63.
+    /// The values are points 5, 16 and 32, times 64, from `scipy.stats.qmc.Sobol(8,
+    /// scramble=False)` of SciPy 1.17. SciPy orders points by Gray code, where these points have
+    /// the numbers 6, 31 and 63.
     #[test]
     fn points_are_those_of_sobol() {
         let point = |[low, high]: [usize; 2]| -> Vec<u32> {

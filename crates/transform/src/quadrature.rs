@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// The rules by their number of points; each is computed once, when it is first used.
+/// The rules by their number of points; each rule is computed once, when it is first used.
 static RULES: [OnceLock<Vec<(f64, f64)>>; 256] = [const { OnceLock::new() }; 256];
 
 /// Returns nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending. The

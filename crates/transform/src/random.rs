@@ -3,7 +3,7 @@
 //!
 //! Philox4x32-10 (Salmon, Moraes, Dror, Shaw 2011, *Parallel random numbers: as easy as 1, 2, 3*, section 4.3).
 
-/// The purpose of a random number; separates the streams of one seed.
+/// The purpose of a random number, which separates the streams of one seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
     /// The random numbers of photon `index`, from emission to its end.

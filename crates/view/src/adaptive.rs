@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// The files that are written in addition to those of a reference picture.
+/// The files that are written in addition to the files of a reference picture.
 pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
 /// Renders and writes a picture; returns a text that states the number of samples and the time.
@@ -80,7 +80,7 @@ pub(crate) fn render(
     ))
 }
 
-/// Advances a progress bar by this many steps.
+/// Advances a progress bar by the given number of steps.
 fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
     let bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(bar) = bar.as_ref() {

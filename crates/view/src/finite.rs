@@ -2,7 +2,7 @@
 
 use etendue_store::Failure;
 
-/// Refuses a picture with a pixel that is not finite in 32 bits. If there is such a pixel, nothing
+/// Refuses a picture with a pixel that is not finite in 32 bits. If a pixel is not finite, nothing
 /// is written.
 pub(crate) fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(), Failure> {
     #[expect(

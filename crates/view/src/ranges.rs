@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 pub const SIDE: RangeInclusive<u64> = 1..=1 << 14;
 /// Largest coordinate, in absolute value, of a camera that is added to a scene.
 pub const MAX_COORDINATE: f64 = 1e9;
-/// Upper limit of the camera's horizontal angle of view, which is above zero, degrees.
+/// Upper limit of the camera's horizontal angle of view, degrees; the angle is above zero.
 pub const MAX_ANGLE: f64 = 180.0;
 /// Radiance of an added sky, W/(m² sr).
 pub const SKY: RangeInclusive<f64> = 0.0..=1e9;

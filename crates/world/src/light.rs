@@ -27,8 +27,9 @@ pub enum Light {
         cutoff: f64,
         /// The falloff of intensity between the two angles.
         falloff: Falloff,
-        /// A factor of the intensity: in the direction (x, y, z) of the light, its value at the
-        /// texture coordinates ½ + ½ (x, y)/(z tan `cutoff`), as in Mitsuba 3.
+        /// A texture that multiplies the intensity: the factor in the direction (x, y, z) of the
+        /// light is the value at the texture coordinates ½ + ½ (x, y)/(z tan `cutoff`), as in
+        /// Mitsuba 3.
         picture: Option<Texture>,
     },
     /// A distant light in a single direction.
@@ -86,7 +87,7 @@ impl Falloff {
 /// Distant radiance by direction.
 #[derive(Clone, Debug)]
 pub struct SkyMap {
-    /// Rotates directions of the map to those of the world.
+    /// Rotates directions of the map to directions of the world.
     pub to_world: DMat3,
     /// W m⁻² sr⁻¹.
     pub radiance: Arc<LatLong>,

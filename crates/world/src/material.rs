@@ -29,7 +29,8 @@ pub enum Material {
         /// n.
         exponent: Texture,
     },
-    /// Two opaque materials, one on each side of the surface; each scatters as on its own front.
+    /// Two opaque materials, one on each side of the surface; each material scatters as on its own
+    /// front.
     TwoSided(Box<[Self; 2]>),
     /// A partly transparent surface: light passes unchanged except for a fraction that hits the
     /// material.
@@ -70,8 +71,8 @@ pub struct Dielectric {
     pub transmittance: Texture,
     /// The roughness; `None` for a smooth interface.
     pub roughness: Option<Roughness>,
-    /// Whether the surface is a thin sheet with such an interface on either side, which light
-    /// passes in a straight line, with all internal reflections summed.
+    /// Whether the surface is a thin sheet with such an interface on either side. Light passes the
+    /// sheet in a straight line, and all internal reflections are summed.
     pub is_thin: bool,
 }
 

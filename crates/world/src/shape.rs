@@ -11,9 +11,9 @@ pub struct Shape {
     pub name: String,
     /// The geometry in local coordinates.
     pub geometry: Geometry,
-    /// The map from local to world coordinates. Normals are mapped by the inverse transpose: a
-    /// mirror keeps the front. Spheres that emit are scaled uniformly; cylinders too, except that
-    /// they may have another factor along Z.
+    /// The map from local to world coordinates. Normals are mapped by the inverse transpose, so a
+    /// reflection keeps the front. Spheres that emit are scaled uniformly; cylinders too, except
+    /// that they may have another factor along Z.
     pub to_world: DAffine3,
     /// Whether the front of the surface is opposite to that of [`Geometry`].
     pub is_flipped: bool,
@@ -45,7 +45,7 @@ pub enum Geometry {
 /// Triangles with shared vertices.
 ///
 /// Corners are counterclockwise as seen from the front. The constructor ensures that corners refer
-/// to vertices, and that normals and texture coordinates, if any, are as many as vertices.
+/// to vertices, and that there are as many normals and texture coordinates, if any, as vertices.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     vertices: Vec<DVec3>,

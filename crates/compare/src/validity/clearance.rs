@@ -20,7 +20,7 @@ pub(super) struct PathPiece {
     pub(super) is_last: bool,
 }
 
-/// An obstacle that a ray may meet on a leg where theory does not expect it.
+/// An obstacle that a ray may meet on a leg where theory does not expect the obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Suspect {
     pub(super) leg: usize,
@@ -59,7 +59,7 @@ impl Suspect {
         (0..legs).flat_map(on_leg).collect()
     }
 
-    /// Returns the description of the obstacle once a ray meets it.
+    /// Returns the description of the obstacle, for a ray that meets the obstacle.
     pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
@@ -79,8 +79,8 @@ impl Suspect {
         }
     }
 
-    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where it
-    /// meets the obstacle unexpectedly, infinite where it cannot meet it.
+    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where the
+    /// piece meets the obstacle unexpectedly, infinite where the piece cannot meet the obstacle.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -107,7 +107,7 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the ray to meet the layer within the piece; it would be wrong only if
+            // Theory expects the ray to meet the layer within the piece, and would be wrong only if
             // the piece ended earlier.
             (to - t).max(0.0)
         };
@@ -117,8 +117,8 @@ impl Suspect {
 
 /// On a leg, all shapes of a layer are considered if there are at most this many.
 const MAX_SHAPES: usize = 64;
-/// The number of shapes considered if a layer has more: each costs thousands of rays traced
-/// through the scene.
+/// The number of shapes that are considered if a layer has more shapes: each shape costs thousands
+/// of rays.
 const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
 const CROSSINGS: usize = 300;
@@ -185,15 +185,15 @@ fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
     libm::hypot(x, y)
 }
 
-/// Returns how far a point in the plane of a half-plane lies outside it, metres.
+/// Returns how far a point in the plane of a half-plane lies outside the half-plane, metres.
 fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     let coordinate = if half.axis == 0 { at.x } else { at.y };
     let off = half.edge - coordinate;
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// Returns how far a piece of a path passes from a surface of the path where theory does not expect
-/// it.
+/// Returns the distance at which a piece of a path passes a surface of the path that theory does
+/// not expect there.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
@@ -202,7 +202,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
         // Theory expects the ray to end at this surface.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that returns to the surface it has left is lost, wherever the plane is.
+        // Light that returns to the surface it has left is lost, for every position of the plane.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };
@@ -237,7 +237,7 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
-        // This excludes the other half of a sphere or a cylinder.
+        // The distance `below` excludes the other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
         libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };

@@ -83,8 +83,8 @@ impl Follower<'_> {
         })
     }
 
-    /// Measures this difference for at most a given number of rays. Returns `None` if no ray
-    /// brings light into the window.
+    /// Measures the difference between smooth meshes and their patches for at most a given number
+    /// of rays. Returns `None` if no ray brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,
@@ -127,8 +127,9 @@ impl Follower<'_> {
         })
     }
 
-    /// Returns how much the slices change when rays arrive by triangles: the mean of the changes
-    /// from two halves of the rays, plus its standard error, which is half of their difference.
+    /// Returns how much the slices change when rays arrive by triangles. The result is the mean of
+    /// the changes from two halves of the rays, plus its standard error, which is half of their
+    /// difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();
@@ -151,8 +152,8 @@ impl Follower<'_> {
         norm(&a + &b) + norm(a - b)
     }
 
-    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh
-    /// or meets one again.
+    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if the ray misses a
+    /// mesh or meets a mesh again.
     fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;

@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// Returns the first `most` rays that carry light into the window, without those that are
-/// relatively dark. Only light inside the window determines which rays count as dark, because the
-/// strongest part of the sky may lie outside it.
+/// Returns the first `most` rays that carry light into the window, without relatively dark rays.
+/// Only light inside the window determines which rays count as dark, because the strongest part of
+/// the sky may lie outside it.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -107,19 +107,19 @@ impl CheckRay {
         };
         let curved = DVec3::from(patch.curvature) * direction;
         let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-        // This avoids cancellation: the other root is the constant term divided by q.
+        // To avoid cancellation, the other root is computed as the constant term divided by q.
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
-        // The extremum is at −b/a; on a line without one there is a single root.
+        // The extremum is at −b/a; a line without an extremum has a single root.
         let first = |t: &&f64| a == 0.0 || (**t < -b / a) == (from < -b / a);
         let found = roots.iter().filter(|t| t.is_finite()).find(first);
         let found = found.copied().filter(|t| *t > 0.0);
         found.filter(|t| patch.contains(point + *t * direction))
     }
 
-    /// Returns the distance at which the ray meets a surface from the side of a normal, whatever it
-    /// meets before.
+    /// Returns the distance at which the ray meets a surface from the side of a normal, even if the
+    /// ray meets another object before.
     pub(super) fn front_hit(&self, patch: &Patch, side: DVec3) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let side = patch.frame.d.dot(side).signum();
@@ -149,7 +149,7 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
 /// The smallest number that [`centred`] draws densely.
 const CENTRE: f64 = 1e-3;
 
-/// Returns a number in [−1, 1]: every other one is uniform, the rest are distributed
+/// Returns a number in [−1, 1]: every other number is uniform, and the rest are distributed
 /// logarithmically around zero, down to a thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;
@@ -171,7 +171,8 @@ pub(super) fn density(pair: [f64; 2]) -> f64 {
     0.5 * (0.25 + dense[0] * dense[1])
 }
 
-/// Returns a ray of the light through a point, and its strength; `None` where there is none.
+/// Returns a ray of the light through a point, and its strength; `None` where the light has no such
+/// ray.
 pub(super) fn ray_to(
     light: &Light,
     point: DVec3,
@@ -191,7 +192,8 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // Only the light far from a lobe's centre may travel forward.
+                // Rays of a lobe are also drawn far from its centre, because only that light may
+                // travel forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);
@@ -267,8 +269,8 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     }
 }
 
-/// Returns a point of a surface, drawn over all of it but mostly near where the central ray hits
-/// it.
+/// Returns a point of a surface, drawn from the whole surface but mostly near the point that the
+/// central ray hits.
 pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
     let center = patch.frame.to_local(hit);
     let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));

@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Describes what light for a plane meets before or behind a surface with a BRDF although theory
-/// ignores it. Also returns the blockers that theory includes.
+/// Describes the objects that light for a plane meets before or behind a surface with a BRDF and
+/// that theory ignores. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -101,7 +101,7 @@ struct LightPath {
 }
 
 impl CheckedScatterer<'_> {
-    /// Returns a path from the light to the window; `None` if it brings no light.
+    /// Returns a path from the light to the window; `None` if the path brings no light.
     fn follow(&self, draw: &RayDraw) -> Option<LightPath> {
         let leaving = self.leaving(draw)?;
         let CheckRay { point, direction } = leaving;
@@ -123,8 +123,8 @@ impl CheckedScatterer<'_> {
         })
     }
 
-    /// Returns a ray that leaves the surface. It starts at a point of the surface or, for every
-    /// other draw of a plane across the leg, is traced back from the window.
+    /// Returns a ray that leaves the surface. The ray starts at a point of the surface. For every
+    /// other draw of a plane across the leg, the ray is traced back from the window.
     fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);
@@ -148,8 +148,8 @@ impl CheckedScatterer<'_> {
     }
 
     /// Returns the occluder between a point of the surface and the plane. The surface itself counts
-    /// at any distance, because photons that would meet it again are lost, whatever stops them
-    /// before.
+    /// at any distance, because a photon that would meet the surface again is lost, even if
+    /// something stops the photon before.
     fn beyond(&self, ray: &CheckRay) -> Option<Meets> {
         let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);

@@ -2,9 +2,9 @@
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
 //! object that occludes little of the light may lie between these rays, at the edge or in the
-//! corner of the window. So for each such object, the rays that pass nearest are moved until they
-//! meet the object or come no nearer. The distance falls along a smooth path, so even the smallest
-//! object is found.
+//! corner of the window. For each object that theory ignores, the rays that pass nearest are moved
+//! until they meet the object or come no nearer. The distance falls along a smooth path, so even
+//! the smallest object is found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -12,18 +12,18 @@ use super::surroundings::{Meets, Surroundings};
 
 /// Number of rays with light in the window that are followed for a plane.
 const LIT_RAYS: usize = 3000;
-/// Number of rays tried to find those with light in the window.
+/// Number of rays that are tried to find rays with light in the window.
 const TRIED_RAYS: u32 = 60_000;
 /// Number of rays nearest to an object that are moved towards it.
 const STARTS: usize = 4;
 /// Number of moves of each ray.
 const MOVES: u32 = 300;
-/// Length of the first moves: the spacing of 3000 rays, which fill a window of four axes with
-/// seven on each.
+/// Length of the first moves: the spacing of 3000 rays, which fill a window of four axes with seven
+/// rays along each axis.
 const FIRST_MOVE: f64 = 0.15;
-/// Factor by which a move that comes nearer lengthens the next. A move that comes no nearer
-/// shortens the next. The two factors keep the length constant if one move in twelve comes nearer,
-/// because most moves fail in a corner, where most axes are at their ends.
+/// Factor by which a move that comes nearer lengthens the next move. A move that comes no nearer
+/// shortens the next move. The two factors keep the length constant if one move in twelve comes
+/// nearer, because most moves fail in a corner, where most axes are at their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
 /// An object is out of reach if its distance from the nearest ray exceeds this share of the range
@@ -36,12 +36,12 @@ const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
-    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings no light.
+    /// Returns the amount of light that a ray brings into the window, and the first thing on its
+    /// way that theory ignores, if any. Returns `None` if the ray brings no light.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
     /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
-    /// path; `None` if it brings no light.
+    /// path; `None` if the ray brings no light.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
     /// Returns the surroundings of the path.
@@ -87,7 +87,7 @@ pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
 struct Search<'a, R> {
     rays: &'a R,
     suspect: Suspect,
-    /// Light weaker than this does not count.
+    /// Light weaker than this limit does not count.
     faint: f64,
 }
 
@@ -97,8 +97,8 @@ impl<R: Followed> Search<'_, R> {
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
-    /// Returns the rays that pass the object nearest, with their distances; empty if it is out of
-    /// reach.
+    /// Returns the rays that pass the object nearest, with their distances; empty if the object is
+    /// out of reach.
     fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
         let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();

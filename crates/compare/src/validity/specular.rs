@@ -12,9 +12,9 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// Describes what light for a plane meets between or at the surfaces of a system although theory
-/// ignores it. Also returns the blockers that theory includes. `off` is the displacement by meshes,
-/// see [`off_patches`].
+/// Describes the objects that light for a plane meets between or at the surfaces of a system and
+/// that theory ignores. Also returns the blockers that theory includes. `off` is the displacement
+/// by meshes, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -62,7 +62,7 @@ pub(super) struct Follower<'a> {
     around: &'a Surroundings<'a>,
 }
 
-/// The rays of a follower, drawn in one of two ways.
+/// The rays of a follower, drawn either at the light or in the window.
 struct FollowedRays<'a>(
     &'a Follower<'a>,
     fn(&Follower<'a>, &RayDraw) -> Option<(CheckRay, f64)>,
@@ -86,10 +86,10 @@ impl Followed for FollowedRays<'_> {
     }
 }
 
-/// A ray at the plane, and the share of it that masks on the first leg transmit.
+/// A ray at the plane, and the share of its light that masks on the first leg transmit.
 pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
-/// Distances closer than this share count as equal.
+/// Distances whose relative difference is below this limit count as equal.
 const SAME_DISTANCE: f64 = 1e-6;
 
 impl<'a> Follower<'a> {
@@ -110,8 +110,8 @@ impl<'a> Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings no light.
+    /// Returns the amount of light that a ray brings into the window, and the first thing on its
+    /// way that theory ignores, if any. Returns `None` if the ray brings no light.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -147,10 +147,10 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// Returns a ray that theory predicts to arrive in the window. Such rays are needed because few
-    /// rays drawn at the light may reach a narrow window, or the part of a wide window that is
-    /// close to the light. Light without extent is aimed at places in the window if no surface
-    /// deflects it first.
+    /// Returns a ray that theory predicts to arrive in the window. Rays drawn at the light may
+    /// rarely reach a narrow window, or the part of a wide window that is close to the light, so
+    /// rays are also drawn in the window. Light without extent is aimed at places in the window if
+    /// no surface deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -184,7 +184,7 @@ impl Follower<'_> {
     }
 
     /// Returns the arrival of a ray as theory predicts it; `tell` receives the straight pieces of
-    /// its path in order.
+    /// the ray's path in order.
     fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
         let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
@@ -307,8 +307,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would return to the surface it has left is lost, wherever the plane is and
-        // whatever stops the photon earlier.
+        // A photon that would return to the surface it has left is lost for every position of the
+        // plane, even if something stops the photon earlier.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))

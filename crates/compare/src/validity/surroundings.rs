@@ -39,8 +39,8 @@ impl Meets {
 /// Returns descriptions of what light meets and theory ignores, each once. Also returns the
 /// blockers that light meets at places where the central ray does not; theory then includes them.
 ///
-/// A ray reports only the first thing that it meets. So blockers are included in the theory and
-/// rays are traced again, until they meet no further blockers.
+/// A ray reports only the first thing that it meets. Therefore these blockers are included in the
+/// theory and rays are traced again, until the rays meet no further blockers.
 pub(super) fn unforeseen<'a>(
     scene: &Scene,
     mut around: Surroundings<'a>,
@@ -88,7 +88,7 @@ pub(super) struct Surroundings<'a> {
 pub(crate) struct TakenLayer {
     /// Index among the layers of the scene.
     pub(crate) index: usize,
-    /// The first leg on which light meets them.
+    /// The first leg on which light meets the blockers.
     pub(crate) from: usize,
 }
 
@@ -104,7 +104,7 @@ const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
     /// Collects the surroundings. Meshes that the plane's light has left are excluded: theory
-    /// represents each by the surface that osculates it where the central ray hits.
+    /// represents each mesh by the surface that osculates the mesh where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
@@ -163,7 +163,8 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// Returns the distance at which a ray meets an object beyond `from`, whatever it meets first.
+    /// Returns the distance at which a ray meets an object beyond `from`, even if the ray meets
+    /// another object first.
     pub(super) fn hit(&self, ray: &CheckRay, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
         let hits = forms.flat_map(|(_, form)| form.hits(ray));
@@ -245,7 +246,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// Returns the distances at which a ray meets the form; NaN for none.
+    /// Returns the distances at which a ray meets the form; NaN if the ray misses the form.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {

@@ -1,5 +1,5 @@
-//! Emission of photons from lights: half of them follow the natural distribution, and half of them
-//! are aimed.
+//! Emission of photons from lights: half of the photons follow the natural distribution, and half
+//! of them are aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
@@ -13,7 +13,7 @@ pub(crate) struct Emitted {
     pub(crate) ray: Ray,
     /// The photon's flux, W, times the number of photons.
     pub(crate) flux: f64,
-    /// The surface point that it was emitted from.
+    /// The surface point from which the photon was emitted.
     pub(crate) flash: Option<EmissionPoint>,
 }
 
@@ -42,7 +42,7 @@ struct Draw<'a> {
 }
 
 impl LightSampler {
-    /// Emits a photon from seven numbers; `None` for one without flux.
+    /// Emits a photon from seven numbers; `None` for a photon without flux.
     pub(crate) fn emit(
         &self,
         geometry: &SceneGeometry,

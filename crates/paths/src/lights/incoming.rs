@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 pub(crate) struct Incoming {
     /// The direction towards the light, of unit length.
     pub(crate) toward: DVec3,
-    /// The distance along the direction that must be free of occluders; for distant light, it is
-    /// beyond all surfaces.
+    /// The distance along the direction that must be free of occluders; for distant light, this
+    /// distance is beyond all surfaces.
     pub(crate) distance: f64,
     /// Radiance divided by the density or, without a density, the irradiance of a surface
     /// perpendicular to `toward`.

@@ -79,8 +79,8 @@ impl LightSampler {
         })
     }
 
-    /// Picks a light by a random number, each with equal probability; returns it with a random
-    /// number in (0, 1) that remains for further use.
+    /// Picks a light by a random number, each light with equal probability. Returns the light, and
+    /// a random number in (0, 1) for further use.
     fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
         let place = r * self.lights.len() as f64;
         let light = self.lights.get(whole(place))?;
@@ -212,7 +212,7 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// Returns the intensity of a spot along a direction in its own coordinates, W sr⁻¹.
+    /// Returns the intensity of a spot along a direction in the spot's own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {
             intensity,

@@ -3,7 +3,7 @@
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
 //! are BSDFs for radiance, times |cos| of wi. Radiance is divided by the squared index of its
-//! medium, so it does not change where light is refracted.
+//! medium, so the quotient does not change where light is refracted.
 
 mod place;
 mod reflects;
@@ -219,7 +219,7 @@ impl Scatter {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
-                // The isotropic roughness whose circle has the area of the ellipse.
+                // The isotropic roughness is the geometric mean of the roughness along both axes.
                 let roughness = (a * b).sqrt();
                 Reflects::Lobe(of.distribution.lobe(roughness))
             })
@@ -295,7 +295,7 @@ impl Scatter {
     }
 }
 
-/// A function that flips directions, so that a chosen side is in front.
+/// A function that flips directions to put a chosen side in front.
 type Turn = fn(DVec3) -> DVec3;
 
 /// Returns the flip that puts `wo` in front.

@@ -91,7 +91,7 @@ pub(crate) struct Coated {
 
 impl Coated {
     pub(super) fn new(plastic: &world::Plastic) -> Self {
-        // The table of the coat needs only one roughness, because it is constant.
+        // The table of the coat needs only one roughness, because the roughness is constant.
         let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
         Self {
             coat: Coat::new(plastic.index, facets),

@@ -84,7 +84,7 @@ fn materials() -> Vec<(&'static str, Material)> {
                 of: Box::new([diffuse(), glass(1.5, rough(Ggx, [0.4, 0.4]))]),
             },
         ),
-        // Directions that the black material samples carry light of the other material.
+        // Directions that the black material samples carry light that the other material scatters.
         (
             "half black",
             Material::Blend {

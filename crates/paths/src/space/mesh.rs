@@ -60,7 +60,7 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Of hits at the same distance, the one with the lower index counts, so the result
+                // Of hits at the same distance, the hit with the lowest index counts, so the result
                 // does not depend on the traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-/// A ray prepared for triangle tests. The axes are permuted and scaled so that its direction is (x,
-/// y, 1).
+/// A ray prepared for triangle tests. The axes are permuted and scaled to give the ray the
+/// direction (x, y, 1).
 pub(super) struct TriangleRay {
     start: DVec3,
     /// The axis along which the direction is largest; it becomes the last axis.
@@ -48,7 +48,7 @@ impl TriangleRay {
     }
 }
 
-/// Permutes the axes so that the given one is last.
+/// Permutes the axes to put the given axis last.
 #[inline]
 fn turned(v: DVec3, last: usize) -> DVec3 {
     match last {

@@ -22,8 +22,8 @@ const BETA: f64 = 2.35 * WIDTH as f64;
 const TERMS: usize = 4;
 
 /// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, where z is
-/// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, SIAM J. Sci.
-/// Comput. 41(5)).
+/// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, *SIAM Journal on
+/// Scientific Computing* 41(5)).
 ///
 /// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
 /// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
@@ -92,8 +92,8 @@ impl Kernel {
     /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
     /// cycles per cell.
     ///
-    /// It is the transform of the polynomials that are used for spreading, by a Gauss–Legendre rule
-    /// on each cell, exact apart from rounding errors for |ξ| ≤ 1/2.
+    /// The result is the transform of the polynomials that are used for spreading. A Gauss–Legendre
+    /// rule on each cell computes it, exactly for |ξ| ≤ 1/2 apart from rounding errors.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {

@@ -1,7 +1,8 @@
 //! The sum of weighted rays on all slices, by a non-uniform fast Fourier transform.
 //!
-//! It sums both photons and the nodes of theory's nets. The tests of both compare it with the plain
-//! sum, so an error in the transform is noticed although both share it.
+//! The transform sums both the photons of the tracer and the nodes of theory's nets. The tests of
+//! tracer and theory compare the transform with the plain sum, so an error is noticed although both
+//! share the transform.
 
 mod block;
 mod fine_grid;
@@ -22,9 +23,9 @@ use std::fmt;
 /// S_φ(ρ, ν) = Σ w e^(−2πi (ρ p + ν q)),  p = x cos φ + y sin φ,  q = u cos φ + v sin φ,
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
-/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)). It spreads each ray over 8 × 8 cells of a grid
-/// 2.5 times as fine as the frequencies require, transforms the grid, and divides by the transform
-/// of the spreading kernel.
+/// Klinteberg 2019, *SIAM Journal on Scientific Computing* 41(5)). The plan spreads each ray over 8
+/// × 8 cells of a grid 2.5 times as fine as the frequencies require, transforms the grid, and
+/// divides by the transform of the spreading kernel.
 ///
 /// The error is below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
 /// scattered rays errors average out. The caller applies window and radiance weight: `w` is used
@@ -129,7 +130,7 @@ fn is_smooth(mut n: usize) -> bool {
 
 /// A partial sum of weighted rays, to be turned into slices: see [`SliceTransform`].
 ///
-/// It holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
+/// The sum holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'plan> {
     plan: &'plan SliceTransform,

@@ -22,7 +22,7 @@ pub(crate) struct Placement {
 
 impl Placement {
     /// Returns the rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3,
-    /// j − 3] of the period: a ray reaches eight cells, and cells outside the period are wrapped
+    /// j − 3] of the period. A ray reaches eight cells, and cells outside the period are wrapped
     /// once, after all spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
@@ -90,11 +90,11 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
 /// Returns the cell of a point among the `count` of a period, and the fraction of a cell by which
 /// the point lies beyond it.
 ///
-/// A point outside the period is moved into it by whole periods. This is exact: at frequencies m ·
-/// spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
+/// A point outside the period is moved into it by whole periods. This move is exact: at frequencies
+/// m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
 #[inline(always)]
 fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// The number 2⁵². Adding it to a smaller whole number leaves that number in the low bits,
+    /// The number 2⁵². If 2⁵² is added to a smaller whole number, the low bits hold that number,
     /// which is faster than a checked cast.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let periods = a * along[0] + b * along[1];
