@@ -25,7 +25,7 @@ struct CalibratedPlane {
 /// batches.
 #[derive(Clone, Copy)]
 enum DependenceFault {
-    /// The second half of the batches has the photons of the first.
+    /// The second half of the batches contains the same photons as the first half.
     SharedPhotons,
     /// The last batch is a copy of the first batch, which is thus counted twice.
     CountedTwice,

@@ -576,8 +576,8 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// No light has an angle beyond a right angle, although light exists at the same angle minus a
-/// full turn.
+/// Tests that no light is found at angles beyond a right angle, although light exists at these
+/// angles minus a full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");

@@ -4,8 +4,8 @@
 //! from specular surfaces ([`rays`]) or from a surface with a BRDF ([`scattering`]).
 //!
 //! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
-//! planes, and the cosine and diffuse reflection of a receiver. The output is the values that a
-//! measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
+//! planes, and the cosine and diffuse reflection of a receiver. The output contains the values that
+//! a measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
 //! their error ([`quadrature_error`]), their [`derivative`] with respect to any parameter of the
 //! chain, and the [`projection`] on (x, u).
 //!
@@ -23,8 +23,8 @@
 //! same paths. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in
 //! 2D.
 //!
-//! This crate has no access to scenes, photons or measured spectra, so agreement between a
-//! prediction and a measurement is evidence for both.
+//! This crate has no access to scenes, photons or measured spectra, so the agreement of a
+//! prediction with a measurement is evidence that both are correct.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

@@ -63,8 +63,8 @@ pub(crate) fn second() -> io::Result<ReportSection> {
 
 fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
-    // Pictures draw random numbers as the largest case number, because the case numbers of points
-    // count up from 0.
+    // The random numbers of pictures belong to the largest case number, because the case numbers of
+    // points count up from 0.
     let mut dice = Dice::new(SEED, u64::MAX);
     let picture = files::write_picture(folder.path(), &mut dice)?;
     let map = files::write_map(&folder.path().join(sky::FILE), &mut dice)?;

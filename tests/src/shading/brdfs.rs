@@ -73,7 +73,8 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> Separa
     }
 }
 
-/// cos θ (1 + 0.6 sin θ), which is not even. The factor sin θ shifts a spectrum by ± 1/2π.
+/// Returns cos θ (1 + 0.6 sin θ), which is not an even function. The factor sin θ shifts a spectrum
+/// by ± 1/2π.
 pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }

@@ -42,7 +42,8 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
         .collect()
 }
 
-/// Returns a scene in whose file each of these texts was replaced by another, in this order.
+/// Returns a scene of the repository after the given replacements of text in its file, made in the
+/// given order.
 ///
 /// # Panics
 /// If there is no such scene, a text is not in it, or it becomes invalid.

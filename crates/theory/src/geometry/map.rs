@@ -16,7 +16,7 @@ pub struct AffineMap<const N: usize> {
     pub offset: [f64; N],
 }
 
-/// Step of the finite differences that estimate a map, metres and radians.
+/// Step of the finite differences that estimate a map, in metres and radians.
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {

@@ -56,7 +56,7 @@ impl AffineMap<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions also flips the latitude, which section 5.2 of Durand et al. 2005 does
-    /// not mention. In 2D the step is Eq. 9 of that paper.
+    /// not mention. In 2D the step is Eq. 9 of Durand et al. 2005.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())

@@ -109,7 +109,7 @@ impl Predicted {
     }
 }
 
-/// A net in progress.
+/// A net whose nodes are not yet all summed.
 struct Running {
     net: NetPoints,
     /// The sums of each field so far.
@@ -299,7 +299,7 @@ impl Running {
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
-            // There may be no field if no derivative was requested.
+            // The list of fields is empty if no derivative was requested.
             let RayNode { z, weight } = nodes.first().copied().unwrap_or(RayNode::DARK);
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
@@ -370,7 +370,7 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
     }
 }
 
-/// Sums over rays z of weight times 1, z and z zᵀ.
+/// Sums, over rays z, of the weight times 1, times z, and times z zᵀ.
 #[derive(Clone, Copy, Debug, Default)]
 struct WeightedMoments {
     total: f64,

@@ -26,8 +26,8 @@ use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// The smallest |k·d|, where d is the longest possible edge along a direction, at which sums over
-/// corners are used. Two such edges in one quotient amplify rounding errors by 1/CANCELLATION² =
-/// 1000.
+/// corners are used. A quotient for two directions at this limit amplifies rounding errors by
+/// 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves that are processed together; it is small enough for the quotients of these
 /// waves to fit into the cache.

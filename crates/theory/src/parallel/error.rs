@@ -104,8 +104,8 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The error of the coarse rule is much larger than that of the finer rule, so the estimate
-        // exceeds the error by the factor 1/(1 − 0.8⁴), which is meant for a rule of order 4.
+        // The error of the coarse rule is much larger than that of the finer rule. So the estimate
+        // exceeds the error by the factor 1/(1 − 0.8⁴), which is correct for a rule of order 4.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

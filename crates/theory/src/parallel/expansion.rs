@@ -53,7 +53,8 @@ pub(crate) struct PolygonTerm {
 /// Weights and indices of the summands of a weighted sum.
 pub(crate) type Sum = Vec<(f64, usize)>;
 
-/// Terms that are summed along y first, as Σ 1_P(x, u) times a sum of sums of polygons of (y, v).
+/// Terms that are summed along y first: the indicator 1_P(x, u) of each polygon P is multiplied by
+/// a weighted sum of `sums`.
 #[derive(Debug)]
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).

@@ -56,9 +56,9 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
     }
 
-    /// Returns the radiance along the ray with coordinates z at the plane that is due to a part of
-    /// the light, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is
-    /// the mirror direction about the normal (docs/theory.md (41)).
+    /// Returns the radiance that a part of the light causes along the ray with coordinates z at the
+    /// plane, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the
+    /// mirror direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);

@@ -24,7 +24,7 @@
 //! use etendue_field::Complex;
 //! use etendue_theory::shading::{Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm};
 //!
-//! // A glossy cylinder, R = 2 m, in light that is a Gaussian of 0.1 m and 0.1 rad.
+//! // A glossy cylinder of radius 2 m, in light with Gaussian profiles of 0.1 m and 0.1 rad.
 //! let gloss = SeparableTerm { before: Factor::Cosine, lobe: Some(PlanarLobe::Phong { exponent: 50.0 }), after: Factor::One, weight: None };
 //! let reflection = PlanarReflection {
 //!     incidence: 0.4,

@@ -136,7 +136,7 @@ fn rays_are_lost() {
         assert_eq!(system.follow([0.0; 4]).is_some(), passes);
         assert_eq!(system.hits().is_some(), passes);
     }
-    // This surface is behind the light.
+    // The added surface is behind the light.
     let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
     let behind = self::system(
         beam([0.1, 0.1]),
