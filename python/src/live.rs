@@ -52,7 +52,7 @@ impl Live {
         self.works.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Unwinds if the work is to stop. The unwinding is not a panic, and prints nothing.
+    /// Unwinds the thread if the work must stop. The unwinding is not a panic, and prints nothing.
     fn check(&self) {
         if self.is_stopped.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));

@@ -16,8 +16,8 @@ pub struct Predicted {
     /// change under finer quadrature rules. The error is `None` for a closed form, and infinite if
     /// no ray arrives.
     pub error: Option<f64>,
-    /// ∫ L W of the light without occluders, which is the scale for errors of a closed form; zero
-    /// for nets.
+    /// The integral ∫ L W of the light without occluders, which is the scale for errors of a closed
+    /// form; zero for nets.
     pub unblocked: f64,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,

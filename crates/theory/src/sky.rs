@@ -84,7 +84,7 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Returns the density of a direction per steradian, given the radiance there.
+    /// Returns the density of a direction per steradian, given the radiance from this direction.
     pub(crate) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
             Self::Lobes(lobes) => radiance / lobes.total,

@@ -102,7 +102,7 @@ pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
         .collect()
 }
 
-/// Σ |S|² on the line ν = 0 of slice 0, over the selected frequencies.
+/// Returns the sum of |S|² on the line ν = 0 of slice 0, over the selected frequencies.
 pub(super) fn power(slices: &Slices, wanted: impl Fn(f64) -> bool) -> f64 {
     let along = line(slices, 0).into_iter();
     let inside = along.filter(|(rho, _)| wanted(*rho));

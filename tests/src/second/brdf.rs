@@ -1,5 +1,5 @@
-//! BRDFs computed from their definitions: Fresnel's equations with complex indices, microfacets
-//! described by their slopes, and Smith's masking as an integral.
+//! BRDFs computed from their definitions, which are Fresnel's equations with complex indices,
+//! microfacets described by their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};

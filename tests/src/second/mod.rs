@@ -32,8 +32,8 @@ use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
-/// The seed of all points. This seed was fixed in advance, and not chosen by the results that it
-/// gives.
+/// The seed of all random points. This seed was fixed in advance, and not chosen by the results
+/// that it gives.
 const SEED: u64 = 1;
 
 /// Compares every shared function with its second implementation.

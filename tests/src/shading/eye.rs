@@ -80,9 +80,9 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// Returns three bandwidths at the eye: B, B', and the maximum bandwidth if the environment
-    /// has frequencies up to Ω_e, and the blocker has all frequencies that keep the summed
-    /// frequency on the surface below Ω_ρ.
+    /// Returns three bandwidths at the eye, which are B, B' and a maximum bandwidth. For the
+    /// maximum, the environment has frequencies up to Ω_e, and the blocker has all frequencies that
+    /// keep the summed frequency on the surface below Ω_ρ.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));

@@ -43,8 +43,8 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The
-    /// offset does not affect the power spectrum. Returns `None` if A has no inverse.
+    /// Returns the covariance after a change z' = A z + t of ray coordinates, which is A⁻ᵀ C A⁻¹.
+    /// The offset does not affect the power spectrum. Returns `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
@@ -55,7 +55,7 @@ impl SpectralCovariance {
     }
 
     /// Returns the covariance after a product with a factor whose power spectrum has the covariance
-    /// W: C + W.
+    /// W, which is C + W.
     #[must_use]
     pub fn multiplied(&self, factor: &Matrix<4>) -> Self {
         Self {
@@ -64,9 +64,9 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a convolution with a Gaussian of covariance s in the light
-    /// field, in squares of metres and radians: C⁻¹ increases by 8π² s. If the covariance s is
-    /// zero, as for a mirror, C does not change.
+    /// Returns the covariance after a convolution of the light field with a Gaussian of covariance
+    /// s, in squares of metres and radians. The convolution increases C⁻¹ by 8π² s. If the
+    /// covariance s is zero, as for a mirror, C does not change.
     #[must_use]
     pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
         let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));

@@ -121,7 +121,7 @@ impl<const N: usize> AffineMap<N> {
         matrix::determinant(&self.matrix)
     }
 
-    /// Returns the image of a ray: A z + t.
+    /// Returns the image A z + t of a ray z.
     #[must_use]
     pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
         plus(&times(&self.matrix, &ray), &self.offset)

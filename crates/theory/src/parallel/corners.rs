@@ -1,15 +1,15 @@
 //! The transforms of many polygons along a row of frequencies, computed from sums over corners
 //! instead of one exponential per polygon and frequency (docs/theory.md, section 3).
 //!
-//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p,
-//! at which edges of directions d and e meet:
+//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p
+//! of the polygon. With the directions d and e of the edges that meet at p, the sum is
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends only on the pair (d, e) of directions, and a chain has few such pairs. The
-//! exponential is the product of one exponential in the position and one in the slope. Each
-//! exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c± at k ± s, a
-//! corner needs
+//! The quotient depends only on the pair (d, e) of directions, and a chain has few pairs of
+//! directions. The exponential is the product of one exponential in the position and one in the
+//! slope. Each exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c±
+//! at k ± s, a corner needs
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!

@@ -8,8 +8,8 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// The lowest order at which the quadrature for discs converges.
 const ORDER: i32 = 4;
 
-/// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
-/// Returns `None` if the prediction is a closed form.
+/// Estimates the relative error ‖error‖/‖F‖, over the grid, of `slices`, the prediction of the
+/// given chain. Returns `None` if the prediction is a closed form.
 ///
 /// * Discs: the difference between `slices` and a prediction that splits discs with a quarter more
 ///   nodes, divided by 1 − 0.8⁴. If masks or windows have corners within a disc the error falls as

@@ -75,7 +75,7 @@ pub(crate) struct Expansion {
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
     /// The expansion of the window, the gratings and the factor of slope: a sum of products of
-    /// waves of both sections. A factor of slope has several such products.
+    /// waves of both sections. A factor of slope has several products of waves.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -315,7 +315,8 @@ impl Expansion {
         SectionColumns { sums, beside }
     }
 
-    /// Removes the polygons that no term uses, and sorts the others in the order of the terms.
+    /// Removes the polygons that no term uses, and sorts the other polygons in the order of the
+    /// terms.
     fn drop_unused(&mut self) {
         for (axis, section) in self.sections.iter_mut().enumerate() {
             let all = std::mem::take(&mut section.polygons);

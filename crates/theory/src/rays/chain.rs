@@ -22,7 +22,7 @@ pub struct AffineChain {
     pub steps: Vec<String>,
     /// Distances from the last surface at which rays that left the light parallel to each other
     /// meet, in metres and in ascending order. The distance of a virtual focus behind the surface
-    /// is negative. At most two such distances exist. If the plane of incidence is a principal
+    /// is negative. The list has at most two distances. If the plane of incidence is a principal
     /// plane, one distance is for rays in this plane and the other for rays across it.
     pub foci: Vec<f64>,
 }

@@ -124,10 +124,10 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// Returns the sampler of a strategy: `center` is the point where the central ray lands, and
-    /// `jacobian` is the derivative of the landing point with respect to the ray. Returns `None`
-    /// if `jacobian` does not determine the ray for a target. If no plane is given, all rays are
-    /// assumed to land at their targets.
+    /// Returns the sampler of a strategy, or `None` if `jacobian` does not determine the ray for a
+    /// target. `center` is the point where the central ray lands, and `jacobian` is the derivative
+    /// of the landing point with respect to the ray. If no plane is given, all rays are assumed to
+    /// land at their targets.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"

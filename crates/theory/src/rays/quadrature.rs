@@ -4,7 +4,7 @@
 //! Rays of a region of the emission land in the window. If no light reaches the border of this
 //! region, the only error is aliasing, which vanishes if the rule has more nodes than the
 //! integrand has cycles. If an edge of a window or of a surface cuts light, the rule misplaces
-//! this edge by up to half the spacing of nodes. Light with such an edge is summed over nets,
+//! this edge by up to half the spacing of nodes. Light that an edge cuts is summed over nets,
 //! because two rules may agree on the light by chance.
 
 use super::region::{Finder, RayField};

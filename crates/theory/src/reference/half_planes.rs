@@ -34,7 +34,7 @@ fn phases_make_both_halves_dark() {
     for sample in samples(&block["samples"]) {
         let [open, a, b] = gaussian::half_planes(&field, frequency(sample));
         // The light that passes both half-planes is all light minus the light that each half-plane
-        // blocks: F₀ − (F₀ − F_A) − (F₀ − F_B).
+        // blocks, F₀ − (F₀ − F_A) − (F₀ − F_B).
         let both = a + b - open;
         // The rounding error is small because a and b are conjugates of each other.
         assert!((both - complex(&sample["both"])).norm() < 1e-16);

@@ -207,8 +207,8 @@ impl<'a> FieldPaths<'a> {
         (passes > 0.0 && !is_second).then_some(point)
     }
 
-    /// Checks whether a surface of the path, other than the one that ends the leg, occludes a ray
-    /// of a leg.
+    /// Checks whether a surface of the path, except the surface that ends the leg, occludes a ray
+    /// of the leg.
     fn is_hidden(&self, leg: usize, ray: &LegRay, [start, end]: [f64; 2]) -> bool {
         let surfaces = &self.view.system.surfaces;
         let ends = surfaces.get(leg).map(|surface| surface.patch);

@@ -1,9 +1,9 @@
 //! Rays of an environment, sampled by the environment's radiance and by the window.
 //!
 //! A direction is sampled first, then a position. If the first surface scatters light, the position
-//! is on this surface; otherwise the position is at the light. Some directions follow the radiance
-//! of the environment and the others follow the guide. So neither a bright lobe of the environment
-//! nor a narrow lobe of a BRDF is missed.
+//! is on this surface; otherwise the position is at the light. Some directions are sampled by the
+//! radiance of the environment, and the other directions by the guide. So neither a bright lobe of
+//! the environment nor a narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};

@@ -72,8 +72,8 @@ impl<'a> Linear<'a> {
         let across = (1.0 + u * u).sqrt();
         let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-        // These are the local angles of a ray that is parallel to the light's axis and hits the
-        // surface at this position.
+        // The local angles of a ray that is parallel to the light's axis and hits the surface at
+        // this position.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (

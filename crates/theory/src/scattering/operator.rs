@@ -67,7 +67,7 @@ fn waves(weight: &Weight) -> Option<Vec<WeightWave>> {
     }
 }
 
-/// ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
+/// Returns the waves of a cosine pattern, ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
 fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     let Pattern::Cosine(grating) = pattern else {
         return None;

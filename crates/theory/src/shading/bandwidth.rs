@@ -31,8 +31,8 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Returns the bandwidth by Eq. 20 of Durand et al. 2005, extended to any distance: Ω_ρ |1 +
-    /// 2kd/cos θ₁|, for an environment with light at all frequencies.
+    /// Returns the bandwidth by Eq. 20 of Durand et al. 2005, extended to any distance, which is
+    /// Ω_ρ |1 + 2kd/cos θ₁|. The environment is assumed to have light at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()
@@ -45,15 +45,15 @@ impl Criterion {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
     }
 
-    /// Returns the bandwidth of an edge before a uniform environment: Ω_ρ |1 + d (cos θ₀/d' +
-    /// 2k)/cos θ₁|. This formula is Eq. 21 extended to any distance and angle.
+    /// Returns the bandwidth of an edge before a uniform environment, which is Ω_ρ |1 + d (cos
+    /// θ₀/d' + 2k)/cos θ₁|. This formula is Eq. 21 extended to any distance and angle.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
     }
 
     /// Returns an upper bound on the bandwidth of an edge before an environment with the cutoff
-    /// Ω_e: Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
+    /// Ω_e, which is Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
     ///
     /// [`blocker`](Self::blocker) does not cover a small bright light behind an edge, which causes
     /// sharp shadows with any BRDF.

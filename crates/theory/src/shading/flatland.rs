@@ -23,13 +23,13 @@ pub struct Flatland {
 /// Steps of diffuse shading (Durand et al. 2005, Fig. 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiffuseStep {
-    /// Step 1: at the light.
+    /// Step 1: the light field at the light.
     Emission,
-    /// Step 2: after travel, before the strips.
+    /// Step 2: the light field after travel, before the strips.
     Travel,
-    /// Step 3: after the strips.
+    /// Step 3: the light field behind the strips.
     Visibility,
-    /// Step 4: after travel to the receiver.
+    /// Step 4: the light field after travel to the receiver.
     SecondTravel,
     /// Step 5: differential irradiance, the light field times g(v) = (1 + v²)^(−3/2).
     Cosine,

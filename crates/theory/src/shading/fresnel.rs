@@ -30,7 +30,7 @@ pub enum FresnelFactor {
         /// Imaginary part k of the index, relative to the same index.
         extinction: f64,
     },
-    /// Schlick's approximation (Schlick 1994, Eq. 24): F₀ + (1 − F₀)(1 − cos θ)⁵.
+    /// Schlick's approximation (Schlick 1994, Eq. 24), which is F₀ + (1 − F₀)(1 − cos θ)⁵.
     Schlick {
         /// F₀, the reflectance at normal incidence.
         normal_reflectance: f64,

@@ -39,7 +39,7 @@ mod tests {
             assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13);
             factorial *= f64::from(n);
         }
-        // Γ(1/2) = √π and Γ(−3/2) = 4√π/3.
+        // The exact values are Γ(1/2) = √π and Γ(−3/2) = 4√π/3.
         assert!((reciprocal(0.5) * PI.sqrt() - 1.0).abs() < 1e-14); // rounding
         assert!((reciprocal(-1.5) * PI.sqrt() * 4.0 / 3.0 - 1.0).abs() < 1e-14); // rounding
     }

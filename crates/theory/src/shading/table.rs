@@ -37,7 +37,7 @@ mod tests {
         for omega in [0.0, 0.3, 2.0, 11.0] {
             let constant = table_hat(&of(&[1.0, 1.0, 1.0]), libm::cos, omega);
             assert!((constant - cosine_hat(omega)).abs() < 1e-12); // as promised
-            // 1 − |θ|/(π/2): π/2 sinc²(Ω π/2).
+            // The factor 1 − |θ|/(π/2) has the transform π/2 sinc²(Ω π/2).
             let half = 0.5 * PI * omega * 0.5 * TAU;
             let sinc = if omega > 0.0 {
                 libm::sin(half) / half

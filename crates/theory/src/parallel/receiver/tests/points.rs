@@ -25,8 +25,8 @@ fn square_seen_from_below_its_corner() {
 
 #[test]
 fn disc_seen_from_anywhere() {
-    // Howell 1982, section B: R = radius / offset, H = distance / offset, Z = 1 + H² + R²,
-    // F = ½ (1 − (Z − 2R²) / √(Z² − 4R²)).
+    // The form factor F of a disc (Howell 1982, section B), with R = radius / offset, H = distance
+    // / offset, Z = 1 + H² + R², F = ½ (1 − (Z − 2R²) / √(Z² − 4R²)).
     for (radius, distance) in [(0.3, 2.0), (1.5, 1.0), (20.0, 0.5), (0.01, 3.0)] {
         let receiver = alone(area(disc([0.2, -0.1], radius), 0.0), distance);
         let receiver = receiver.receiver();
