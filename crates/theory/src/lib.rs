@@ -11,7 +11,7 @@
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is
 //! then a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows
-//! and gratings are sums of cosines. The transform of such a polygon has a closed form, which
+//! and gratings are sums of cosines. The transform of a convex polygon has a closed form, which
 //! requires no quadrature and no grid and has no aliasing. A disc is a weighted sum of rectangles,
 //! and a factor of slope is a sum of products of cosine series; both sums converge exponentially.
 //!

@@ -6,8 +6,8 @@ use etendue_field::{Projection, Slices};
 /// The prediction of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
-    /// The slices of the windowed spectrum. Unit: The unit is W m⁻² sr⁻¹ · m²; on a surface, W m⁻²
-    /// sr⁻¹ · m² rad².
+    /// The slices of the windowed spectrum. The unit is W m⁻² sr⁻¹ · m²; on a surface, the unit is
+    /// W m⁻² sr⁻¹ · m² rad².
     pub slices: Slices,
     /// Independent unbiased predictions whose mean is `slices`; empty for closed forms and
     /// quadrature rules.

@@ -1,4 +1,4 @@
-//! One random scene, and how far its prediction by nets deviates from the truth, in units of the
+//! A random scene, and the deviation of its prediction by nets from the truth, in units of the
 //! prediction's stated error.
 
 use super::draw::{BlockerKind, SceneDice, scene};

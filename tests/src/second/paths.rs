@@ -1,5 +1,5 @@
-//! The central ray at a surface, from docs/conventions.md, Frames: the frame of the surface, and
-//! those of the legs before and after the surface.
+//! The frames of the central ray at a surface and on the legs before and after it, computed from
+//! docs/conventions.md, section Frames.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;

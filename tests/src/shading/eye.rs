@@ -70,9 +70,9 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// Returns two ratios, one for the environment and one for the blocker. Each is the derivative
-    /// of the phase with respect to the slope at the eye, divided by the derivative with respect to
-    /// the local angle of mirrored light at a fixed point.
+    /// Returns two ratios, one for the environment and one for the blocker. Each ratio is the
+    /// derivative of the phase with respect to the slope at the eye, divided by the derivative with
+    /// respect to the local angle of mirrored light at a fixed point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);

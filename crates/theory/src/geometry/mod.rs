@@ -26,7 +26,7 @@
 //! which light comes. (T, N) are right-handed axes of the plane of incidence, with T to the right
 //! when N is up. B = N × T. Directions point away from the surface; their angle θ is counted from N
 //! towards T. s is arc length along T. With c₀ = cos θ₀ and c₁ = cos θ₁, the axes before the event
-//! are D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N; after the event the axes are D = sin θ₁ T +
+//! are D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N. After the event the axes are D = sin θ₁ T +
 //! c₁ N and X = c₁ T − sin θ₁ N. Y is B before and after the event. In 4D a direction is cos φ (sin
 //! θ T + cos θ N) + sin φ B: longitude θ, latitude φ.
 //!

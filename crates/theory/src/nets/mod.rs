@@ -32,8 +32,8 @@ const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net for derivatives.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
 /// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. An error of this size
-/// changes a measured parameter by about its square times the difference between the measured
-/// value and the scene's value.
+/// changes a measured parameter by about the square of this error, times the difference between the
+/// measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -133,10 +133,10 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even
-/// fewer rays, the chosen strategy would be one that is best only for few rays. The nets of a
-/// trial differ from the nets of predictions. If they were the same, the chosen strategy would
-/// often be one whose rays of large weight happen to be absent from the prediction's nets.
+/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even fewer
+/// rays, the chosen strategy would be the best strategy only for few rays. The nets of a trial
+/// differ from the nets of predictions. If the nets were the same, the chosen strategy would often
+/// be a strategy whose rays of large weight happen to be absent from the prediction's nets.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -467,8 +467,8 @@ mod tests {
         }
     }
 
-    /// Tests that derivatives use other nets than the prediction; common noise would bias the
-    /// parameters that are measured with these derivatives.
+    /// Tests that derivatives and the prediction use different nets, because common noise would
+    /// bias the parameters that are measured with these derivatives.
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());

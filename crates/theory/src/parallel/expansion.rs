@@ -45,8 +45,8 @@ pub(crate) struct PolygonTerm {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// Two indices: of the term from which this term was clipped, and of the extent along x to
-    /// which it was clipped. Terms for which both indices are equal have the same P.
+    /// Two indices: that of the term from which this term was clipped, and that of the extent along
+    /// x to which this term was clipped. Terms for which both indices are equal have the same P.
     column: [usize; 2],
 }
 

@@ -373,8 +373,8 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // The ray's position moves along the ray to the plane; the slopes are the plane's
-            // slopes of the direction D + u X.
+            // The ray's position moves along the ray to the plane; the slopes are those of the
+            // direction D + u X relative to the plane.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();
