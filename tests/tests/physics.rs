@@ -198,8 +198,8 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the
-/// omission or doubling leaves it unchanged.
+/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the omission
+/// or doubling leaves the chain unchanged.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);

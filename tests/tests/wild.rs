@@ -686,8 +686,8 @@ fn a_narrow_window_is_decided() {
 }
 
 /// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe,
-/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled
-/// in proportion to the cosine carry the light, they do not contradict backward rays.
+/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled in
+/// proportion to the cosine carry the light, these photons do not contradict backward rays.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");

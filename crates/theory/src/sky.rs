@@ -18,8 +18,8 @@ pub(crate) enum SkyDensity<'a> {
 pub(crate) struct Lobes {
     /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points towards where most of its
-    /// light comes from.
+    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points in the direction from
+    /// which most of the Gaussian's light comes.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,

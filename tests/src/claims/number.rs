@@ -7,7 +7,7 @@ use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClaimNumber {
     pub(super) value: f64,
-    /// Standard error of measured minus predicted.
+    /// Standard error of the difference between the measured and the predicted number.
     pub(super) error: f64,
     /// The number that the same estimator gives for the predicted spectra.
     pub(super) predicted: f64,
