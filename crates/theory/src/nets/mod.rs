@@ -239,8 +239,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let replicates = REPLICATES as f64;
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST_NODES))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
-    // Each field of a derivative has its own rays, so the work of derivatives adds to the work of
-    // the prediction.
+    // Derivatives add to the work of the prediction, since each field has its own rays.
     let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
     let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
