@@ -4,8 +4,8 @@
 //! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over
 //! the surface. The plane is on the surface or perpendicular to the path of light that leaves the
 //! surface. A system and a plane together are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets, and for each ray
-//! a part of the light that shines on the ray's starting point,
+//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets. For each ray the
+//! model also samples a part of the light that shines on the ray's starting point:
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!

@@ -49,7 +49,7 @@ fn seen() -> Window {
     }
 }
 
-/// Returns C of a field of covariance S after the window [`seen`].
+/// Returns the spectral covariance C of a field with the covariance S, after the window [`seen`].
 fn windowed(field: &Matrix<4>) -> Matrix<4> {
     let stds = [0.5, 0.4, 0.3, 0.2].map(|width: f64| width / TAU.sqrt());
     power_spectrum(&gaussian_window(field, stds).unwrap()).unwrap()
