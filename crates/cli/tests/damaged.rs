@@ -40,7 +40,7 @@ impl Drop for Swap {
     }
 }
 
-/// Replaces the index by the index with a change.
+/// Writes the changed index in place of the index.
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);
