@@ -4,9 +4,9 @@
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
 //! Rank 0 runs the command as `etendue` does. Rank 0 also hands out pieces of work to the other
-//! ranks on request, and works on pieces itself. MPI carries bytes and sums nothing, so the result
-//! has the same bytes as that of `etendue run`. The arguments are those of `etendue`; the crate of
-//! `etendue` parses them.
+//! ranks on request, and works on pieces itself. MPI only transfers bytes and does not sum numbers,
+//! so the result has the same bytes as that of `etendue run`. The arguments are those of `etendue`;
+//! the crate of `etendue` parses them.
 //!
 //! The crate uses `ferrompi`, because it needs no libclang, its calls return errors instead of
 //! aborting, and it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings
@@ -23,7 +23,8 @@ use std::time::Duration;
 /// The tag of all messages.
 const TAG: i32 = 0;
 
-/// Pause between checks for a message. Waiting inside MPI would occupy a core that could measure.
+/// Pause between checks for a message. Waiting inside MPI would occupy a core that could trace
+/// photons.
 const PAUSE: Duration = Duration::from_micros(200);
 
 /// All ranks of the job.

@@ -111,7 +111,7 @@ impl<'py> Arguments<'_, 'py> {
         self.set(name, to, "a path", |value| value.extract().ok().map(Some))
     }
 
-    /// Returns the value with the name that the argument gives.
+    /// Sets `to` to the value whose name the argument states.
     pub(crate) fn one_of<T: Copy>(
         &self,
         name: &str,

@@ -133,7 +133,8 @@ impl Job {
     }
 
     /// Returns the photons at a plane, with the columns x, y, u, v and weight, in the order of
-    /// their batches, and for each batch the number of these photons and of emitted photons.
+    /// their batches. Also returns, for each batch, the number of these photons and the number of
+    /// emitted photons.
     #[expect(clippy::type_complexity, reason = "Python receives a tuple")]
     fn crossings<'py>(
         &self,

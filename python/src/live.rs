@@ -30,7 +30,7 @@ pub(crate) struct Live {
 #[derive(Default)]
 struct Works {
     begun: u64,
-    /// Work in progress, nested, with the innermost last.
+    /// The nested works in progress, of which the innermost is the last.
     in_hand: Vec<Arc<Counted>>,
     ended: Option<Arc<Counted>>,
 }
@@ -52,7 +52,7 @@ impl Live {
         self.works.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Unwinds if the work is to stop. The unwinding is not a panic, and prints nothing.
+    /// Unwinds the thread if the work must stop. The unwinding is not a panic, and prints nothing.
     fn check(&self) {
         if self.is_stopped.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));
@@ -109,7 +109,7 @@ impl Reporter for Live {
                 total,
                 things,
             } => (verb, things, total as u64),
-            // A stage of the work has no count.
+            // A stage has no number of items to count.
             Work::Stage(_) => return Box::new(Bar(self, None)),
         };
         let mut works = self.works();
@@ -174,8 +174,8 @@ impl Watch for Tracing<'_> {
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
 /// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C the
-/// work stops at the next block of photons or the next step, and the function returns when the
-/// work has ended or soon after; if the work is not counted, the function returns at once.
+/// work stops at the next block of photons or the next step, and the function returns when the work
+/// has ended or soon after. If the work is not counted, the function returns at once.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,

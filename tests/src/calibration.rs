@@ -25,7 +25,7 @@ struct CalibratedPlane {
 /// batches.
 #[derive(Clone, Copy)]
 enum DependenceFault {
-    /// The second half of the batches has the photons of the first.
+    /// The second half of the batches contains the same photons as the first half.
     SharedPhotons,
     /// The last batch is a copy of the first batch, which is thus counted twice.
     CountedTwice,
@@ -159,7 +159,7 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
     // The binomial standard deviation of the fraction of p-values below 0.1 at one plane. All
     // planes of a seed have the same photons, so the fraction of small p-values over all planes
     // varies less than the fraction at one plane, but more than the fraction over as many
-    // independent planes. The fraction of p-values below 0.1 may deviate by two such standard
+    // independent planes. The fraction of p-values below 0.1 may deviate by two of these standard
     // deviations over all planes, and by three at a single plane.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);

@@ -267,8 +267,8 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// Returns the page of which a command writes a part: the file of the page, the title of the part,
-/// the name of the command and a description.
+/// Returns the page to which a command contributes a part, as the file of the page, the title of
+/// the part, the name of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [

@@ -210,7 +210,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// Measures and compares all planes of a scene.
 ///
 /// # Panics
-/// If the scene has too few batches. Every resolved scene has enough batches.
+/// Panics if the scene has too few batches. Every resolved scene has enough batches.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let test = Test::of(scene);

@@ -1,9 +1,9 @@
 //! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
 //!
 //! A pull is a deviation divided by its stated error, converted from Student's distribution to
-//! the normal one. The deviation is that of a measured value from the scene's value, or of a
-//! measured slope from the predicted one. If stated errors are right, pulls have mean 0, standard
-//! deviation 1 and the tails of a normal distribution.
+//! the normal one. The deviation is the difference between a measured parameter and its value in
+//! the scene, or between a measured slope and the predicted slope. If stated errors are right,
+//! pulls have mean 0, standard deviation 1 and the tails of a normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;

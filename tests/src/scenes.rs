@@ -44,7 +44,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
 /// file.
 ///
 /// # Panics
-/// If there is no such scene, or it is invalid.
+/// Panics if there is no such scene, or it is invalid.
 pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scene {
     let text = SUITE.iter().find(|(known, _)| *known == name);
     let (_, text) = text.expect("a scene of the suite");
@@ -110,7 +110,7 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
 /// theory applies.
 ///
 /// # Panics
-/// If a plane needs a reference and there is none.
+/// Panics if a plane needs a reference and there is none.
 pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<Prediction> {
     let planes = scene.planes.iter().enumerate();
     planes
@@ -127,7 +127,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
 /// Returns the prediction that a reference measurement gives for the plane with index `index`.
 ///
 /// # Panics
-/// If the reference measurement has too few batches.
+/// Panics if the reference measurement has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[index]);
     let reference = Prediction::reference(scene, index, &theory, reference, index);
@@ -137,7 +137,7 @@ pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> 
 /// Compares a plane with a prediction.
 ///
 /// # Panics
-/// If the measurement has too few batches.
+/// Panics if the measurement has too few batches.
 pub(crate) fn compared(
     scene: &Scene,
     measurement: &Measurement,

@@ -155,8 +155,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         outcome(outcomes, "fig7_two"),
     ) {
         (Some(one), Some(other), Some(both)) => {
-            // The light without occluders minus the light that each of the two occluders blocks:
-            // F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
+            // The light without occluders, minus the light that each of the two occluders blocks,
+            // is F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
             let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),

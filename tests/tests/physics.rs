@@ -53,8 +53,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Variants of fig9b must pass as fig9b does: variants with objects beside or behind the light,
-/// and large, small, distant, rotated or dark variants.
+/// Tests that variants of fig9b pass like fig9b itself: with objects beside or behind the light,
+/// and as large, small, distant, rotated or dark variants.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -198,8 +198,8 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the
-/// omission or doubling leaves it unchanged.
+/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the omission
+/// or doubling leaves the chain unchanged.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);

@@ -576,8 +576,8 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// No light has an angle beyond a right angle, although light exists at the same angle minus a
-/// full turn.
+/// Tests that no light is found at angles beyond a right angle, although light exists at these
+/// angles minus a full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");
@@ -686,8 +686,8 @@ fn a_narrow_window_is_decided() {
 }
 
 /// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe,
-/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled
-/// in proportion to the cosine carry the light, they do not contradict backward rays.
+/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled in
+/// proportion to the cosine carry the light, these photons do not contradict backward rays.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");

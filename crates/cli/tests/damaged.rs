@@ -40,7 +40,7 @@ impl Drop for Swap {
     }
 }
 
-/// Replaces the index by the index with a change.
+/// Writes the changed index in place of the index.
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);
@@ -370,8 +370,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Meshes are part of a scene: if parts were measured with another mesh, they are refused, and
-/// the copies of meshes are checked.
+/// Tests that parts measured with another mesh are refused, because meshes belong to a scene, and
+/// that the copies of meshes are checked.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();

@@ -68,8 +68,8 @@ fn light_from_far_away_is_no_lamp() {
 
 #[test]
 fn planes_stand_where_they_are() {
-    // All seven planes of this scene are at the same position, so they share one line, which is
-    // drawn seven times in each cut.
+    // All seven planes of this scene are at the same position, so each cut contains the same line
+    // seven times.
     let svg = drawing("fig10");
     let lines: Vec<&str> = svg
         .lines()

@@ -24,7 +24,7 @@ const SCENE: &str = r#"(
     run: (photons: 5000),
 )"#;
 
-/// A number of photons for which no test waits.
+/// A number of photons that no test could trace to the end.
 const ENDLESS: &str = "--photons 1e12";
 
 fn folder() -> TempDir {

@@ -7,8 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Returns a folder with two runs: `a` is the small scene, and `b` is the same scene with another
-/// pitch and a name that would close the page's data tag.
+/// Returns a folder with the runs `a` and `b`. Run `a` is of the small scene, and run `b` is of the
+/// same scene with another pitch and a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

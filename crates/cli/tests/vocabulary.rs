@@ -25,8 +25,8 @@ const LIGHT: &str =
     "Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773))";
 const POINT: &str = "Point(center: (0.1, 0.2, 0.30000000000000004))";
 const LAYER: &str = "blockers: [";
-/// Blockers with a mesh from a file and with a mesh of too many triangles for the exact
-/// prediction, so that the other tracer checks the measurement.
+/// Two meshes as blockers. The first mesh is read from a file. The second mesh has too many
+/// triangles for the exact prediction, so the other tracer checks the measurement.
 const MESH: &str = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1),
     Mesh(name: "ball", center: (-0.1, 0.1, 1), mesh: Star(radius: 0.03, relief: 0, lobes: 0, rings: 20)), "#;
 const TETRA: &str =

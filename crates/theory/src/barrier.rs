@@ -1,5 +1,5 @@
-//! Masks prepared for many queries about the fraction of a ray's radiance that passes and about
-//! the shapes near a ray.
+//! Masks prepared for many queries, which ask what fraction of a ray's radiance passes and which
+//! shapes are near a ray.
 
 use etendue_field::{HalfPlane, Mask, Shape};
 
@@ -132,8 +132,8 @@ impl<'a> Bins<'a> {
                 for &number in &self.cells[i * self.side + j] {
                     let shape = &self.shapes[number];
                     let extents = [0, 1].map(|axis| shape.bounds().extent(axis));
-                    // A shape that overlaps several of these cells is visited only in the first
-                    // such cell.
+                    // A shape that overlaps several cells is visited only in the first of its
+                    // cells.
                     let first = [(0, *x.start()), (1, *y.start())]
                         .map(|(axis, start)| self.cell(axis, extents[axis][0]).max(start));
                     let meets = |axis: usize| {

@@ -4,14 +4,14 @@
 //! from specular surfaces ([`rays`]) or from a surface with a BRDF ([`scattering`]).
 //!
 //! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
-//! planes, and the cosine and diffuse reflection of a receiver. The output is the values that a
-//! measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
+//! planes, and the cosine and diffuse reflection of a receiver. The output contains the values that
+//! a measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
 //! their error ([`quadrature_error`]), their [`derivative`] with respect to any parameter of the
 //! chain, and the [`projection`] on (x, u).
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is
 //! then a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows
-//! and gratings are sums of cosines. The transform of such a polygon has a closed form, which
+//! and gratings are sums of cosines. The transform of a convex polygon has a closed form, which
 //! requires no quadrature and no grid and has no aliasing. A disc is a weighted sum of rectangles,
 //! and a factor of slope is a sum of products of cosine series; both sums converge exponentially.
 //!
@@ -23,8 +23,8 @@
 //! same paths. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in
 //! 2D.
 //!
-//! This crate has no access to scenes, photons or measured spectra, so agreement between a
-//! prediction and a measurement is evidence for both.
+//! This crate has no access to scenes, photons or measured spectra, so the agreement of a
+//! prediction with a measurement is evidence that both are correct.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

@@ -156,7 +156,8 @@ pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
     let curved = DVec3::from(patch.curvature) * direction;
     let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
     let c = patch.value(point);
-    // To avoid cancellation, the other root is computed as the constant term divided by this root.
+    // To avoid cancellation, the second root is computed as c divided by q, the numerator of the
+    // first root.
     let root = (b * b - a * c).sqrt();
     let q = -(b + root.copysign(b));
     [q / a, c / q]

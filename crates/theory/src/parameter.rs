@@ -96,7 +96,7 @@ impl Parameter {
     }
 
     /// Replaces the value of the parameter in a light by `new(value)`. Returns `None` if the light
-    /// does not have it.
+    /// does not have the parameter.
     pub(crate) fn change_light(self, light: &mut Light, new: New<'_>) -> Option<()> {
         match (self, light) {
             (Self::SourceSize, Light::Area { shape, .. }) => {

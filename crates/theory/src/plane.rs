@@ -6,7 +6,7 @@ use etendue_field::{Frame, Orientation, Patch, Quantity};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
-    /// it. On a surface: On a surface its axes are T, B and the normal there, on the side to which
+    /// it. On a surface the axes of the frame are T, B and the normal, on the side to which
     /// directions point.
     pub frame: Frame,
     /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.

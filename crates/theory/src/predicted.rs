@@ -6,8 +6,8 @@ use etendue_field::{Projection, Slices};
 /// The prediction of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
-    /// The slices of the windowed spectrum. Unit: The unit is W m⁻² sr⁻¹ · m²; on a surface, W m⁻²
-    /// sr⁻¹ · m² rad².
+    /// The slices of the windowed spectrum. The unit is W m⁻² sr⁻¹ · m²; on a surface, the unit is
+    /// W m⁻² sr⁻¹ · m² rad².
     pub slices: Slices,
     /// Independent unbiased predictions whose mean is `slices`; empty for closed forms and
     /// quadrature rules.
@@ -16,8 +16,8 @@ pub struct Predicted {
     /// change under finer quadrature rules. The error is `None` for a closed form, and infinite if
     /// no ray arrives.
     pub error: Option<f64>,
-    /// ∫ L W of the light without occluders, which is the scale for errors of a closed form; zero
-    /// for nets.
+    /// The integral ∫ L W of the light without occluders, which is the scale for errors of a closed
+    /// form; zero for nets.
     pub unblocked: f64,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,

@@ -18,8 +18,8 @@ pub(crate) enum SkyDensity<'a> {
 pub(crate) struct Lobes {
     /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points towards where most of its
-    /// light comes from.
+    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points in the direction from
+    /// which most of the Gaussian's light comes.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
@@ -71,7 +71,8 @@ impl<'a> SkyDensity<'a> {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
                 let (squared, least, axes) = lobes.each[i];
-                // This is 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
+                // `fall` is 1 − cos γ, sampled by the quantile function of the density exp((cos γ −
+                // 1)/σ²).
                 let fall = -squared * libm::log1p(a * least);
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
@@ -83,7 +84,7 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Returns the density of a direction per steradian, given the radiance there.
+    /// Returns the density of a direction per steradian, given the radiance from this direction.
     pub(crate) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
             Self::Lobes(lobes) => radiance / lobes.total,
@@ -107,7 +108,8 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // Environments shine forward, so only a part of a cell on the border shines.
+            // An environment emits light only forward, so a cell across the border of the forward
+            // half emits light in part.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {
@@ -209,7 +211,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    /// Light that shines forward is sampled however few columns the map has.
+    /// Tests that all forward light of a map is sampled, even if the map has few columns.
     #[test]
     fn narrow_maps_lose_no_light() {
         let sizes = [[1, 1], [1, 8], [3, 64], [16, 8]].into_iter();

@@ -14,7 +14,7 @@ pub struct PredictionWork {
 }
 
 impl PredictionWork {
-    /// The work where no prediction is needed.
+    /// The work if no prediction is needed.
     #[must_use]
     pub fn none() -> Self {
         Self {

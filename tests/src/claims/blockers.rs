@@ -80,8 +80,8 @@ fn replicas(photons: u64) -> Claim {
     let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
         let blockers = squares([count; 2], pitch, "fill: 0.5");
         let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
-        // The number is the pitch times the frequency of the spectral peak, the vertex of a
-        // parabola through the highest values.
+        // The number is the pitch times the frequency of the spectral peak. The peak is the vertex
+        // of a parabola through the highest values.
         seen.number(0, |slices| {
             let along = line(slices, 0);
             let step = slices.grid.rho.spacing;
@@ -262,14 +262,14 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Two maximum frequencies, per metre: that at which bounds are compared with spectra, and that
-/// up to which the sum in a bound runs.
+/// Two maximum frequencies, per metre: up to the first, bounds are compared with spectra; up to the
+/// second, the sum in a bound is computed.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
-/// Returns the 90 % bandwidths of |S(ρ, 0)| behind both masks and of the bound Σ|V̂(m)||S₁(ρ − m,
-/// 0)|, where S₁ is the spectrum behind one mask alone, and the largest ratio of the spectrum to
-/// the bound.
+/// Returns the 90 % bandwidth of |S(ρ, 0)| behind both masks, the 90 % bandwidth of the bound
+/// Σ|V̂(m)||S₁(ρ − m, 0)|, and the largest ratio of the spectrum to the bound. S₁ is the spectrum
+/// behind one mask alone.
 fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {
     let [one, both] = [0, 1].map(|i| line(&slices[i], 0));
     let size = |n: usize| one.get(n).map_or(0.0, |(_, s)| s.norm());

@@ -45,8 +45,8 @@ fn shadow(
 
 /// Exponents of the tails of shadows whose profiles have a discontinuous n-th derivative.
 fn tails(photons: u64) -> Claim {
-    // 1/√2, because the profile of a unit square along its diagonal is the convolution of two
-    // boxes of width 1/√2.
+    // The width is 1/√2, because the profile of a unit square along its diagonal is the convolution
+    // of two boxes of width 1/√2.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
     // Each case has a light, a plane, the half-width of the window, an azimuth, the width of the

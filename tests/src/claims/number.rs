@@ -7,7 +7,7 @@ use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClaimNumber {
     pub(super) value: f64,
-    /// Standard error of measured minus predicted.
+    /// Standard error of the difference between the measured and the predicted number.
     pub(super) error: f64,
     /// The number that the same estimator gives for the predicted spectra.
     pub(super) predicted: f64,
@@ -102,7 +102,7 @@ pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
         .collect()
 }
 
-/// Σ |S|² on the line ν = 0 of slice 0, over the selected frequencies.
+/// Returns the sum of |S|² on the line ν = 0 of slice 0, over the selected frequencies.
 pub(super) fn power(slices: &Slices, wanted: impl Fn(f64) -> bool) -> f64 {
     let along = line(slices, 0).into_iter();
     let inside = along.filter(|(rho, _)| wanted(*rho));

@@ -58,7 +58,7 @@ pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
 /// Reads a scene from a text, to which a window and settings of the run are added.
 ///
 /// # Panics
-/// If the scene is invalid.
+/// Panics if the scene is invalid.
 pub(super) fn scene(text: &str, photons: u64) -> Scene {
     let text = format!(
         "({text}, window: (x: Hann(0.5), u: Hann(0.5)), frequencies: (azimuths: 1, rho: (max: 16), nu: (max: 4)),
@@ -76,7 +76,7 @@ pub(super) struct SeenScene {
 
 impl SeenScene {
     /// # Panics
-    /// If no theory applies to a plane.
+    /// Panics if no theory applies to a plane.
     pub(super) fn of(scene: Scene) -> Self {
         Self {
             measurement: traced(&scene),

@@ -78,8 +78,9 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
     })
 }
 
-/// Tries a fault of 1 % and repeatedly half its size, and finds the smallest size that is
-/// rejected and whose larger sizes are all rejected too.
+/// Tries each fault with a size of 1 %, and then repeatedly with half the previous size. Returns
+/// the section on the smallest size at which each fault is rejected, together with all larger
+/// sizes.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));

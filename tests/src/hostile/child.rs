@@ -25,7 +25,7 @@ pub(crate) struct Limit {
     pub(crate) work: Duration,
 }
 
-/// The outcome of a child.
+/// The outcome of a child process.
 #[derive(Debug)]
 pub(crate) struct Ended {
     /// The exit code; `None` if a signal ended it.
@@ -122,7 +122,7 @@ fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bo
             child.kill()?;
             return Ok((peak, hung));
         }
-        // Most children end within a few milliseconds.
+        // Most child processes end within a few milliseconds.
         let early = start.elapsed() < Duration::from_millis(20);
         std::thread::sleep(Duration::from_millis(if early { 1 } else { 5 }));
     }

@@ -30,7 +30,7 @@ impl Dice {
         random::index(self.words()[0], n.max(1))
     }
 
-    /// True with probability 1/`n`.
+    /// Returns true with probability 1/`n`.
     pub(crate) fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }

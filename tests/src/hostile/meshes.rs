@@ -1,5 +1,5 @@
-//! Mutated meshes: Mutated mesh files, used as a blocker and as a curved mirror: The formats are
-//! OBJ, and PLY as text and as binary in both byte orders.
+//! Mutated mesh files, used as a blocker and as a curved mirror. The formats are OBJ, and PLY as
+//! text and as binary in both byte orders.
 
 use super::case::Attack;
 use super::dice::Dice;

@@ -1,5 +1,5 @@
 //! Attacks on commands that write results: kills at random moments, two writers at once, and full
-//! disks. After every such disturbance, a folder must contain a complete result or no result.
+//! disks. After every disturbance, a folder must contain a complete result or no result.
 
 mod check;
 mod disk;

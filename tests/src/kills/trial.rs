@@ -31,7 +31,7 @@ pub(super) enum Finding {
     Between,
     After,
     Whole,
-    /// A writer was refused because the other one was writing.
+    /// A writer was refused because the other writer was writing.
     Refused,
     // The finding `Broken` and all findings listed after `Broken` are faults.
     Broken,

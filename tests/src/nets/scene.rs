@@ -1,4 +1,4 @@
-//! One random scene, and how far its prediction by nets deviates from the truth, in units of the
+//! A random scene, and the deviation of its prediction by nets from the truth, in units of the
 //! prediction's stated error.
 
 use super::draw::{BlockerKind, SceneDice, scene};
@@ -35,7 +35,7 @@ pub(super) struct Measured {
     pub(super) pairs: Vec<f64>,
     /// The deviation at zero frequency: (F − truth)/(standard error).
     pub(super) zero: f64,
-    /// The deviations at frequencies other than zero: Hotelling's T of real and imaginary part,
+    /// The deviations at frequencies other than zero, as Hotelling's T of real and imaginary part,
     /// divided by √2.
     pub(super) apart: Vec<f64>,
 }

@@ -1,5 +1,5 @@
-//! BRDFs computed from their definitions: Fresnel's equations with complex indices, microfacets
-//! described by their slopes, and Smith's masking as an integral.
+//! BRDFs computed from their definitions, which are Fresnel's equations with complex indices,
+//! microfacets described by their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
@@ -94,8 +94,8 @@ fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     }
 }
 
-/// Returns the microfacet BRDF D G F / (4 cos cos) without its Fresnel factor F (Cook and Torrance
-/// 1982; Walter et al. 2007, Eq. 20).
+/// Returns the microfacet BRDF D G F / (4 cos θi cos θo) without its Fresnel factor F (Cook and
+/// Torrance 1982; Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let masks = match fault {
         "masked one way only" => mask(from),

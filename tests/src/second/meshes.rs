@@ -66,7 +66,7 @@ fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     } else {
         [u, v]
     };
-    // corner + p (b − a) + q (c − a) = (x, y, 0) + d (u, v, 1) for p, q and d, by Cramer's rule.
+    // Cramer's rule solves a + p (b − a) + q (c − a) = (x, y, 0) + d (u, v, 1) for p, q and d.
     let [a, b, c] = corners;
     let (ab, ac, back) = (plus(b, -1.0, a), plus(c, -1.0, a), [-u, -v, -1.0]);
     let right = plus([x, y, 0.0], -1.0, a);

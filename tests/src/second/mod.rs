@@ -32,8 +32,8 @@ use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
-/// The seed of all points. This seed was fixed in advance, and not chosen by the results that it
-/// gives.
+/// The seed of all random points. This seed was fixed in advance, and not chosen by the results
+/// that it gives.
 const SEED: u64 = 1;
 
 /// Compares every shared function with its second implementation.
@@ -63,8 +63,8 @@ pub(crate) fn second() -> io::Result<ReportSection> {
 
 fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
-    // Pictures draw random numbers as the largest case number, because the case numbers of points
-    // count up from 0.
+    // The random numbers of pictures belong to the largest case number, because the case numbers of
+    // points count up from 0.
     let mut dice = Dice::new(SEED, u64::MAX);
     let picture = files::write_picture(folder.path(), &mut dice)?;
     let map = files::write_map(&folder.path().join(sky::FILE), &mut dice)?;

@@ -1,5 +1,5 @@
-//! The central ray at a surface, from docs/conventions.md, Frames: the frame of the surface, and
-//! those of the legs before and after the surface.
+//! The frames of the central ray at a surface and on the legs before and after it, computed from
+//! docs/conventions.md, section Frames.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
@@ -104,9 +104,9 @@ impl Legs {
         }
     }
 
-    /// Returns the frame after a change of direction: the frame of the arriving ray, mirrored
-    /// with X reversed if the event is a reflection, and rotated by the smallest angle to the new
-    /// direction.
+    /// Returns the frame after a change of direction. If the event is a reflection, the frame of
+    /// the arriving ray is mirrored and its X reversed; the frame is then rotated by the smallest
+    /// angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {

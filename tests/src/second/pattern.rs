@@ -38,7 +38,7 @@ impl Pattern {
     }
 }
 
-/// ½ (1 + m cos(2π f t + p)).
+/// Returns the value ½ (1 + m cos(2π f t + p)) of a grating.
 pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     let angle = TAU * grating.frequency * at[grating.axis];
     let angle = match fault {
@@ -130,7 +130,7 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// Returns two BRDFs with their weights at a point: The weight of `brdf` is the value of the
+    /// Returns two BRDFs with their weights at a point. The weight of `brdf` is the value of the
     /// blend, and the weight of `other` is one minus this value. The value of the texture
     /// multiplies the weights of both BRDFs.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {

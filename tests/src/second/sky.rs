@@ -47,8 +47,8 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns the axes of a map: Y is `up`, Z is the component of `front` orthogonal to Y, and X = Y
-/// × Z.
+/// Returns the axes of a map, in which Y is `up`, Z is the component of `front` orthogonal to Y,
+/// and X = Y × Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
     let tilt = between(dice, 0.3, 2.8);

@@ -176,7 +176,7 @@ impl Looking<'_> {
         let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
         let axes = [self.surface.x, self.surface.y, self.surface.d];
         let [t, b, n] = axes.map(|axis| dot(away, turned(axis)));
-        // cos φ (sin θ T + cos θ N) + sin φ B
+        // The direction is cos φ (sin θ T + cos θ N) + sin φ B.
         let (mut theta, mut phi) = (t.atan2(n), b.asin());
         if self.view == View::Mirrored && fault != "not turned about the normal" {
             (theta, phi) = (-theta, -phi);

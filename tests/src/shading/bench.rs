@@ -20,7 +20,7 @@ pub(super) struct Bench {
 
 impl Bench {
     /// # Panics
-    /// If the plane is not after a BRDF.
+    /// Panics if the plane is not after a BRDF.
     pub(super) fn new(scene: Scene) -> Self {
         let view = seen(&scene);
         let sound = said(&view, &scene.planes[0]);
@@ -59,7 +59,7 @@ impl Bench {
     /// Returns the p-value of the comparison of photons with a prediction.
     ///
     /// # Panics
-    /// If there is no light and no light is predicted.
+    /// Panics if there is no light and no light is predicted.
     pub(super) fn p_value(&self, photons: &Measurement, said: &Slices) -> f64 {
         let p = Residuals::new(photons, 0, said).p_value(self.scene.run.seed);
         p.expect("light")
@@ -79,7 +79,7 @@ impl Bench {
 /// Returns the measured slices.
 ///
 /// # Panics
-/// If there are too few batches.
+/// Panics if there are too few batches.
 pub(super) fn mean(photons: &Measurement) -> Slices {
     let estimate = estimate::slices(photons, 0);
     estimate.expect("a scene has 64 batches").mean
@@ -98,7 +98,7 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
 /// Returns the BRDF of a scene, for modification.
 ///
 /// # Panics
-/// If the scene has no BRDF.
+/// Panics if the scene has no BRDF.
 pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,

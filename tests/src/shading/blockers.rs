@@ -270,8 +270,8 @@ fn average() -> Vec<Statement> {
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
-            // The expected value is the decrease of a Gaussian tail at f d₁/D − 0.7, from 1.5 to
-            // 3.7 cycles per metre in a window of 0.4 m.
+            // The spectrum falls with the pitch like the tail of a Gaussian at f d₁/D − 0.7, which
+            // is 1.5 and 3.7 cycles per metre for the two pitches, in a window of 0.4 m.
             expected: [4.0, 100.0],
             holds: "holds, faster than any power: only replicas' tails arrive",
         },

@@ -73,7 +73,8 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> Separa
     }
 }
 
-/// cos θ (1 + 0.6 sin θ), which is not even. The factor sin θ shifts a spectrum by ± 1/2π.
+/// Returns cos θ (1 + 0.6 sin θ), which is not an even function. The factor sin θ shifts a spectrum
+/// by ± 1/2π.
 pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
@@ -181,7 +182,7 @@ fn separable() -> Vec<OperatorComparison> {
             },
             "h before the lobe",
             glossy(Factor::Other(&|q| {
-                // cos θ cos² θ = (3 cos θ + cos 3θ)/4 on the half-circle.
+                // On the half-circle, cos θ cos² θ = (3 cos θ + cos 3θ)/4.
                 let third = 3.0 / TAU;
                 let triple = |q: f64| {
                     let half = |t: f64| {
@@ -364,7 +365,8 @@ fn textured() -> OperatorComparison {
     }
 }
 
-/// ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ: the lobe rotates along the surface.
+/// Compares reflection by the BRDF ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ, whose lobe rotates along the
+/// surface.
 fn varying() -> OperatorComparison {
     let bell = super::light::Bell {
         amplitude: 3.0,

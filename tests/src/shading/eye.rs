@@ -70,9 +70,9 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// Returns two ratios, for the environment and for the blocker: the derivative of the phase
-    /// with respect to the slope at the eye, divided by its derivative with respect to the local
-    /// angle of mirrored light at a fixed point.
+    /// Returns two ratios, one for the environment and one for the blocker. Each ratio is the
+    /// derivative of the phase with respect to the slope at the eye, divided by the derivative with
+    /// respect to the local angle of mirrored light at a fixed point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
@@ -80,9 +80,9 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// Returns three bandwidths at the eye: B, B', and the maximum bandwidth if the environment
-    /// has frequencies up to Ω_e, and the blocker has all frequencies that keep the summed
-    /// frequency on the surface below Ω_ρ.
+    /// Returns three bandwidths at the eye, which are B, B' and a maximum bandwidth. For the
+    /// maximum, the environment has frequencies up to Ω_e, and the blocker has all frequencies that
+    /// keep the summed frequency on the surface below Ω_ρ.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));

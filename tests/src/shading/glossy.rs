@@ -146,7 +146,7 @@ impl GlossyBench {
     }
 
     /// # Panics
-    /// If the scene is invalid.
+    /// Panics if the scene is invalid.
     fn scene(&self, windows: &Windows, photons: u64, seed: u64) -> Scene {
         let text = self.text(windows, photons, seed);
         let file = SceneFile::parse(&text).expect("a scene file");
@@ -154,7 +154,7 @@ impl GlossyBench {
     }
 
     /// # Panics
-    /// If the plane has no criterion.
+    /// Panics if the plane has no criterion.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
         let plane = &scene.planes[0];
@@ -337,7 +337,7 @@ fn sweeps() -> Vec<GlossySweep> {
 /// Returns the section on the sweeps and the picture that plots them.
 ///
 /// # Panics
-/// If a scene cannot be measured.
+/// Panics if a scene cannot be measured.
 pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();

@@ -76,12 +76,12 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) theta0: f64,
     pub(super) theta1: f64,
     pub(super) k: f64,
-    /// Maximum angle of incidence in sums: π/2 if the horizon cuts the light, and more if it must
-    /// not.
+    /// Maximum angle of incidence in sums: π/2 if the horizon cuts the light, and more if the
+    /// horizon must not cut the light.
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
-    /// ρ(s, δ); `None` means a Dirac.
+    /// The lobe ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
     /// The factor h(θ_o') on the half-circle of outgoing directions; `None` means a factor of 1
     /// on the full circle.
@@ -103,9 +103,9 @@ impl PrimalSurface<'_> {
         pieces.flatten().collect()
     }
 
-    /// Returns the transform of the reflected light field in the outgoing light frame, with all
-    /// angles and positions linear in the incoming angle and position: x = −c₀ s, θ = θ_i' + k s
-    /// − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
+    /// Returns the transform of the reflected light field in the outgoing light frame. All outgoing
+    /// angles and positions are linear in the incoming angle and position: x = −c₀ s, θ = θ_i' + k
+    /// s − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
         let incident = self.pieces(self.horizon, 120);

@@ -42,10 +42,11 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
         .collect()
 }
 
-/// Returns a scene in whose file each of these texts was replaced by another, in this order.
+/// Returns a scene of the repository after the given replacements of text in its file, made in the
+/// given order.
 ///
 /// # Panics
-/// If there is no such scene, a text is not in it, or it becomes invalid.
+/// Panics if there is no such scene, a text is not in it, or it becomes invalid.
 pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> Scene {
     let found = SCENES.iter().find(|(known, _)| *known == name);
     let (_, text) = found.expect("a scene of shading");
@@ -62,7 +63,7 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
 /// this plane.
 ///
 /// # Panics
-/// If there is no such plane.
+/// Panics if there is no such plane.
 pub(super) fn alone(mut scene: Scene, plane: &str) -> Scene {
     scene.planes.retain(|p| p.name == plane);
     assert_eq!(scene.planes.len(), 1, "{} has no {plane}", scene.name);

@@ -80,7 +80,7 @@ fn curvature() -> Vec<Statement> {
         let [low, high] = [f64::min, f64::max].map(|pick| all.into_iter().fold(all[0], pick));
         high / low - 1.0
     };
-    // The width in Ωθ of the whole light field: The power |L|² is summed over Ωx.
+    // The width in Ωθ of the whole light field, for which the power |L|² is summed over Ωx.
     let everywhere = |step: ReflectionStep, before: Factor<'static>| {
         change(&|k| {
             let chain = reflection(k, before);
@@ -92,7 +92,7 @@ fn curvature() -> Vec<Statement> {
             })
         })
     };
-    // The width in Ωθ at a single point 1.5 m away: The spectrum L is projected along Ωx.
+    // The width in Ωθ at a single point 1.5 m away, for which the spectrum L is projected along Ωx.
     let eye = change(&|k| {
         let chain = reflection(k, Factor::One);
         spread(|t| {

@@ -298,9 +298,9 @@ impl Circle {
         }
     }
 
-    /// Returns the position at which a line through a point, at the angle θ to a central
-    /// direction, crosses the axis from the origin along cos T − sin N, which is perpendicular to
-    /// that direction.
+    /// Returns the position at which a line crosses the axis X = cos T − sin N through the origin.
+    /// The line runs through the given point, at the angle θ to the central direction, which is
+    /// perpendicular to X.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {
         let (sine, cosine) = central.sin_cos();
         t * cosine - n * sine - (t * sine + n * cosine) * theta.tan()

@@ -22,7 +22,7 @@ pub(super) struct MirrorBench<'a> {
 
 impl<'a> MirrorBench<'a> {
     /// # Panics
-    /// If the scene is not one sphere or plane.
+    /// Panics if the scene is not one sphere or plane.
     pub(super) fn new(outcome: &'a TableRun) -> Self {
         let view = outcome.system(outcome.planes.len() - 1);
         let value = |p: Parameter| view.value(p).expect("one mirror");

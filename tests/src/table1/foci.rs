@@ -85,7 +85,7 @@ pub(super) fn foci(outcome: &TableRun) -> ReportSection {
 }
 
 /// # Panics
-/// If the scene has no beam.
+/// Panics if the scene has no beam.
 fn with_beam(scene: &Scene, width: f64) -> Scene {
     let mut file = scene.file.clone();
     let LightFile::Beam { image, .. } = &mut file.light else {
@@ -142,7 +142,7 @@ fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]>
 /// Returns the foci predicted by rays.
 ///
 /// # Panics
-/// If no light arrives.
+/// Panics if no light arrives.
 fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     let all = Profile::Box(10.0);
     let window = Window {

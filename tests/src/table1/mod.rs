@@ -40,7 +40,7 @@ impl TableRun {
     /// Returns the specular system before a plane.
     ///
     /// # Panics
-    /// If theory does not trace rays to the plane.
+    /// Panics if theory does not trace rays to the plane.
     fn system(&self, plane: usize) -> Observed<SpecularSystem> {
         system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
@@ -48,7 +48,7 @@ impl TableRun {
     /// Returns the index of a plane.
     ///
     /// # Panics
-    /// If there is no plane of that name.
+    /// Panics if there is no plane of that name.
     fn plane(&self, name: &str) -> usize {
         let planes = &self.scene.planes;
         let found = planes.iter().position(|p| p.name == name);

@@ -77,7 +77,7 @@ pub(super) struct Fall {
 /// Computes ‖first order − exact‖/‖exact‖ on neighbourhoods of all sizes, and fits its order.
 ///
 /// # Panics
-/// If the chain does not arrive.
+/// Panics if the chain does not arrive.
 pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     let view = outcome.system(index);
     let at = &outcome.scene.planes[index];

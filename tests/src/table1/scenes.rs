@@ -41,7 +41,7 @@ const SCENES: &[(&str, &str)] = &[
 /// Returns every scene that tests Table 1, by default with the number of photons in its file.
 ///
 /// # Panics
-/// If a scene is invalid.
+/// Panics if a scene is invalid.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let resolved = SCENES.iter().map(|(name, text)| {
         let mut file = SceneFile::parse(text).expect("a scene of the table is a scene file");

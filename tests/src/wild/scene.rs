@@ -27,8 +27,8 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
-        // If a surface makes the path invalid, it is removed; for example, the path would have to
-        // visit a surface that stands on an earlier leg.
+        // A surface that makes the path invalid is removed, for example a surface that stands on an
+        // earlier leg of the path.
         if central_ray(&file, folder).is_none() {
             file.surfaces.pop();
         }
@@ -128,8 +128,9 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// Returns the leg on which the next surface is placed. After a specular surface this leg is along
-/// the central ray, after any other surface in any direction in front of it.
+/// Returns the leg on which the next surface is placed. After a specular surface the next leg
+/// follows the central ray; after any other surface, the next leg may have any direction in front
+/// of the surface.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);

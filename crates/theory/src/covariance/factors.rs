@@ -1,8 +1,8 @@
 //! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
 //!
 //! The covariance of a factor f is the second moment of its power spectrum, ∫ f'²/(4π² ∫ f²), if
-//! this moment exists. A factor with edges has no such moment, so a Gaussian with the variance of
-//! the factor replaces it.
+//! this moment exists. The power spectrum of a factor with edges has no second moment, so a
+//! Gaussian with the variance of the factor replaces the factor.
 
 use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
@@ -38,10 +38,10 @@ pub fn window(window: &Window) -> Matrix<4> {
     diagonal([x, y, u, v].map(profile))
 }
 
-/// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared:
-/// the variance f² m²/(2 + m²) of the grating's three spectral lines, weighted by their power. If
-/// the replicas of the light's spectrum do not overlap, the covariance adds to the covariance of
-/// the light.
+/// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared.
+/// The covariance is the variance f² m²/(2 + m²) of the grating's three spectral lines, weighted by
+/// their power. If the replicas of the light's spectrum do not overlap, the covariance adds to the
+/// covariance of the light.
 #[must_use]
 pub fn grating(grating: &Grating) -> f64 {
     let square = grating.modulation * grating.modulation;
@@ -52,7 +52,7 @@ pub fn grating(grating: &Grating) -> f64 {
 /// treated as an opening about the central ray. The opening is the largest disc about the central
 /// ray that contains no shape; half-planes narrow the opening along their axis. (The course notes
 /// of Belcour 2016 use the largest unoccluded disc.) Returns `None` if the mask blocks the central
-/// ray or has an edge on it.
+/// ray or has an edge on the central ray.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];

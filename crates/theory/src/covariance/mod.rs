@@ -1,11 +1,12 @@
 //! Covariance tracing: the second moments of a spectrum, followed along a light path (Belcour et
-//! al. 2013, *5D Covariance Tracing for Efficient Defocus and Motion Blur*), without time.
+//! al. 2013, *5D Covariance Tracing for Efficient Defocus and Motion Blur*), without the dimension
+//! of time.
 //!
 //! A [`SpectralCovariance`] is the 4 × 4 matrix C of a Gaussian light field, whose power spectrum
 //! is |L(Ω)|² ∝ exp(−½ Ωᵀ C⁻¹ Ω). Axes are (ρx, ρy, νu, νv): cycles per metre along x and y, cycles
-//! per unit slope, or per radian on surfaces, along u and v. So the blocks of C are in cycles²/m²,
-//! cycles²/m and cycles². In the light field the same Gaussian is exp(−½ zᵀ S⁻¹ z) with
-//! S⁻¹ = 8π² C (docs/theory.md, section 6).
+//! per unit slope, or per radian on surfaces, along u and v. The units of the blocks of C are
+//! cycles²/m², cycles²/m and cycles². The light field with this spectrum is the Gaussian exp(−½ zᵀ
+//! S⁻¹ z) with S⁻¹ = 8π² C (docs/theory.md, section 6).
 //!
 //! | what light meets | operator | what becomes of C |
 //! |---|---|---|
@@ -14,10 +15,10 @@
 //! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
 //! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |
 //!
-//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] return W and B of the elements of a
-//! scene, and [`Traced`] follows a complete chain. The spectrum of a field with edges has no
-//! second moments, but covariance tracing treats such a field as a Gaussian. docs/covariance.md
-//! shows for which scenes this approximation holds.
+//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] return the covariances W and B of the
+//! elements of a scene, and [`Traced`] follows the covariance along a complete chain. The spectrum
+//! of a field with edges has no second moments, but covariance tracing treats such a field as a
+//! Gaussian. docs/covariance.md shows for which scenes this approximation holds.
 
 mod factors;
 mod pair;

@@ -43,8 +43,8 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The
-    /// offset does not affect the power spectrum. Returns `None` if A has no inverse.
+    /// Returns A⁻ᵀ C A⁻¹, the covariance after a change z' = A z + t of ray coordinates. The offset
+    /// does not affect the power spectrum. Returns `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
@@ -54,8 +54,8 @@ impl SpectralCovariance {
         })
     }
 
-    /// Returns the covariance after a product with a factor whose power spectrum has the covariance
-    /// W: C + W.
+    /// Returns C + W, the covariance after a product with a factor whose power spectrum has the
+    /// covariance W.
     #[must_use]
     pub fn multiplied(&self, factor: &Matrix<4>) -> Self {
         Self {
@@ -64,9 +64,9 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a convolution with a Gaussian of covariance s in the light
-    /// field, in squares of metres and radians: C⁻¹ increases by 8π² s. If the covariance s is
-    /// zero, as for a mirror, C does not change.
+    /// Returns the covariance after a convolution of the light field with a Gaussian of covariance
+    /// s, in squares of metres and radians. The convolution increases C⁻¹ by 8π² s. If the
+    /// covariance s is zero, as for a mirror, C does not change.
     #[must_use]
     pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
         let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));
@@ -76,9 +76,10 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after diffuse reflection, which integrates light over all directions
-    /// and spreads it uniformly over directions, so that only the spectrum at ν = 0 remains. The
-    /// block of C⁻¹ for positions does not change, and C⁻¹ becomes infinite along both angles.
+    /// Returns the covariance after diffuse reflection. Diffuse reflection integrates light over
+    /// all directions and spreads the result uniformly over directions, so only the spectrum at ν =
+    /// 0 remains. The block of C⁻¹ for positions does not change, and C⁻¹ becomes infinite along
+    /// both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
         // The columns of P and Q form pairs (C w, w). Pairs without angular frequency do not

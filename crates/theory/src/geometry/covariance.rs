@@ -9,8 +9,8 @@ use std::array;
 use std::f64::consts::{PI, TAU};
 
 /// Returns the covariance after a product with a Gaussian window of standard deviations `std`, one
-/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite standard deviations have no
-/// effect.
+/// for each coordinate. The product changes S⁻¹ to S⁻¹ + diag(1/std²). Infinite standard deviations
+/// have no effect.
 ///
 /// The result is computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light
 /// from a point. Returns `None` if 1 + diag(1/std²) S has no inverse, which cannot occur if S is a
@@ -31,7 +31,7 @@ pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> 
     sum(before, &diagonal(blur))
 }
 
-/// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
+/// Returns S⁻¹/8π², the covariance of |L|² for a Gaussian field of covariance S. The covariance of
 /// |L| is twice as large.
 ///
 /// The result is in cycles per unit, squared. Returns `None` for a singular S, whose spectrum is

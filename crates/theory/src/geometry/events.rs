@@ -49,8 +49,8 @@ impl AffineMap<4> {
     /// at the angle θ₀.
     ///
     /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀
-    /// M₂₂ y. So a sphere of radius R focuses at R/2 · cos θ₀ in the plane of incidence and at R/(2
-    /// cos θ₀) across it (Coddington's equations).
+    /// M₂₂ y. A sphere of radius R thus has its focus at R/2 · cos θ₀ in the plane of incidence,
+    /// and at R/(2 cos θ₀) across this plane (Coddington's equations).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, shape: Matrix<2>) -> Self {
         Self::incidence(theta0)

@@ -10,13 +10,13 @@ const STEP: f64 = 1.0 / 32.0;
 /// of a cycle per radian.
 const MAX_FREQUENCY: f64 = 1e5;
 
-/// The kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2 of the change from slopes to
-/// angles, which is real: L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv) K(Ωv, Ωθ) dΩv (Durand et al. 2005,
-/// section 4, who plot it in Fig. 8 but give no formula).
+/// Returns the kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2 of the change from
+/// slopes to angles, which is real. The spectrum in angles is L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv)
+/// K(Ωv, Ωθ) dΩv (Durand et al. 2005, section 4, who plot it in Fig. 8 but give no formula).
 ///
 /// Frequencies are in cycles per unit slope and per radian. The absolute error is below 10⁻¹³ (K is
-/// at most π) for frequencies up to 160; the result is NaN beyond 10⁵. The time is proportional to
-/// Ωθ.
+/// at most π) for frequencies up to 160; the result is NaN beyond 10⁵. The computing time is
+/// proportional to Ωθ.
 ///
 /// K is π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md (30)). K(−Ωv,
 /// −Ωθ) = K(Ωv, Ωθ), K(0, Ωθ) = π sinc(b/2).

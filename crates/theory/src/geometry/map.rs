@@ -16,7 +16,7 @@ pub struct AffineMap<const N: usize> {
     pub offset: [f64; N],
 }
 
-/// Step of the finite differences that estimate a map, metres and radians.
+/// Step of the finite differences that estimate a map, in metres and radians.
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
@@ -121,7 +121,7 @@ impl<const N: usize> AffineMap<N> {
         matrix::determinant(&self.matrix)
     }
 
-    /// Returns the image of a ray: A z + t.
+    /// Returns the image A z + t of a ray z.
     #[must_use]
     pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
         plus(&times(&self.matrix, &ray), &self.offset)

@@ -12,11 +12,11 @@ use std::f64::consts::TAU;
 pub enum Edition {
     /// The formulas that follow from ray geometry, which are the maps of [`geometry`](super).
     Corrected,
-    /// The paper's numbered Eqs. 9, 11 and 10, and for a surface in 3D the shear by M in the text
-    /// after Eq. 19.
+    /// The operators in the paper's numbered Eqs. 9, 11 and 10, with the shear by M in the text
+    /// after Eq. 19 for a surface in 3D.
     Equations,
-    /// The paper's Table 1, with its light incidence, curvature and outgoing angle. The table has
-    /// no row for 3D, so the shear by M is given the sign of the table's curvature.
+    /// The operators in the paper's Table 1: light incidence, curvature and outgoing angle. The
+    /// table has no row for 3D, so the shear by M is given the sign of the table's curvature.
     Table,
 }
 

@@ -44,10 +44,11 @@ impl AffineMap<2> {
     /// Refraction of local directions, Snell's law linearised at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
     /// θ₀/(n₂ cos θ₂).
     ///
-    /// The formula follows by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); the
-    /// paper has no refraction. Directions stay flipped, and light continues through the surface:
-    /// the next step back into a light frame is the inverse of the incidence at θ₂. Returns `None`
-    /// under total internal reflection, and at the critical angle, where there is no derivative.
+    /// The formula follows by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); Durand et
+    /// al. 2005 do not treat refraction. Directions stay flipped, and light continues through the
+    /// surface: the next step back into a light frame is the inverse of the incidence at θ₂.
+    /// Returns `None` under total internal reflection, and at the critical angle, where there is no
+    /// derivative.
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

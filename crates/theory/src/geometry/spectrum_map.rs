@@ -5,7 +5,7 @@ use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// The effect of a step on spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
+/// The effect of a step on spectra, which is L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
 /// Every [`AffineMap`] has a spectrum map with the factor |det A|, the matrix Aᵀ and the phase t.
 /// The spectrum map is a separate type because a misprinted step may not correspond to any map of
@@ -31,7 +31,8 @@ impl<const N: usize> SpectrumMap<N> {
         }
     }
 
-    /// Returns the effect on rays, z' = A z + t: A is the transpose of the matrix, t the phase.
+    /// Returns the effect on rays, z' = A z + t, where A is the transpose of the matrix and t is
+    /// the phase.
     #[must_use]
     pub fn rays(&self) -> AffineMap<N> {
         AffineMap {

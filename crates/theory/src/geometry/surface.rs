@@ -56,7 +56,7 @@ impl AffineMap<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions also flips the latitude, which section 5.2 of Durand et al. 2005 does
-    /// not mention. In 2D the step is Eq. 9 of that paper.
+    /// not mention. In 2D the step is Eq. 9 of Durand et al. 2005.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())
@@ -65,10 +65,11 @@ impl AffineMap<4> {
     /// Curvature, into the frames of the local normals: (θ', φ') = (θ, φ) − diag(1, cos θ₀) M s for
     /// directions about the longitude θ₀.
     ///
-    /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex
-    /// positive: diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this matrix M.
-    /// The paper's text describes the step as a shear by M, without cos θ₀. But tilting the normal
-    /// about T moves a direction at longitude θ₀ by an amount smaller by the factor cos θ₀.
+    /// `shape` is the symmetric matrix M, the derivative of the normal along (T, B), in 1/m and
+    /// positive for convex surfaces. In principal axes M is diag(k₁, k₂). Eq. 19 of Durand et al.
+    /// 2005 is this matrix M. The paper's text describes the step as a shear by M, without cos θ₀.
+    /// However, a tilt of the normal about T moves a direction at longitude θ₀ by only cos θ₀ times
+    /// the tilt.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)

@@ -23,7 +23,7 @@ impl<const N: usize> AffineMap<N> {
     /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
     ///
     /// The map describes an ideal lens, which images planes onto planes exactly if directions are
-    /// slopes (docs/theory.md (24)). Durand et al. 2005 have no lens.
+    /// slopes (docs/theory.md (24)). Durand et al. 2005 do not treat lenses.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -49,12 +49,12 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<4> {
-    /// A rotation of the axes by an angle, in radians, from the first to the second: x' = x cos + y
-    /// sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
+    /// A rotation of the axes by an angle in radians, from the first axis towards the second: x' =
+    /// x cos + y sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
     ///
     /// The rotation is exact for two-plane coordinates turned about the central ray, e.g. to bring
-    /// the plane of incidence onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to
-    /// first order in the angle to the normal (Durand et al. 2005, section 5.2).
+    /// the plane of incidence onto X. About a normal the rotation turns (s_x, s_y) exactly and (θ,
+    /// φ) to first order in the angle to the normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);

@@ -17,7 +17,7 @@ pub(crate) struct LinearDensity {
     values: Vec<f64>,
     /// The cumulative density at the ends of the cells, from 0 to 1.
     below: Vec<f64>,
-    /// Lookup table of cells: a search for a quantile starts at the table's cell for it.
+    /// Lookup table: for each entry, the cell at which the search for a quantile starts.
     first: Vec<usize>,
 }
 

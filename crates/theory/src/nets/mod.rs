@@ -32,8 +32,8 @@ const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net for derivatives.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
 /// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. An error of this size
-/// changes a measured parameter by about its square times the difference between the measured
-/// value and the scene's value.
+/// changes a measured parameter by about the square of this error, times the difference between the
+/// measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -109,7 +109,7 @@ impl Predicted {
     }
 }
 
-/// A net in progress.
+/// A net whose nodes are not yet all summed.
 struct Running {
     net: NetPoints,
     /// The sums of each field so far.
@@ -133,10 +133,10 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even
-/// fewer rays, the chosen strategy would be one that is best only for few rays. The nets of a
-/// trial differ from the nets of predictions. If they were the same, the chosen strategy would
-/// often be one whose rays of large weight happen to be absent from the prediction's nets.
+/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even fewer
+/// rays, the chosen strategy would be the best strategy only for few rays. The nets of a trial
+/// differ from the nets of predictions. If the nets were the same, the chosen strategy would often
+/// be a strategy whose rays of large weight happen to be absent from the prediction's nets.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -239,7 +239,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let replicates = REPLICATES as f64;
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST_NODES))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
-    // Each field of a derivative has its own rays, so its work adds to the prediction's.
+    // Derivatives add to the work of the prediction, since each field has its own rays.
     let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
     let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
@@ -299,7 +299,7 @@ impl Running {
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
-            // There may be no field if no derivative was requested.
+            // The list of fields is empty if no derivative was requested.
             let RayNode { z, weight } = nodes.first().copied().unwrap_or(RayNode::DARK);
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
@@ -370,7 +370,7 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
     }
 }
 
-/// Sums over rays z of weight times 1, z and z zᵀ.
+/// Sums, over rays z, of the weight times 1, times z, and times z zᵀ.
 #[derive(Clone, Copy, Debug, Default)]
 struct WeightedMoments {
     total: f64,
@@ -466,8 +466,8 @@ mod tests {
         }
     }
 
-    /// Tests that derivatives use other nets than the prediction; common noise would bias the
-    /// parameters that are measured with these derivatives.
+    /// Tests that derivatives and the prediction use different nets, because common noise would
+    /// bias the parameters that are measured with these derivatives.
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());

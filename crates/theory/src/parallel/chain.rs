@@ -132,7 +132,8 @@ pub(crate) struct ChainSegment<'a> {
 }
 
 impl Chain {
-    /// Returns the chain relative to its end.
+    /// Returns the light, masks and reflection of the chain, with distances relative to the end of
+    /// the chain.
     ///
     /// # Panics
     /// Panics if an operator other than travel follows a diffuse reflection.

@@ -1,15 +1,15 @@
 //! The transforms of many polygons along a row of frequencies, computed from sums over corners
 //! instead of one exponential per polygon and frequency (docs/theory.md, section 3).
 //!
-//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p,
-//! at which edges of directions d and e meet:
+//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p
+//! of the polygon. The edges that meet at p have the directions d and e:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends only on the pair (d, e) of directions, and a chain has few such pairs. The
-//! exponential is the product of one exponential in the position and one in the slope. Each
-//! exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c± at k ± s, a
-//! corner needs
+//! The quotient depends only on the pair (d, e) of directions, and a chain has few pairs of
+//! directions. The exponential is the product of one exponential in the position and one in the
+//! slope. Each exponential of the window shifts k by ± s. With θ = 2π s·p and the quotients c± at k
+//! ± s, the contribution of a corner is as follows:
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
@@ -26,8 +26,8 @@ use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// The smallest |k·d|, where d is the longest possible edge along a direction, at which sums over
-/// corners are used. Two such edges in one quotient amplify rounding errors by 1/CANCELLATION² =
-/// 1000.
+/// corners are used. A quotient for two directions at this limit amplifies rounding errors by
+/// 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves that are processed together; it is small enough for the quotients of these
 /// waves to fit into the cache.
@@ -39,8 +39,8 @@ struct Corner {
     at: [f64; 2],
     /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign of the corner's term, which depends on the order of its two directions; ±i for the
-    /// ends of a segment.
+    /// The sign of the corner's term, which depends on the order of the corner's two directions; ±i
+    /// for the ends of a segment.
     sign: Complex,
     /// Index of the corner's polygon.
     polygon: usize,

@@ -8,8 +8,8 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// The lowest order at which the quadrature for discs converges.
 const ORDER: i32 = 4;
 
-/// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
-/// Returns `None` if the prediction is a closed form.
+/// Estimates the relative error ‖error‖/‖F‖, over the grid, of `slices`, the prediction of the
+/// given chain. Returns `None` if the prediction is a closed form.
 ///
 /// * Discs: the difference between `slices` and a prediction that splits discs with a quarter more
 ///   nodes, divided by 1 − 0.8⁴. If masks or windows have corners within a disc the error falls as
@@ -104,8 +104,8 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The error of the coarse rule is much larger than that of the finer rule, so the estimate
-        // exceeds the error by the factor 1/(1 − 0.8⁴), which is meant for a rule of order 4.
+        // The error of the coarse rule is much larger than that of the finer rule. So the estimate
+        // exceeds the error by the factor 1/(1 − 0.8⁴), which is correct for a rule of order 4.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

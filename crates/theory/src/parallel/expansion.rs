@@ -45,15 +45,16 @@ pub(crate) struct PolygonTerm {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// Two indices: of the term from which this term was clipped, and of the extent along x to
-    /// which it was clipped. Terms for which both indices are equal have the same P.
+    /// Two indices: that of the term from which this term was clipped, and that of the extent along
+    /// x to which this term was clipped. Terms for which both indices are equal have the same P.
     column: [usize; 2],
 }
 
 /// Weights and indices of the summands of a weighted sum.
 pub(crate) type Sum = Vec<(f64, usize)>;
 
-/// Terms that are summed along y first, as Σ 1_P(x, u) times a sum of sums of polygons of (y, v).
+/// Terms that are summed along y first: the indicator 1_P(x, u) of each polygon P is multiplied by
+/// a weighted sum of `sums`.
 #[derive(Debug)]
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
@@ -74,7 +75,7 @@ pub(crate) struct Expansion {
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
     /// The expansion of the window, the gratings and the factor of slope: a sum of products of
-    /// waves of both sections. A factor of slope has several such products.
+    /// waves of both sections. A factor of slope has several products of waves.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -314,7 +315,8 @@ impl Expansion {
         SectionColumns { sums, beside }
     }
 
-    /// Removes the polygons that no term uses, and sorts the others in the order of the terms.
+    /// Removes the polygons that no term uses, and sorts the other polygons in the order of the
+    /// terms.
     fn drop_unused(&mut self) {
         for (axis, section) in self.sections.iter_mut().enumerate() {
             let all = std::mem::take(&mut section.polygons);

@@ -7,10 +7,10 @@
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is a sum over q. The field under this window is bounded. If the spacing of
-//! the sum is small enough to separate the copies of the field, the sum is exact up to the lobe's
-//! tail. The lobe also blurs slopes along y, which moves a fraction of the light out of the
-//! window. Multiplication by the remaining fraction is exact if the field is the product of a
+//! window. The integral is computed as a sum over q. The field under this window is bounded. If the
+//! spacing of the sum is small enough to separate the copies of the field, the sum is exact up to
+//! the lobe's tail. The lobe also blurs slopes along y, which moves a fraction of the light out of
+//! the window. Multiplication by the remaining fraction is exact if the field is the product of a
 //! function of (x, u) and a function of (y, v), as behind slats along y.
 
 use super::{projection, slices};
@@ -31,7 +31,8 @@ const SEEN_TAIL: f64 = 1e-4;
 const APART: f64 = 1.05;
 /// Lobes whose reach exceeds this angle, in radians, are treated as cut off at a right angle.
 const BROAD: f64 = 1.5;
-/// Maximum number of frequencies on each side of zero. Narrow lobes reach it.
+/// Maximum number of frequencies on each side of zero. Sums for narrow lobes use this maximum
+/// number.
 const MAX_FREQUENCIES: usize = 512;
 
 /// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.

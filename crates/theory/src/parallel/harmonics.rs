@@ -38,8 +38,8 @@ impl Harmonics {
     /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along
     /// each axis.
     ///
-    /// Returns `None` if the chain has a diffuse reflection, whose spectrum is not a sum of such
-    /// products, or if the tables would be larger than 1.6 GB.
+    /// Returns `None` if the chain has a diffuse reflection, whose spectrum is not a sum of
+    /// products of two factors, or if the tables would be larger than 1.6 GB.
     #[must_use]
     pub fn new(
         chain: &Chain,
@@ -54,9 +54,9 @@ impl Harmonics {
     /// grid, after division by the assignment spline. The expected spectrum is the spectrum of the
     /// chain plus aliases from beyond the Nyquist frequency.
     ///
-    /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in cycles per cell and p is the
-    /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). The sum
-    /// covers |nᵢ| ≤ `FOLDS`. Returns `None` as for [`new`](Self::new).
+    /// The expected spectrum is Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in
+    /// cycles per cell and p is the order of the spline (docs/theory.md (44); Hockney and Eastwood
+    /// 1981, chapter 5). The sum covers |nᵢ| ≤ `FOLDS`. Returns `None` as for [`new`](Self::new).
     #[must_use]
     pub fn on_grid(
         chain: &Chain,

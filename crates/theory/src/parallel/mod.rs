@@ -12,7 +12,7 @@
 //! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
 //! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
 //! | a diffuse receiver | `receiver` |
-//! | a curved glossy receiver, met head on, in flatland | `images`, `gloss` |
+//! | a curved glossy receiver at normal incidence, in flatland | `images`, `gloss` |
 //! | the same light by nets of rays | `sampled` |
 //! | light of finitely many rays | `given` |
 

@@ -134,8 +134,9 @@ impl Model for Chain {
 /// seconds on one core. At the same cost, nets of rays would have more noise than the photons, so
 /// a closed form is preferred up to this limit.
 const MAX_STEPS: f64 = 1e10;
-/// Maximum number of computing steps of a closed form for each ray of the budget. They take about
-/// as long as tracing four photons, and a run has about four photons for each ray of the budget.
+/// Maximum number of computing steps of a closed form for each ray of the budget. The steps for
+/// each ray take about as long as tracing four photons, and a run has about four photons for each
+/// ray of the budget.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
 /// Maximum number of computing steps of a closed form or a quadrature if nets of rays do not fit
 /// into memory.

@@ -45,8 +45,9 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// Returns the square |position| < 1, |slope| < 1. `edges` are the indices of two directions:
-    /// of the sides of constant slope and of the sides of constant position.
+    /// Returns the square |position| < 1, |slope| < 1. `edges` are two indices: that of the
+    /// direction of the sides of constant slope, and that of the direction of the sides of constant
+    /// position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
         let corner = |x, u, side: usize| Vertex {
             at: [x, u],

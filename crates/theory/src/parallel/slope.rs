@@ -2,9 +2,9 @@
 //! cosine series (docs/theory.md (5d)).
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
-//! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted there by
-//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). The
-//! decomposition and each fit stop when their measured residual is below a threshold.
+//! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted by cosines
+//! whose period is longer than the window (a Fourier extension, Huybrechs 2010). The decomposition
+//! and each fit stop when their measured residual is below a threshold.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};

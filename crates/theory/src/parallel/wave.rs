@@ -20,8 +20,8 @@ pub(crate) struct Shift {
     pub(crate) frequency: [f64; 2],
     /// The weight without the factor for the phase of the wave.
     pub(crate) amplitude: f64,
-    /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), where s is the frequency of its
-    /// wave.
+    /// The sign, +1 or −1, in the exponential exp(−i sign (2π s·p + phase)), where s is the
+    /// frequency of its wave.
     pub(crate) sign: f64,
     pub(crate) weight: Complex,
 }

@@ -2,8 +2,8 @@
 
 use etendue_field::{HalfPlane, Rectangle};
 
-/// The function weight · 1[x in `extent[0]`] · 1[y in `extent[1]`]. It represents a light or a
-/// blocker, or a summand of one that is a disc.
+/// The function weight · 1[x in `extent[0]`] · 1[y in `extent[1]`]. The function represents a
+/// rectangular light or blocker, or one of the rectangles into which a disc is split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WeightedRectangle {
     /// Lowest and highest coordinate along X and along Y, in metres; coordinates may be infinite.

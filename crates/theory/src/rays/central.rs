@@ -49,8 +49,8 @@ impl Incidence {
         }
     }
 
-    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T,
-    /// B), per metre; it is positive for a surface that is convex on the side of N.
+    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T, B),
+    /// per metre. The operator is positive for a surface that is convex on the side of N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
         let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();

@@ -11,17 +11,18 @@ use glam::DVec3;
 /// The chain of first-order maps from the light to a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineChain {
-    /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| over
-    /// all maps and of (n₂/n₁)² over all refractions; radiance grows by (n₂/n₁)² at a refraction.
+    /// The effect of the chain on spectra of radiance. The factor is the product of |det A| over
+    /// all maps and of (n₂/n₁)² over all refractions, because a refraction multiplies radiance by
+    /// (n₂/n₁)².
     pub map: SpectrumMap<4>,
     /// The maps of the chain, in the order of propagation from the light.
     pub maps: Vec<SpectrumMap<4>>,
     /// Descriptions of the steps in the order of propagation. Steps inside the light and inside
     /// the surface of the plane are omitted.
     pub steps: Vec<String>,
-    /// Distances from the last surface, in metres and in ascending order, at which rays that left
-    /// the light parallel to each other meet; a distance is negative for a virtual focus behind
-    /// the surface. There are at most two distances. If the plane of incidence is a principal
+    /// Distances from the last surface at which rays that left the light parallel to each other
+    /// meet, in metres and in ascending order. The distance of a virtual focus behind the surface
+    /// is negative. The list has at most two distances. If the plane of incidence is a principal
     /// plane, one distance is for rays in this plane and the other for rays across it.
     pub foci: Vec<f64>,
 }
@@ -31,7 +32,7 @@ pub struct AffineChain {
 /// for a plane on a lens itself, which has no side from which to count angles.
 ///
 /// The editions of the paper differ in the steps for incidence, curvature and outgoing angle; the
-/// paper has no refraction and no lens.
+/// paper treats neither refraction nor lenses.
 #[must_use]
 pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
@@ -350,8 +351,8 @@ impl Walk {
     }
 }
 
-/// Returns the map of a thin lens, from the frame of one leg to that of the next. It holds to first
-/// order about a central ray, which may cross the lens at any point and slope.
+/// Returns the map of a thin lens, from the frame of one leg to that of the next. The map holds to
+/// first order about a central ray, which may cross the lens at any point and slope.
 ///
 /// In the lens's own frame positions do not change, and slopes decrease by the position divided by
 /// the focal length. If the central ray passes through the lens's centre along its axis, the map
@@ -372,8 +373,8 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // The ray's position moves along the ray to the plane; the slopes are the plane's
-            // slopes of the direction D + u X.
+            // The ray's position moves along the ray to the plane; the slopes are those of the
+            // direction D + u X relative to the plane.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();

@@ -61,7 +61,8 @@ impl Plane {
     }
 
     /// Returns the point with two given coordinates on the plane or on the plane's surface, and
-    /// the normal at this point on the side of D. Returns `None` if the surface has no such point.
+    /// the normal at this point on the side of D. Returns `None` if the surface has no point with
+    /// these coordinates.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         match &self.patch {

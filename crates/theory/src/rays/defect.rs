@@ -8,11 +8,11 @@ use etendue_field::Window;
 /// Returns the error of a chain of affine maps, such as that of [`chain`](super::chain()), in the
 /// limit of a small neighbourhood of the central ray.
 ///
-/// The maps of a chain must be the derivatives of rays through the real geometry. If they are, the
-/// chain's error falls linearly or quadratically with the size of the neighbourhood, and the limit
-/// is zero except for 10⁻⁹ from finite differences and rounding errors. If any map has a wrong
-/// sign, cosine or factor, the returned limit is not zero: it is the error of rays in half-widths
-/// of the window, or the relative error of radiance.
+/// The maps of a chain must be the derivatives of rays through the real geometry. If the maps are
+/// these derivatives, the chain's error falls linearly or quadratically with the size of the
+/// neighbourhood, and the limit is zero except for 10⁻⁹ from finite differences and rounding
+/// errors. If any map has a wrong sign, cosine or factor, the returned limit is not zero: it is the
+/// error of rays in half-widths of the window, or the relative error of radiance.
 ///
 /// Returns `None` if the central ray does not arrive.
 #[must_use]

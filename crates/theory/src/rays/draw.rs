@@ -4,8 +4,8 @@
 //! So a target position or slope in the window determines which ray of the light to follow. The
 //! ray is then followed to its actual landing point. The sampling density of rays is known
 //! exactly, wherever the rays land. If the window is narrower than the error of the linearisation,
-//! few rays sampled by targets land in the window. In that case all four coordinates of rays are
-//! sampled in the window, and the rays are followed back through the exact geometry.
+//! few rays sampled by targets land in the window. For a narrow window all four coordinates of rays
+//! are therefore sampled in the window, and the rays are followed back through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -124,10 +124,10 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// Returns the sampler of a strategy: `center` is the point where the central ray lands, and
-    /// `jacobian` is the derivative of the landing point with respect to the ray. Returns `None`
-    /// if `jacobian` does not determine the ray for a target. If no plane is given, all rays are
-    /// assumed to land at their targets.
+    /// Returns the sampler of a strategy, or `None` if `jacobian` does not determine the ray for a
+    /// target. `center` is the point where the central ray lands, and `jacobian` is the derivative
+    /// of the landing point with respect to the ray. If no plane is given, all rays are assumed to
+    /// land at their targets.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"

@@ -80,7 +80,7 @@ impl SpecularSystem {
     }
 }
 
-/// Returns the flux per unit of the emission's coordinates of the ray (x, y, u, v) as it leaves a
+/// Returns the flux, per unit of the emission's coordinates, of the ray (x, y, u, v) that leaves a
 /// light:
 ///
 /// | light | flux |

@@ -2,13 +2,13 @@
 //!
 //! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
 //! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
-//! central ray visits. Together they are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). The model follows rays through the real geometry and sums them, by a
+//! central ray visits. A system and a plane together are an [`Observed`](crate::Observed), which is
+//! a [`Model`](crate::Model). The model follows rays through the real geometry and sums them, by a
 //! quadrature rule if the rule converges and over scrambled nets otherwise. The function
 //! [`chain`](chain()) derives the chain of first-order maps ([`geometry`](crate::geometry)) from
-//! the same system, and [`linear()`] returns the prediction of such a chain. With both
-//! predictions, a difference between a measurement and the first-order chain splits into noise,
-//! the error of linearisation, and faults.
+//! the same system, and [`linear()`] returns the prediction of such a chain. With both predictions,
+//! a difference between a measurement and the first-order chain splits into noise, the error of
+//! linearisation, and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z,
 //! and (x, y) are along X and Y. A ray carries flux; `emission.rs` defines the flux of the rays of
@@ -30,7 +30,7 @@
 //! use etendue_theory::rays::{SpecularSurface, Plane, SpecularSystem, chain, linear};
 //! use glam::DVec3;
 //!
-//! // A beam straight onto a hollow mirror of radius 2 m, a metre away, looked at half-way to its focus.
+//! // A beam along the axis of a concave mirror of radius 2 m; the plane is half-way to the focus.
 //! let image = Image { width: [0.02; 2], grating: None };
 //! let patch = Patch {
 //!     frame: Frame::new(DVec3::Z, -DVec3::Z, DVec3::X).unwrap(),

@@ -11,7 +11,8 @@ use crate::work::PredictionWork;
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 
-/// Values below this, in metres or in the unit of a parameter, are zero up to rounding error.
+/// Values below this threshold, in metres or in the unit of a parameter, are zero up to rounding
+/// error.
 const ROUNDING_OF_ZERO: f64 = 1e-9;
 
 impl Model for Observed<SpecularSystem> {

@@ -1,11 +1,11 @@
 //! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a
 //! beam.
 //!
-//! Rays of a region of the emission land in the window. If no light reaches the border of this
-//! region, the only error is aliasing, which vanishes if the rule has more nodes than the
-//! integrand has cycles. If an edge of a window or of a surface cuts light, the rule misplaces
-//! this edge by up to half the spacing of nodes. Light with such an edge is summed over nets,
-//! because two rules may agree on the light by chance.
+//! The rule sums the rays of the region of the emission whose rays land in the window. If the
+//! border of the region is dark, the only error is aliasing, which vanishes if the rule has more
+//! nodes than the integrand has cycles. If an edge of a window or of a surface cuts light, the rule
+//! misplaces this edge by up to half the spacing of nodes. Light that an edge cuts is summed over
+//! nets, because two rules may agree on the light by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;

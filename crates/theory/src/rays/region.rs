@@ -9,9 +9,9 @@ use etendue_field::{TwoPlane, Window};
 /// A box in two coordinates: the lowest and highest value along each.
 pub(super) type Region = [[f64; 2]; 2];
 
-/// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light, and
-/// returns the ray's coordinates at the plane and its contribution to ray space at the plane per
-/// unit of the emission's coordinates. The function returns `None` if the ray does not arrive.
+/// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light. It
+/// returns the ray's coordinates at the plane, and the ray's contribution to ray space at the plane
+/// per unit of the emission's coordinates. The function returns `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 

@@ -1,4 +1,4 @@
-//! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
+//! The sum Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
 //! On the slice of one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the
 //! product of a factor for ρ and a factor for ν. The sum over rays is a matrix product of the real

@@ -1,8 +1,8 @@
 //! Closed forms under an untruncated Gaussian window, for checks only.
 //!
-//! A [`Window`](etendue_field::Window) has a finite support, so this window exists nowhere else.
-//! All closed forms but that of the disc are in 2D. Frequencies are (Ωx, Ωv), in cycles per metre
-//! and per unit slope. The slope is called v, as in the paper.
+//! A [`Window`](etendue_field::Window) has a finite support, so only these checks use the
+//! untruncated Gaussian window. All closed forms except that of the disc are in 2D. Frequencies are
+//! (Ωx, Ωv), in cycles per metre and per unit slope. The slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -19,7 +19,7 @@ pub(crate) struct GaussianWindow {
     pub(crate) b: f64,
 }
 
-/// Light after travel over a distance, under the window (docs/theory.md (9)).
+/// A light field after travel over a distance, under the Gaussian window (docs/theory.md (9)).
 struct Travelled {
     distance: f64,
     /// 1/a².
@@ -61,7 +61,7 @@ pub(crate) struct GaussianBlock {
     pub(crate) below: f64,
 }
 
-/// A transparency ½(1 + m cos(2πf x + p)).
+/// A cosine grating with the transmission ½(1 + m cos(2πf x + p)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CosineGrating {
     /// Frequency f, cycles per metre.
@@ -85,9 +85,9 @@ impl CosineGrating {
     }
 }
 
-/// Returns the field |x − D v| < w/2 of an area light of width w at distance D under the window:
-/// q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² +
-/// 1/b², P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
+/// Returns the windowed spectrum of the field |x − D v| < w/2 of an area light of width w at
+/// distance D. The spectrum is q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω
+/// = Ωv + DΩx, q = D²/a² + 1/b², P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
@@ -101,8 +101,8 @@ pub(crate) fn area_light(
     let [omega, big_q] = travelled.frequencies(k);
     let Travelled { p, q, .. } = travelled;
     let half = 0.5 * width;
-    // There are enough nodes for the oscillation, and for the Gaussian if it is narrower than the
-    // light.
+    // The number of nodes suffices for the oscillation of the integrand, and for the Gaussian if
+    // the Gaussian is narrower than the light.
     let nodes = 16 + whole((2.0 * width * (big_q.abs() + p.sqrt())).ceil());
     let integral = integrate(nodes, [-half, half], |y| {
         Complex::from_polar(libm::exp(-PI * p * y * y), -TAU * big_q * y)
@@ -110,8 +110,8 @@ pub(crate) fn area_light(
     integral * (libm::exp(-PI * omega * omega / q) / q.sqrt())
 }
 
-/// Returns the field δ(x − D v) of a point light at distance D under the window: q^(−1/2)
-/// exp(−πω²/q), the area light's factor (docs/theory.md (20)).
+/// Returns the windowed spectrum of the field δ(x − D v) of a point light at distance D: q^(−1/2)
+/// exp(−πω²/q), which is also a factor of the area light's spectrum (docs/theory.md (20)).
 #[must_use]
 pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
@@ -119,8 +119,8 @@ pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -
     libm::exp(-PI * omega * omega / travelled.q) / travelled.q.sqrt()
 }
 
-/// Returns the field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light
-/// under a window narrowed by the lobe, 1/b² + 1/c².
+/// Returns the windowed spectrum of an area light of width w with the lobe exp(−πv²/c²) at distance
+/// D. The lobe narrows the window: 1/b² becomes 1/b² + 1/c².
 #[must_use]
 pub(crate) fn spot(
     width: f64,
@@ -133,11 +133,11 @@ pub(crate) fn spot(
     area_light(width, distance, &GaussianWindow { a: window.a, b }, k)
 }
 
-/// Returns the field of a disc of radius R at distance D, in 4D under the window of a and b along
-/// both axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, where ω and Q are vectors
-/// (docs/theory.md (21)).
+/// Returns the 4D spectrum of a disc of radius R at distance D, under a window with the widths a
+/// and b along both axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, where ω and Q are
+/// vectors (docs/theory.md (21)).
 ///
-/// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
+/// Frequencies are (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
 #[must_use]
 pub(crate) fn disc_light(
     radius: f64,
@@ -167,10 +167,10 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// Returns the spectra of a field without a blocker, with x < 0 blocked, and with x > 0 blocked:
-/// F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times F₀ without its last
-/// exponential times Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md
-/// (22)).
+/// Returns the spectra of a field without a blocker, with x < 0 blocked, and with x > 0 blocked.
+/// The first spectrum is F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), with 1/a² = α − β²/γ and Ω' =
+/// Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π times F₀ without its last exponential times
+/// Dawson(√π a Ω') (docs/theory.md (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;
@@ -183,15 +183,16 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     [even.into(), half, half.conj()]
 }
 
-/// Returns Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
+/// Returns Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule, since the integrand is an
+/// entire function.
 fn dawson(x: f64) -> f64 {
     integrate(24 + whole((x * x).ceil()), [0.0, x], |t| {
         libm::exp(t * t - x * x)
     })
 }
 
-/// Returns the field of the area light at a distance d below a grating: Σ cₙ I(D; Ωx − n f, Ωv + n
-/// f d).
+/// Returns the windowed spectrum of an area light at a distance d behind a grating: Σ cₙ I(D; Ωx −
+/// n f, Ωv + n f d), where I is the spectrum without the grating.
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,
@@ -206,8 +207,9 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks. It is a double
-/// integral over strip and light, with v = (y − y₀)/d₁ and x = y + d₂ v.
+/// Returns the windowed spectrum of the light that a strip blocks; `strip` holds its lowest and
+/// highest coordinate in metres. The spectrum is a double integral over strip and light, with v =
+/// (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,
@@ -232,17 +234,18 @@ pub(crate) fn blocked_by_strip(
     sum / bench.to_blockers
 }
 
-/// Returns a field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
-/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b² (docs/theory.md (8)).
+/// Returns the spectrum of a field times g(v) = (1 + v²)^(−3/2), from spectra of the field under
+/// other Gaussian windows. In g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds, the factor exp(−s²v²)
+/// adds s²/π to 1/b² (docs/theory.md (8)).
 ///
-/// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
+/// The integrand is even and analytic in s, so the trapezoid rule converges exponentially.
 #[must_use]
 pub(crate) fn shaded(
     window: &GaussianWindow,
     field: impl Fn(&GaussianWindow) -> Complex,
 ) -> Complex {
-    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, and that from the end at 6.5 is
-    // exp(−6.5²) = 5e-19.
+    // The step of 0.25 causes an error of exp(−π²/0.25²) = 1e-69, and the end at 6.5 causes an
+    // error of exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
     let sum: Complex = nodes
@@ -255,7 +258,7 @@ pub(crate) fn shaded(
     sum * (4.0 * STEP / PI.sqrt())
 }
 
-/// Returns the spectrum of the irradiance below a grating, without a window: Σ cₙ w sinc(w(Ωx − n
+/// Returns the spectrum of the irradiance behind a grating, without a window: Σ cₙ w sinc(w(Ωx − n
 /// f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
 #[must_use]
 pub(crate) fn irradiance(bench: &GaussianBlock, grating: &CosineGrating, x: f64) -> Complex {

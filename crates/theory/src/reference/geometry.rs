@@ -26,7 +26,7 @@ fn caustic_of_a_hollow_mirror() {
         .unwrap();
     let expected = number(&block["focal_distance"]);
     assert_close("focus", deviation(1, [(focus.into(), expected.into())]));
-    // The sign error of the curvature in Eq. 11 is detected.
+    // The test detects the sign error of the curvature in Eq. 11.
     let wrong = all.map(|sample| {
         let map = AffineMap::<2>::caustic(p("th0"), -p("k"), number(&sample["d"]));
         (map.spectrum(frequency(sample), &beam), complex(sample))
@@ -50,7 +50,7 @@ fn matrix<const N: usize>(value: &Value) -> Matrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| number(&rows[i][j])))
 }
 
-/// The operation that a row of a chain stands for.
+/// The operation that a row of a chain represents.
 enum BlockStep<const N: usize> {
     Map(AffineMap<N>),
     Window([f64; N]),

@@ -23,7 +23,7 @@ impl GratingScene {
         }
     }
 
-    /// Returns the spectrum after a step from 1 to 6, in closed form.
+    /// Returns the spectrum after one of the steps 1 to 6, in closed form.
     fn closed(&self, step: usize, k: [f64; 2]) -> Complex {
         let ReferenceScene {
             bench, gaussian, ..
@@ -46,8 +46,8 @@ impl GratingScene {
         }
     }
 
-    /// Returns the spectrum after a step from 1 to 4, from the polygon of the light; each line of
-    /// the grating shifts the frequency once more.
+    /// Returns the spectrum after one of the steps 1 to 4, from the polygon of the light. Each line
+    /// of the grating adds a copy that is shifted in frequency.
     fn polygons(&self, step: usize, [x, v]: [f64; 2]) -> Complex {
         let ReferenceScene {
             bench, profiles, ..

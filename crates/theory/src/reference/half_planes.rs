@@ -1,5 +1,5 @@
-//! Checks of two half-planes that meet. Each lets half of the light pass, and both together let
-//! none pass (Durand et al. 2005, Fig. 7).
+//! Checks of two half-planes that meet. Each half-plane transmits half of the light, and both
+//! together block all light (Durand et al. 2005, Fig. 7).
 
 use super::*;
 use crate::at;
@@ -33,12 +33,12 @@ fn phases_make_both_halves_dark() {
     let largest = gaussian::half_planes(&field, [0.0, 0.0])[0].norm();
     for sample in samples(&block["samples"]) {
         let [open, a, b] = gaussian::half_planes(&field, frequency(sample));
-        // The light that passes both is all light minus the parts that each blocks: F₀ − (F₀ − F_A)
-        // − (F₀ − F_B).
+        // The light that passes both half-planes is all light minus the light that each half-plane
+        // blocks, F₀ − (F₀ − F_A) − (F₀ − F_B).
         let both = a + b - open;
-        // The error is so small because a and b are conjugates of each other.
+        // The rounding error is small because a and b are conjugates of each other.
         assert!((both - complex(&sample["both"])).norm() < 1e-16);
-        // The moduli alone would leave some light.
+        // A sum of moduli without phases would wrongly give some light.
         let blind = a.norm() + b.norm() - open.norm();
         let zero = frequency(sample).iter().all(|k| k.abs() < 1e-9);
         assert!(zero || blind > 0.02 * largest, "{blind}");

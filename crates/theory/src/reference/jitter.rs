@@ -2,7 +2,8 @@
 
 use crate::numerics::sinc::sinc;
 
-/// Opaque strips in a row, each displaced by an independent offset, uniform in ± half the jitter.
+/// Opaque strips in a row, each displaced by an independent offset that is uniformly distributed
+/// within ± half the jitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JitteredArray {
     /// Number N of strips.
@@ -19,13 +20,13 @@ pub(crate) struct JitteredArray {
 /// array, in m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ)
 /// (docs/theory.md (10)).
 ///
-/// The first term is the noise of the offsets, the second the remainder of the lines of a regular
-/// array.
+/// The first term is the noise that the offsets cause; the second term is what remains of the
+/// spectral lines of a regular array.
 #[must_use]
 pub(crate) fn jittered_array_power(array: &JitteredArray, omega: f64) -> f64 {
     let n = array.count as f64;
     let kept = sinc(array.jitter * omega).powi(2);
-    // D² has the period 1 in pΩ; near zero the quotient of sincs does not cancel.
+    // D² has the period 1 in pΩ. Near pΩ = 0 a quotient of sincs replaces 0/0.
     let phase = array.pitch * omega;
     let phase = phase - phase.round();
     let lines = n * sinc(n * phase) / sinc(phase);

@@ -1,9 +1,9 @@
 //! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, independently
 //! of this crate.
 //!
-//! If a block uses the untruncated Gaussian window, its closed form is checked. If its field is
-//! also made of polygons, the polygon code is checked too, with the window truncated at 3.4 widths,
-//! where it is 2e-16.
+//! For each block of the file with an untruncated Gaussian window, the closed form is checked. If
+//! the light field of the block consists of polygons, the polygon code is checked too, with the
+//! window truncated at 3.4 widths, where its value is 2e-16.
 
 mod area;
 pub(crate) mod gaussian;
@@ -23,9 +23,9 @@ use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
 /// The tolerance relative to the largest value of a block. The file is accurate to 14 digits, and
-/// rounding takes one of them.
+/// rounding errors affect the last digit.
 const CLOSE: f64 = 1e-13;
-/// Side of rectangles that represent strips: wider than any window.
+/// Length of the rectangles that represent strips, which is greater than the width of any window.
 const ENDLESS: f64 = 1e3;
 
 fn block(name: &str) -> Value {
@@ -76,7 +76,7 @@ fn cut(width: f64) -> Profile {
     }
 }
 
-/// Returns the factor of (x, u) of a chain whose rectangles are unbounded along y.
+/// Returns the spectrum's factor over (x, u), for a chain whose rectangles are unbounded along y.
 fn factor(chain: &Chain, [x, u]: [Profile; 2], k: [f64; 2]) -> Complex {
     let expansion = Expansion::of_rectangles(chain, &window(x, u));
     let section = &expansion.sections[0];
@@ -94,7 +94,7 @@ fn strip(center: f64, width: f64) -> Rectangle {
     }
 }
 
-/// Returns a light of that width at that distance, without occluders.
+/// Returns a chain with a light of the given width at the given distance, and without occluders.
 fn light(width: f64, distance: f64) -> Chain {
     let mut chain = chain(width, &[(distance, vec![])]);
     chain.source.light = lambertian(strip(0.0, width));

@@ -13,10 +13,10 @@ use crate::shading::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// The tolerance relative to the largest value of a block. The values here are closed forms, or
+/// The tolerance relative to the largest value of a block. The expected values are closed forms, or
 /// quadratures accurate to 10⁻¹².
 const NEAR: f64 = 1e-9;
-/// The smallest error of a planted fault that must be detected; actual errors are much larger.
+/// The minimum error that a planted fault must cause; the actual errors are much larger.
 const FAULT: f64 = 1e-3;
 
 fn assert_near(what: &str, off: f64) {
@@ -29,7 +29,7 @@ fn assert_seen(what: &str, off: f64) {
     println!("  {what}: {off:.2e}");
 }
 
-/// Returns the deviation of a real function of Ω from a block's samples.
+/// Returns the largest deviation of a real function of Ω from the samples of a block.
 fn curve(block: &Value, count: usize, f: impl Fn(f64) -> f64) -> f64 {
     let pairs = samples(&block["samples"]).iter().map(|sample| {
         let got = f(number(&sample["omega"]));
@@ -82,7 +82,7 @@ fn fresnel_and_cosine() {
         assert_near("reflectance", deviation(5, pairs));
         let hat = |omega| fresnel.cosine_hat(omega);
         assert_near("Fresnel · cos⁺", curve(material, 15, hat));
-        // A planted fault uses one polarisation instead of the mean of both.
+        // The planted fault uses one polarisation instead of the mean of both.
         let square = Complex::new(index, extinction) * Complex::new(index, extinction);
         let across = |omega: f64| {
             let kernel = |theta: f64| {
@@ -112,7 +112,7 @@ fn fresnel_and_cosine() {
     );
 }
 
-/// A Gaussian of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)).
+/// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)).
 struct GaussianField {
     amplitude: f64,
     mean: [f64; 2],
@@ -196,7 +196,8 @@ fn every_step_of_a_reflection() {
         let name = format!("step{}", i + 1);
         assert_near(&format!("{step:?}"), off(&gloss, step, &name));
     }
-    // The mirror of the block is a Dirac that is not divided by the cosine, so the cosine remains.
+    // The BRDF of this mirror is a Dirac that is not divided by the cosine, so the reflected light
+    // keeps the factor of the cosine.
     let dirac = reflection(parameters, Factor::Cosine, None);
     let mirror =
         |chain: &PlanarReflection<'_>| off(chain, ReflectionStep::Outgoing, "step7_mirror_brdf");
@@ -222,11 +223,11 @@ fn every_step_of_a_reflection() {
 }
 
 /// Returns the coordinates (x, θ) of a ray that leaves the circle at arc length s with the local
-/// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of central rays at
-/// an angle.
+/// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of the central ray
+/// at the angle `central`.
 ///
-/// The frame is the one after the reflection: X = c T − sin N. Before the reflection, rays are
-/// reversed and X points the other way.
+/// The frame is that of light after the reflection, with X = cos T − sin N. For light before the
+/// reflection, the caller reverses rays and X.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
     let point = [libm::sin(turn) / k, (libm::cos(turn) - 1.0) / k];
@@ -259,10 +260,10 @@ fn traced(
         Complex::from_polar(scale, -TAU * (omega[0] * x + omega[1] * theta))
     };
     let mut sum = Complex::from(0.0);
-    // 0.55 is eight standard deviations of the light on the surface.
+    // The bound 0.55 is eight standard deviations of the light's positions on the surface.
     for (s, ds) in lattice(0.0, 0.55, 60) {
-        // The light has a standard deviation of 0.05, and its angles are relative to the normal
-        // there.
+        // The light's angles have a standard deviation of 0.05, and are relative to the normal at
+        // s.
         for (incident, di) in lattice(theta0 - k * s, 0.45, 60) {
             let ([x, theta], _) = seen(k, theta0, s, incident);
             let light: f64 = bells.iter().map(|bell| bell.value([-x, theta])).sum();
@@ -274,8 +275,8 @@ fn traced(
                 sum += wave(s, -incident) * share;
                 continue;
             };
-            // A normal distribution by the trapezoid rule with steps of 0.4 standard deviations,
-            // accurate up to rounding error.
+            // The sum over the Gaussian lobe is a trapezoid rule with steps of 0.4 standard
+            // deviations, which is accurate up to rounding errors.
             for (z, dz) in lattice(0.0, 8.0, 20) {
                 let density = libm::exp(-0.5 * z * z) / TAU.sqrt() * dz;
                 sum += wave(s, deviation * z - incident) * (share * density);
@@ -301,10 +302,11 @@ fn rays_off_the_circle() {
             deviation(5, pairs)
         };
         let off = off(&bells);
-        // Both values are from quadratures; that of the file is accurate to 1e-6.
+        // Both values are from quadratures; the value in the file is accurate to 1e-6.
         assert!(off < 1e-6, "{name}: {off:e}");
         println!("{name}, traced: {off:.1e} of the largest value");
-        // The chain is of first order: its error is a few per cent at this size, and is detected.
+        // The chain holds to first order; at this size of the neighbourhood it has a detectable
+        // error of a few per cent.
         let light = |w: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(w)).sum() };
         let lobe = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         let chain = reflection(parameters, Factor::Cosine, lobe);

@@ -1,9 +1,10 @@
-//! The coordinates that aim a leg: directions away from a point, parametrised by two coordinates.
+//! The two coordinates by which the rays of a leg are aimed: they parametrise directions away from
+//! a point.
 //!
 //! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
-//! coordinates are a position there. Rays from anywhere on a wide surface can then be aimed at a
-//! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
-//! first order.
+//! coordinates are a position on this surface or plane. Rays from anywhere on a wide surface can
+//! then be aimed at a narrow window. Otherwise the coordinates are angles, and the landing point is
+//! known only to first order.
 
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
@@ -18,27 +19,29 @@ use std::f64::consts::FRAC_PI_2;
 /// The coordinates that parametrise directions of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectionCoordinates {
-    /// Longitude and latitude at the surface that the leg begins on, minus those of the central
+    /// Longitude and latitude at the surface on which the leg begins, minus those of the central
     /// ray.
     Angles,
     /// A position on the next scattering surface, along X and Y of its patch.
     Patch {
         patch: Patch,
-        /// The position of the central hit on that surface.
+        /// The position of the central ray's hit on the next surface.
         hit: [f64; 2],
-        /// The rotation from the local coordinates at the central hit.
+        /// The rotation from the local coordinates at the central ray's hit to X and Y of the
+        /// patch.
         turn: Matrix<2>,
     },
     /// A position on the plane.
     Plane(Frame),
 }
 
-/// The smallest distance of a plane at which rays may be aimed, in widths of the surface; at this
-/// distance no part of the surface lies beyond the plane.
+/// The smallest distance from a surface to a plane at which the surface's rays may be aimed, in
+/// widths of the surface. At this distance no part of the surface lies beyond the plane.
 const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {
-    /// Builds the coordinates of the leg that begins at the light (0) or at a scatterer.
+    /// Builds the coordinates of the leg with the given index; leg 0 begins at the light, and every
+    /// other leg at a scatterer.
     pub(super) fn new(
         view: &Observed<ReflectionSystem>,
         scatterers: &[ScatteringSurface],
@@ -78,7 +81,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Converts a Gaussian of angles to these coordinates at a point of the surface; `map` leads to
+    /// Converts a Gaussian of angles at a point of the surface to these coordinates; `map` leads to
     /// the end of the leg.
     pub(super) fn seen(
         &self,
@@ -112,7 +115,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns the end point of a ray, if there is one.
+    /// Returns the coordinates of the point where a ray ends the leg, if there is such a point.
     pub(super) fn end(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let (frame, t) = match self {
             Self::Angles => return None,
@@ -138,7 +141,8 @@ impl DirectionCoordinates {
     }
 
     /// Returns the direction with these coordinates from a point, and steradians per unit of the
-    /// coordinates. Angles are about a normal, in the axes of a scatterer.
+    /// coordinates. Angles are measured about the normal in `local`, in the axes of the scatterer
+    /// in `local`.
     pub(super) fn direction(
         &self,
         point: DVec3,

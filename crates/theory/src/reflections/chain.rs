@@ -9,40 +9,42 @@ use crate::words::{self, degrees};
 use etendue_field::{Frame, Specular};
 use glam::DVec3;
 
-/// The path of the central ray, and its neighbourhood to first order.
+/// The path of the central ray, with first-order maps of the rays near the central ray.
 ///
 /// Local coordinates at a scattering surface are (s, t, θ, φ): positions along T and B in metres,
 /// and the longitude and latitude of a direction away from the surface about the local normal. T
 /// lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionChain {
-    /// The scattering surfaces, in the order light meets them.
+    /// The scattering surfaces, in the order in which light meets them.
     pub scatterers: Vec<ScatteringSurface>,
-    /// The affine maps, one more than there are scatterers. The first maps (x, y, u, v) at the
-    /// light to local coordinates of the direction of incidence at the first scatterer. Each of the
-    /// others maps local coordinates of the outgoing direction at a scatterer, minus those of the
-    /// central ray, to the next scatterer; the last map leads to the coordinates of the plane.
+    /// The affine maps, one more than there are scatterers. The first map takes (x, y, u, v) at the
+    /// light to local coordinates of the direction of incidence at the first scatterer. Each later
+    /// map takes local coordinates of the outgoing direction at a scatterer, minus those of the
+    /// central ray, to the next scatterer. The last map leads to the coordinates of the plane.
     pub maps: Vec<AffineMap<4>>,
-    /// The steps in words, in the order light meets them.
+    /// Descriptions of the steps, in the order of propagation.
     pub steps: Vec<String>,
 }
 
-/// A scattering surface at the central hit.
+/// A scattering surface at the point where the central ray meets it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringSurface {
-    /// Index among the surfaces of the path.
+    /// Index of the surface among the surfaces of the path.
     pub number: usize,
-    /// (T, B, N) at the central hit, N on the side from which light is scattered.
+    /// The axes (T, B, N) at the central ray's hit, with N on the side from which light is
+    /// scattered.
     pub frame: Frame,
-    /// Longitude of the direction the central ray comes from.
+    /// Longitude of the direction from which the central ray comes.
     pub incidence: f64,
-    /// Longitude and latitude of the direction the central ray leaves in.
+    /// Longitude and latitude of the direction in which the central ray leaves.
     pub outgoing: [f64; 2],
 }
 
-/// Returns the chain of a system up to a plane; `None` if the central ray does not arrive there.
+/// Returns the chain of a system up to a plane; `None` if the central ray does not arrive at the
+/// plane.
 ///
-/// Its maps are the derivatives of the exact rays.
+/// The maps of the chain are the derivatives of the exact rays.
 #[must_use]
 pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     let scatterers = scatterers(view)?;
@@ -54,8 +56,9 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
-/// as a ratio of these: zero for the chain of [`chain`].
+/// Returns the largest difference between the maps of a chain and the derivatives of the exact
+/// rays, in metres or radians, or as a ratio of these. The difference is zero for the chain that
+/// [`chain`] returns.
 #[must_use]
 pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -64,7 +67,8 @@ pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Opt
 }
 
 impl ReflectionChain {
-    /// Returns A of the rays from the light to the plane in the mirror directions, z' = A z.
+    /// Returns the map z' = A z from the light to the plane, for rays that every scatterer reflects
+    /// in the mirror direction.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {
         let mut maps = self.maps.iter();
@@ -152,8 +156,8 @@ fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
 }
 
 impl ScatteringSurface {
-    /// Returns the ray that leaves a surface at local coordinates relative to those of the central
-    /// ray.
+    /// Returns the ray that leaves a surface, given its local coordinates relative to those of the
+    /// central ray.
     fn ray(&self, surface: &PathSurface, [s, t, theta, phi]: [f64; 4]) -> Option<LegRay> {
         let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
         let down = LegRay::back(&surface.patch, foot, self.frame.d);
@@ -167,8 +171,8 @@ impl ScatteringSurface {
     }
 }
 
-/// Returns the direction at a longitude and a latitude about a normal, in the axes of a frame
-/// turned to the normal.
+/// Returns the direction with a longitude and a latitude about a normal, in the axes of a frame
+/// whose D is turned to the normal.
 pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
     let away = DVec3::new(across * sin, up, across * cos);

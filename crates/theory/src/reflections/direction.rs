@@ -1,8 +1,9 @@
 //! Sampled directions away from a scattering surface.
 //!
 //! Most directions are aimed at positions at the end of the leg. If the next surface is near, as in
-//! a corner, the solid angle of a position on it is unbounded. So some directions follow the lobe
-//! in angles, whatever is ahead, which bounds the weights of all paths.
+//! a corner, the solid angle per unit area of this surface is unbounded. So some directions are
+//! sampled by the angles of the lobe, independently of the next surface, which bounds the weights
+//! of all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;
@@ -14,7 +15,8 @@ use crate::rays::LegRay;
 use crate::scattering::local;
 use glam::DVec3;
 
-/// The share of directions that follow the lobe in angles, if the others are aimed at positions.
+/// The share of directions that are sampled by the angles of the lobe, if the other directions are
+/// aimed at positions.
 const BY_LOBE: f64 = 0.25;
 
 /// The directions away from a point of a scattering surface.
@@ -26,7 +28,7 @@ pub(super) struct OutgoingDirections<'a> {
     /// The surface at the end of the leg, if there is one.
     pub(super) next: Option<&'a PathSurface>,
     pub(super) point: DVec3,
-    /// The unit normal at the point, on the side of the light.
+    /// The unit normal at the point, on the side from which light arrives.
     pub(super) normal: DVec3,
 }
 
@@ -35,8 +37,8 @@ pub(super) struct SampledDirection {
     pub(super) direction: DVec3,
     /// Probability per steradian.
     pub(super) density: f64,
-    /// The point of the next surface at which the direction is aimed; `None` if it is aimed
-    /// otherwise.
+    /// The point of the next surface at which the direction is aimed; `None` if the direction is
+    /// not aimed at a point.
     pub(super) target: Option<DVec3>,
 }
 
@@ -44,8 +46,8 @@ impl OutgoingDirections<'_> {
     /// Samples a direction for a point of the unit square.
     ///
     /// `st` is the local position of the point. `guide` gives the angles that reach the window from
-    /// this position. `lobe` gives the angles that the surface scatters into, with the mirror
-    /// direction if there is one.
+    /// this position. `lobe` gives the angles into which the surface scatters light, with the
+    /// mirror direction if there is one.
     pub(super) fn draw(
         &self,
         [a, b]: [f64; 2],
@@ -86,7 +88,7 @@ impl OutgoingDirections<'_> {
         })
     }
 
-    /// Returns the density of directions in the coordinates of the aim.
+    /// Returns the density of directions in the coordinates by which they are aimed.
     fn targets(
         &self,
         st: [f64; 2],
@@ -103,7 +105,7 @@ impl OutgoingDirections<'_> {
         GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])
     }
 
-    /// Returns longitude and latitude of a direction, minus those of the central ray.
+    /// Returns the longitude and latitude of a direction, minus those of the central ray.
     fn angles(&self, direction: DVec3) -> [f64; 2] {
         let ScatteringSurface {
             frame, outgoing, ..
@@ -112,8 +114,8 @@ impl OutgoingDirections<'_> {
         [longitude - outgoing[0], latitude - outgoing[1]]
     }
 
-    /// Returns the point at which a direction ends the leg, in the coordinates of the aim; `None`
-    /// if it does not end there.
+    /// Returns the point where a ray along a direction ends the leg, in the coordinates of the aim;
+    /// `None` if the ray misses the end of the leg.
     fn end(&self, direction: DVec3) -> Option<[f64; 2]> {
         let DirectionCoordinates::Patch { patch, .. } = self.aim else {
             return self.aim.end(self.point, direction);

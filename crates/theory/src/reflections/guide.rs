@@ -1,9 +1,10 @@
-//! Gaussians that guide light into the window, and sampling by them.
+//! Gaussians that guide light into the window, and the sampling of rays by these Gaussians.
 //!
 //! The window is approximated by a Gaussian with the same variances. An affine map takes this
-//! Gaussian back to the previous leg, a lobe blurs its angles, and the edge of a surface narrows
-//! its positions. The resulting Gaussian at a surface gives the relevant directions at each of the
-//! surface's points; the Gaussian at the light gives the relevant rays.
+//! Gaussian back to the previous leg. A lobe blurs the Gaussian's angles, and the edge of a surface
+//! narrows the Gaussian's positions. The Gaussian at a surface gives the directions that reach the
+//! window from each point of the surface. The Gaussian at the light gives the rays that reach the
+//! window.
 
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
@@ -19,7 +20,7 @@ pub(super) struct Gaussian<const N: usize> {
     pub(super) covariance: Matrix<N>,
 }
 
-/// Standard deviation of the angles of diffuse light, in radians.
+/// Standard deviation, in radians, of the Gaussian that represents the angles of diffuse light.
 const DIFFUSE: f64 = 0.6;
 
 impl Gaussian<4> {
@@ -31,7 +32,7 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the Gaussian that a map takes to this one.
+    /// Returns the Gaussian that a map takes to this Gaussian.
     pub(super) fn before(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = map.inverse()?;
         Some(Self {
@@ -41,8 +42,9 @@ impl Gaussian<4> {
     }
 
     /// Returns the Gaussian of the incident light that a lobe scatters into light of this
-    /// Gaussian, whose angles are relative to the central ray. The lobe blurs it about the mirror
-    /// direction; for diffuse light its angles are arbitrary.
+    /// Gaussian, whose angles are relative to the central ray. The lobe blurs the Gaussian about
+    /// the mirror direction. If the surface is diffuse, the angles of the incident light are
+    /// arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
         let [s, t, theta, phi] = self.mean;
         let Some(width) = width else {
@@ -64,8 +66,8 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the product with an independent Gaussian along each axis, given by means and inverse
-    /// variances.
+    /// Returns the product of this Gaussian and an independent Gaussian along each axis, given by
+    /// means and inverse variances.
     pub(super) fn narrowed(&self, means: [f64; 4], precisions: [f64; 4]) -> Option<Self> {
         let own = inverse(&self.covariance)?;
         let covariance = inverse(&sum(&own, &diagonal(precisions)))?;
@@ -85,8 +87,8 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two;
-    /// `None` if these have zero width.
+    /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two
+    /// coordinates; `None` if the Gaussian has zero width along them.
     pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {
         let others = match a {
             0 => [2, 3],
@@ -108,7 +110,7 @@ impl Gaussian<4> {
     }
 }
 
-/// A Gaussian of two coordinates, whose mean depends linearly on two others.
+/// A Gaussian of two coordinates, whose mean depends linearly on two other coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditional {
     /// The value of the other two coordinates at which the mean is `mean`.
@@ -131,7 +133,8 @@ impl Conditional {
 }
 
 impl Gaussian<2> {
-    /// Returns a Gaussian about a mean, with one standard deviation along both axes.
+    /// Returns a Gaussian with the given mean, and with the same standard deviation along both
+    /// axes.
     pub(super) fn round(mean: [f64; 2], width: Option<f64>) -> Self {
         let width = width.unwrap_or(DIFFUSE);
         Self {
@@ -202,7 +205,7 @@ pub(super) struct GuideMixture(Vec<(f64, HeavyTailedGaussian)>);
 
 impl GuideMixture {
     /// Builds the mixture from Gaussians with shares that add up to 1; degenerate Gaussians are
-    /// left out.
+    /// omitted.
     pub(super) fn new(parts: impl IntoIterator<Item = (f64, Option<Gaussian<2>>)>) -> Option<Self> {
         let bells = parts.into_iter();
         let bells =

@@ -3,23 +3,23 @@
 //! The inputs are a [`ReflectionSystem`] and a [`Plane`](crate::rays::Plane) beyond some of its
 //! surfaces. The system has a light, masks and obstacles anywhere, and the surfaces that the
 //! central ray visits. Each surface is a mirror, a refracting surface, a lens, a diffuse rectangle
-//! or a surface with a BRDF. Together they are an [`Observed`](crate::Observed), a
+//! or a surface with a BRDF. A system and a plane together are an [`Observed`](crate::Observed), a
 //! [`Model`](crate::Model) that sums paths from the light over scrambled nets. A path leaves the
 //! light, is redirected by each specular surface, and leaves each scattering surface in a sampled
 //! direction (docs/theory.md, section 10b):
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi, once per scattering surface.
 //!
-//! Directions are sampled from a Gaussian that guides light into the window (`guide.rs`): the
-//! window, taken back along the path to first order.
+//! Directions are sampled from a Gaussian that guides light into the window (`guide.rs`):
+//! first-order maps take the window back along the path.
 //!
 //! A path ends if it meets a surface out of order, or a surface of the path for a second time. So
-//! no assumption is made about the positions of surfaces.
+//! the surfaces may have any positions.
 //!
-//! In addition there is the chain of first-order operators (Durand et al. 2005, Table 1). It has
-//! affine maps from one scattering surface to the next; at each surface it has a product with the
-//! cosine and a convolution with the lobe at the central ray. The error of the chain is a sum over
-//! the same paths.
+//! The module also has the chain of first-order operators (Durand et al. 2005, Table 1). The chain
+//! has affine maps from one scattering surface to the next. At each surface the chain has a product
+//! with the cosine and a convolution with the lobe at the central ray. The error of the chain is a
+//! sum over the paths of the exact prediction.
 //!
 //! This module shares no intersection, BRDF evaluation or sampling code with the tracers.
 
@@ -41,20 +41,22 @@ use crate::obstacle::Obstacle;
 use etendue_field::{Light, Patch, Reflectance, Specular};
 use glam::DVec3;
 
-/// The most scattering surfaces before a plane: each takes two coordinates of the nets.
+/// The maximum number of scattering surfaces before a plane; each scattering surface uses two
+/// coordinates of the nets.
 pub const MAX_SCATTERERS: usize = 3;
 
 /// A light and the surfaces of its path, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionSystem {
-    /// The light, which emits from the plane z = 0, along Z; not a ray file.
+    /// The light, which emits from the plane z = 0, along Z; a light that is a ray file is not
+    /// allowed.
     pub light: Light,
     /// Masks and other occluders that are not on the path.
     pub obstacles: Vec<Obstacle>,
-    /// All surfaces of the path, in the order light meets them.
+    /// All surfaces of the path, in the order in which light meets them.
     pub surfaces: Vec<PathSurface>,
     /// The number of surfaces that light has left before the plane. The next surface, if any, ends
-    /// the last leg and occludes nothing on it.
+    /// the last leg and does not occlude light on this leg.
     pub visited: usize,
 }
 
@@ -65,8 +67,8 @@ pub struct PathSurface {
     pub name: String,
     /// The geometry of the surface.
     pub patch: Patch,
-    /// Side lengths along X and Y, metres, of a rectangle that lies in the patch; `None` for all of
-    /// the patch.
+    /// Side lengths along X and Y, metres, of a rectangle that lies in the patch; `None` for the
+    /// whole patch.
     pub outline: Option<[f64; 2]>,
     /// The point where the central ray meets the surface.
     pub hit: DVec3,

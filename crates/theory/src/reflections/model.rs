@@ -42,8 +42,8 @@ impl ReflectionSystem {
 }
 
 impl PathSurface {
-    /// Returns the factor of the surface's BRDF, if it scatters. For a sum of BRDFs this is the
-    /// factor of the first one.
+    /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
+    /// is the albedo of the first BRDF.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
             Interaction::Specular(_) => None,
@@ -70,8 +70,8 @@ impl PathSurface {
     }
 }
 
-/// The albedo and the lobe are those of the last surface that scatters: the light determines only
-/// the product of all albedos.
+/// The parameters albedo and lobe are those of the last surface that scatters light, since the
+/// light field determines only the product of all albedos.
 impl Model for Observed<ReflectionSystem> {
     fn light(&self) -> &Light {
         &self.system.light
@@ -137,7 +137,8 @@ impl Model for Observed<ReflectionSystem> {
         Some(())
     }
 
-    /// Includes the difference of the first-order chain from the prediction.
+    /// Returns a prediction that includes the difference between the first-order chain and the
+    /// exact slices.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());

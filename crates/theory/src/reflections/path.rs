@@ -23,9 +23,10 @@ pub(super) struct FieldPaths<'a> {
     obstacles: PreparedObstacles<'a>,
     chain: ReflectionChain,
     start: Start<'a>,
-    /// Gaussians of directions away from each scatterer that reach the window.
+    /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
     guides: Vec<Conditional>,
-    /// The coordinates that aim the legs: the leg from the light, and that from each scatterer.
+    /// The coordinates by which rays are aimed, for the leg from the light and for the leg from
+    /// each scatterer.
     aims: Vec<DirectionCoordinates>,
 }
 
@@ -34,14 +35,15 @@ pub(super) struct FieldPaths<'a> {
 enum Start<'a> {
     /// Positions in a beam, drawn by the Gaussian of the rays that reach the window.
     Beam(Conditional),
-    /// Directions from points of the light, drawn in the same way.
+    /// Directions from points of the light, drawn by the Gaussian of the rays that reach the
+    /// window.
     Points(Conditional),
     Sky(Box<SkyRays<'a>>),
 }
 
 impl<'a> Start<'a> {
     /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
-    /// window; `aim` are the coordinates of the leg from the light.
+    /// window; `aim` holds the coordinates of the leg from the light.
     fn new(
         view: &'a Observed<ReflectionSystem>,
         chain: &ReflectionChain,
@@ -66,7 +68,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// A path through the exact geometry, and its counterpart in the chain.
+/// A path through the exact geometry, and the corresponding path in the chain.
 pub(super) struct DrawnPath {
     pub(super) exact: RayNode,
     pub(super) first_order: RayNode,
@@ -86,7 +88,7 @@ struct Going {
 }
 
 impl<'a> FieldPaths<'a> {
-    /// Returns `None` if the chain does not determine a guide.
+    /// Returns the paths of a light field; `None` if the chain does not determine a guide.
     pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
@@ -118,7 +120,7 @@ impl<'a> FieldPaths<'a> {
         4 + 2 * self.chain.scatterers.len()
     }
 
-    /// Returns the path for a point of the unit cube; `None` if it carries no light.
+    /// Returns the path for a point of the unit cube; `None` if the path carries no light.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<DrawnPath> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
@@ -198,14 +200,15 @@ impl<'a> FieldPaths<'a> {
         going.flux *= passes;
         going.radiance *= passes;
         let point = ray.point + end * ray.direction;
-        // If a ray meets a surface at two points, it counts only if it was aimed at the first one.
+        // A ray that meets a surface at two points counts only if the ray was aimed at the first
+        // point.
         let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
         let is_second = going.target.take().is_some_and(beside);
         (passes > 0.0 && !is_second).then_some(point)
     }
 
-    /// Checks whether a surface of the path, other than the one that ends the leg, occludes a ray
-    /// of a leg.
+    /// Checks whether a surface of the path, except the surface that ends the leg, occludes a ray
+    /// of the leg.
     fn is_hidden(&self, leg: usize, ray: &LegRay, [start, end]: [f64; 2]) -> bool {
         let surfaces = &self.view.system.surfaces;
         let ends = surfaces.get(leg).map(|surface| surface.patch);
@@ -302,7 +305,8 @@ impl<'a> FieldPaths<'a> {
 
 /// Points closer than this share of their distance are treated as equal.
 const SAME_DISTANCE: f64 = 1e-6;
-/// Standard deviation of angles of incidence, in radians, if nothing else narrows them.
+/// Standard deviation of the angles of incidence in a guide, in radians, if neither the light nor
+/// the surface narrows them.
 const FRONT: f64 = 0.6;
 
 /// Returns the guide for incident light at a surface, given the guide for outgoing light.
@@ -312,7 +316,7 @@ fn on_surface(
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // This is the variance of positions along an axis, for a rectangle or a disc.
+    // The variance of positions along an axis, for a rectangle or a disc.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,
@@ -325,7 +329,7 @@ fn on_surface(
         .narrowed([middle.x, middle.y, 0.0, 0.0], [edge, edge, front, front])
 }
 
-/// Restricts the guide of rays that reach the window to the rays that the light emits.
+/// Restricts the guide for rays that reach the window to the rays that the light emits.
 fn of_light(guide: &Gaussian<4>, light: &Light) -> Option<Gaussian<4>> {
     let Some(image) = light.image() else {
         return Some(*guide);

@@ -11,7 +11,7 @@ use etendue_field::Slices;
 /// is bitwise identical on any number of threads.
 ///
 /// The chain's difference from the exact prediction, and the derivatives, are sums of differences
-/// over the same paths. They are accurate to about a per cent of their values.
+/// over the same paths. These sums are accurate to about a per cent of their values.
 pub(crate) fn predict(
     view: &Observed<ReflectionSystem>,
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],
@@ -51,7 +51,7 @@ pub(crate) fn with_rays(
     }
 }
 
-/// The prediction if the chain does not lead light to the plane.
+/// Returns the prediction for the case in which the chain does not lead light to the plane.
 fn dark(
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],
     (_, grid, picture): Over<'_>,
@@ -78,8 +78,8 @@ impl Integrand for FieldPaths<'_> {
     }
 }
 
-/// The difference of the chain from a light field, and the differences between light fields with
-/// each parameter increased and decreased.
+/// The difference between the chain and a light field, and the differences between light fields
+/// with each parameter increased and decreased.
 struct ChainDifferences<'a> {
     paths: &'a FieldPaths<'a>,
     moved: Vec<(f64, [Option<FieldPaths<'a>>; 2])>,

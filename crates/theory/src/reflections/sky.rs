@@ -1,8 +1,9 @@
-//! Rays of an environment that are sampled by its radiance and by the window.
+//! Rays of an environment, sampled by the environment's radiance and by the window.
 //!
-//! A direction is sampled first, then a position: on the first surface if that scatters, otherwise
-//! at the light. Some directions follow the radiance of the environment and the others follow the
-//! guide. So neither a bright lobe of the environment nor a narrow lobe of a BRDF is missed.
+//! A direction is sampled first, then a position. If the first surface scatters light, the position
+//! is on this surface; otherwise the position is at the light. Some directions are sampled by the
+//! radiance of the environment, and the other directions by the guide. So neither a bright lobe of
+//! the environment nor a narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};
@@ -34,20 +35,21 @@ pub(super) struct SkyRays<'a> {
 /// The two coordinates of a direction.
 #[derive(Debug)]
 enum Coordinates {
-    /// Longitude and latitude of the direction light comes from, at a scattering surface.
+    /// Longitude and latitude, at a scattering surface, of the direction from which light comes.
     Angles(Frame),
     /// Slopes at the light.
     Slopes,
 }
 
 /// A ray (x, y, u, v) at the light, its density in these coordinates, and the point of the first
-/// surface that it is aimed at.
+/// surface at which the ray is aimed.
 pub(super) type SkyRay = ([f64; 4], f64, Option<DVec3>);
 
 impl<'a> SkyRays<'a> {
-    /// `guide` describes the light at the first scatterer if `aim` is a position on it; otherwise
-    /// it describes the rays at the light. `has_lobe` is false if the first scatterer is diffuse:
-    /// the guide then does not restrict directions. Returns `None` if the environment is dark.
+    /// Returns `None` if the environment is dark. `guide` describes the light at the first
+    /// scatterer if `aim` is a position on this scatterer; otherwise `guide` describes the rays at
+    /// the light. If the first scatterer is diffuse, `has_lobe` is false, and the guide does not
+    /// restrict directions.
     pub(super) fn new(
         environment: &'a Environment,
         guide: &Gaussian<4>,
@@ -75,7 +77,7 @@ impl<'a> SkyRays<'a> {
         })
     }
 
-    /// Returns the ray for a point of the unit cube; `None` if it does not go forward.
+    /// Returns the ray for a point of the unit cube; `None` if the ray does not go forward.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> Option<SkyRay> {
         let of_sky = |at| {
             -self
@@ -112,7 +114,8 @@ impl<'a> SkyRays<'a> {
         let [u, v] = [direction.x / forward, direction.y / forward];
         let ([x, y], per_area) = match (target, &self.aim) {
             (Some(target), DirectionCoordinates::Patch { patch, .. }) if target.z > -AT_LIGHT => {
-                // This is dx dy at the light divided by the area of the coordinates on the patch.
+                // The factor is dx dy at the light, divided by the area of the coordinates on the
+                // patch.
                 let normal = patch.normal(target);
                 let spread = (normal.dot(direction) / normal.dot(patch.frame.d)).abs() / forward;
                 let start = target - target.z * DVec3::new(u, v, 1.0);
@@ -128,7 +131,8 @@ impl<'a> SkyRays<'a> {
 }
 
 impl Coordinates {
-    /// Returns the direction of light with these coordinates; `None` behind the surface.
+    /// Returns the direction of light with the given coordinates; `None` if the light comes from
+    /// behind the surface.
     fn direction(&self, at: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Angles(frame) => {
@@ -139,8 +143,8 @@ impl Coordinates {
         }
     }
 
-    /// Returns the coordinates of a direction of light, and steradians per unit of them. A diffuse
-    /// surface also scatters light that comes from behind it.
+    /// Returns the coordinates of a direction of light, and steradians per unit of the coordinates.
+    /// The light may come from behind, since a diffuse surface scatters it too.
     fn of(&self, direction: DVec3) -> ([f64; 2], f64) {
         match self {
             Self::Angles(frame) => {

@@ -27,7 +27,7 @@ impl PathSurface {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
 
-    /// Checks whether a point of the patch lies in the outline.
+    /// Checks whether a point of the patch lies within the outline.
     fn holds(&self, point: DVec3) -> bool {
         self.outline.is_none_or(|size| {
             let at = self.patch.frame.to_local(point);
@@ -43,7 +43,7 @@ impl PathSurface {
     }
 
     /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
-    /// surface scatters, or if it refracts and the ray is totally reflected.
+    /// surface scatters light, or if a refracting surface totally reflects the ray.
     pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;
@@ -64,7 +64,8 @@ impl PathSurface {
         }
     }
 
-    /// Returns the weighted sum of `of` over the BRDFs at a point of a scattering surface.
+    /// Returns the sum of the function `of` over the BRDFs of a scattering surface, weighted by
+    /// their weights at a point.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
             Interaction::Specular(_) => 0.0,
@@ -83,14 +84,15 @@ impl PathSurface {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
-    /// Returns the BRDF in the chain, for light from and to a longitude and a latitude.
+    /// Returns the BRDF that the chain uses, for light that arrives from one pair of longitude and
+    /// latitude and leaves towards another.
     pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
         let [from, to] = angles;
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))
     }
 
-    /// Returns the standard deviation of the narrowest lobe at a point, in radians; `None` for
-    /// diffuse light.
+    /// Returns the standard deviation of the narrowest lobe at a point, in radians; `None` for a
+    /// diffuse surface.
     pub(super) fn width(&self, point: DVec3) -> Option<f64> {
         let Interaction::Reflects(reflectance) = &self.interaction else {
             return None;

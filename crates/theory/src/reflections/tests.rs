@@ -59,8 +59,8 @@ fn lamp(side: f64) -> Light {
     }
 }
 
-/// Returns an environment of two lobes off the central ray, or a map of nearly the same light; `y`
-/// is 1, or −1 for the mirror image.
+/// Returns an environment of two lobes beside the central ray, or a map of nearly the same
+/// radiance; `y` is −1 for the mirror image, and otherwise 1.
 fn sky(as_map: bool, y: f64) -> Light {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
         from: from.normalize(),
@@ -86,7 +86,7 @@ fn reflectance(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// Returns a patch around a point that faces a direction in the plane of X and Z.
+/// Returns a patch around a point; the patch faces a direction in the plane of X and Z.
 fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
     Patch {
         frame: Frame::new(at, facing.normalize(), DVec3::Y).unwrap(),
@@ -114,22 +114,23 @@ fn system(light: Light, surfaces: Vec<PathSurface>) -> ReflectionSystem {
     }
 }
 
-/// Returns a plane across a ray through a point.
+/// Returns a plane through a point, perpendicular to a ray.
 fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
     Plane::orthogonal(Frame::new(origin, d, x).unwrap())
 }
 
-/// Returns the difference of two predictions in units of their errors.
+/// Returns the difference between two predictions in units of their errors.
 fn apart(a: &Predicted, b: &Predicted) -> f64 {
     let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
     a.slices.relative_difference(&b.slices) / error
 }
 
-/// Largest difference of two predictions in units of their errors. The mean over this many
-/// frequencies exceeds 1.3 once in a thousand tests.
+/// Maximum permitted difference between two predictions, in units of their errors. The mean over
+/// all frequencies of a grid exceeds 1.3 in one of a thousand tests.
 const CLOSE: f64 = 1.3;
 
-/// One surface is compared with rays that are sampled from the plane back to the light.
+/// Compares the paths for a single surface with rays that are sampled from the plane back to the
+/// light.
 #[test]
 fn one_surface_is_that_of_scattering() {
     let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
@@ -175,13 +176,14 @@ fn one_surface_is_that_of_scattering() {
             predicted(&scattering, &plane, &window),
             predicted(&reflections, &plane, &window),
         ];
-        // These are errors of 2·10⁶ paths; that of a sky is larger because it has a narrow lobe.
+        // These are the errors of 2·10⁶ paths; the error for a sky is larger, because the sky has a
+        // narrow lobe.
         let most = if is_sky { 0.04 } else { 0.02 };
         assert!(other.error.unwrap() < most, "{lobe:?} {:?}", other.error);
         let off = apart(&one, &other);
         assert!(off < CLOSE, "{lobe:?} {off}");
-        // The chain of `scattering` takes a sky's directions at the surface; this chain takes them
-        // at the light.
+        // The chain of `scattering` parametrises the directions of a sky at the surface, and this
+        // chain parametrises them at the light.
         if is_sky {
             continue;
         }
@@ -202,13 +204,13 @@ fn flat_mirrors_unfold() {
     let gloss = || Interaction::Reflects(Box::new(reflectance(Lobe::Ggx { roughness: 0.3 })));
     let (x, z) = (DVec3::X, DVec3::Z);
     let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
-    // The light goes along Z, X, −Z and, unfolded, along Z, Z, −X.
+    // The legs of the path run along Z, X, −Z with the mirror, and along Z, Z, −X without it.
     let before = patch(z, x - z, 0.0);
     let at = z + x;
     let gloss_after = surface(patch(at, -x - z, 0.0), gloss());
     let mut wide = before;
     wide.aperture = 20.0; // a sky lights the edge of the mirror
-    // The mirror exchanges Z and X, so that the y axis of a plane turns round.
+    // The mirror exchanges Z and X, which reverses the y axis of a plane.
     let skies = [sky(false, 1.0), sky(false, -1.0)];
     for ([light, mirrored], before) in [([lamp(0.2), lamp(0.2)], before), (skies, wide)] {
         let folded = vec![surface(before, mirror()), gloss_after.clone()];
@@ -282,19 +284,18 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     }
     let wanted = 0.5 / PI * irradiance * (2.0 * small).powi(4);
     let off = found.slices.at_zero() / wanted - 1.0;
-    // The tolerance is four standard errors of the paths (7·10⁻⁴), plus the error from the round
-    // edge of the wall in squares of 3 mm.
+    // The tolerance is four standard errors of the paths (7·10⁻⁴), plus the error of representing
+    // the round edge of the wall by squares of 3 mm.
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 
-/// In a corner the next surface may be arbitrarily near. The paths toward the next surface have
-/// bounded weights. So the error of the sum falls as fast as that of other sums, and the stated
-/// error is correct.
+/// Tests that paths in a corner, where the next surface may be arbitrarily near, have bounded
+/// weights, so the stated error of their sum is correct and as small as elsewhere.
 #[test]
 fn a_corner_has_no_heavy_paths() {
     let (x, z) = (DVec3::X, DVec3::Z);
     let gloss = Interaction::Reflects(Box::new(reflectance(Lobe::Beckmann { roughness: 0.06 })));
-    // The wall stands on the floor, 0.1 m from where the central ray meets it.
+    // The wall stands on the floor, 0.1 m from the point where the central ray meets the floor.
     let (floor, wall) = (patch(z, x - z, 0.0), patch(z + 0.1 * x, -x, 0.0));
     let light = lamp(0.2);
     let both = vec![
@@ -310,7 +311,7 @@ fn a_corner_has_no_heavy_paths() {
     assert!(stated < 0.02, "{stated}"); // 2·10⁶ paths; 0.038 if all are aimed at positions
 }
 
-/// Occluders between two surfaces block light, including surfaces of the path.
+/// Tests that occluders between two surfaces block light, and that surfaces of the path do so too.
 #[test]
 fn surfaces_and_masks_hide_later_legs() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -337,7 +338,7 @@ fn surfaces_and_masks_hide_later_legs() {
     assert!(hidden < 0.9 * whole && (hidden / stopped - 1.0).abs() < 0.02); // errors of both nets
 }
 
-/// A chain with a wrong map is distinguished from the correct chain.
+/// Tests that a chain with a wrong map is distinguished from the correct chain.
 #[test]
 fn a_wrong_map_is_a_defect() {
     let (x, z) = (DVec3::X, DVec3::Z);

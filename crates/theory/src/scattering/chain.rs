@@ -17,10 +17,10 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
     /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence.
-    /// It consists of the steps travel, incidence and curvature.
+    /// This map consists of the steps travel, incidence and curvature.
     pub onto: AffineMap<4>,
-    /// The map from local coordinates of the outgoing direction to coordinates of the plane. It
-    /// consists of the steps back, outgoing angle and travel.
+    /// The map from local coordinates of the outgoing direction to coordinates of the plane. This
+    /// map consists of the steps back, outgoing angle and travel.
     pub off: AffineMap<4>,
     /// Longitude θ₀ of the direction from which the central ray arrives.
     pub incidence: f64,

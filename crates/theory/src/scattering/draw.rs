@@ -80,8 +80,8 @@ pub(super) struct PlaneRaySampler {
 /// position.
 #[derive(Clone, Copy, Debug)]
 struct Mirrored {
-    /// Constant part of the angles between a ray and the mirror direction, which are first + at
-    /// (x, y) + by (u, v).
+    /// Constant part of the angles between a ray and the mirror direction; these angles are first +
+    /// at (x, y) + by (u, v).
     first: [f64; 2],
     at: Matrix<2>,
     by: Matrix<2>,

@@ -10,10 +10,10 @@ use glam::DVec3;
 pub(super) enum LightPart {
     /// The complete light, if its light arrives at a point of the surface from a single direction.
     Whole,
-    /// A point of an area light. Densities of such points are per square metre.
+    /// A point of an area light. Densities of points on an area light are per square metre.
     Point([f64; 2]),
     /// A direction of an environment, as the slopes of the rays from this direction, and its
-    /// radiance. Densities of such directions are per steradian.
+    /// radiance. Densities of directions of an environment are per steradian.
     Sky {
         /// Slopes of rays from the environment, in the direction of light.
         slopes: [f64; 2],

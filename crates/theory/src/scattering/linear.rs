@@ -56,9 +56,9 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
     }
 
-    /// Returns the radiance along the ray with coordinates z at the plane that is due to a part of
-    /// the light, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is
-    /// the mirror direction about the normal (docs/theory.md (41)).
+    /// Returns the radiance that a part of the light causes along the ray with coordinates z at the
+    /// plane, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the
+    /// mirror direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);
@@ -72,8 +72,8 @@ impl<'a> Linear<'a> {
         let across = (1.0 + u * u).sqrt();
         let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-        // These are the local angles of a ray that is parallel to the light's axis and hits the
-        // surface at this position.
+        // The local angles of a ray that is parallel to the light's axis and hits the surface at
+        // this position.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (

@@ -3,9 +3,9 @@
 //! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
 //! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over
 //! the surface. The plane is on the surface or perpendicular to the path of light that leaves the
-//! surface. Together they are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets, and for each ray
-//! a part of the light that shines on the ray's starting point,
+//! surface. A system and a plane together are an [`Observed`](crate::Observed), which is a
+//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets. For each ray the
+//! model also samples a part of the light that shines on the ray's starting point:
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
@@ -14,8 +14,8 @@
 //! with the clamped cosine, and a convolution with the lobe of the BRDF at the central ray. The
 //! error of the chain, and the derivatives, are sums over the same rays.
 //!
-//! This module and the tracers share no code for intersection, BRDF evaluation or sampling. They
-//! share only the variation of a BRDF over a surface, in `etendue_field`.
+//! This module and the tracers share no code for intersection, BRDF evaluation or sampling. The
+//! theory and the tracers share only the variation of a BRDF over a surface, in `etendue_field`.
 
 pub mod brdf;
 mod chain;

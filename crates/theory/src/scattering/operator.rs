@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 /// (Ωθ, Ωφ), and the product is convolved over (Ωx, Ωy) with the transform of the BRDF's weight
 /// (Durand et al. 2005, section 4.5, the "semi-convolution" in 4D).
 ///
-/// The result holds to first order, like the chain. It includes light at all angles; a window over
-/// positions must be included in `before`. `axes` are the axes X and Y of the surface's patch in
-/// the coordinates (x, y). Returns `None` if a lobe is not Phong's or has a factor of an angle of
-/// its own, or if a weight or a texture is not a cosine.
+/// The result holds to first order, like the chain. The result includes light at all angles; a
+/// window over positions must be included in `before`. `axes` are the axes X and Y of the surface's
+/// patch in the coordinates (x, y). Returns `None` if a lobe is not Phong's or has a factor of an
+/// angle of its own, or if a weight or a texture is not a cosine.
 #[must_use]
 pub fn semi_convolution(
     reflectance: &Reflectance,
@@ -67,7 +67,7 @@ fn waves(weight: &Weight) -> Option<Vec<WeightWave>> {
     }
 }
 
-/// ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
+/// Returns the waves of a cosine pattern, ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
 fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     let Pattern::Cosine(grating) = pattern else {
         return None;

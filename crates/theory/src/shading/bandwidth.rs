@@ -1,19 +1,19 @@
-//! How fast a glossy reflection changes across an image.
+//! The sampling criteria of glossy reflections: how fast a reflection varies across an image.
 
 /// The frequency below which 99 % of the energy of [`cosine_hat`](super::cosine_hat) lies, in
 /// cycles per radian.
 pub const COSINE_CUTOFF: f64 = 0.376;
 
-/// The parameters of the image of a glossy surface in an environment (Durand et al. 2005, section
-/// 6.2).
+/// The parameters that determine the bandwidth of a glossy surface's image in an environment
+/// (Durand et al. 2005, section 6.2).
 ///
 /// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope at the eye.
-/// They assume a distant eye: if d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is
-/// neglected.
+/// Except where d is zero, bandwidths assume a distant eye and neglect the blur by the cosine,
+/// [`COSINE_CUTOFF`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
-    /// Curvature k, in 1/m, convex positive. The sign matters: behind a concave surface, the
-    /// bandwidth first falls with distance.
+    /// Curvature k, in 1/m, convex positive. The sign affects the bandwidth: for a concave surface,
+    /// the bandwidth first falls with the distance of the eye.
     pub curvature: f64,
     /// Angle of incidence θ₀ of the light, radians from the normal.
     pub incidence: f64,
@@ -21,49 +21,50 @@ pub struct Criterion {
     pub outgoing: f64,
     /// Distance d from the surface to the eye, metres.
     pub distance: f64,
-    /// Distance d' from the surface to the blocker, metres; `None` if there is none.
+    /// Distance d' from the surface to the blocker, metres; `None` if there is no blocker.
     pub blocker_distance: Option<f64>,
-    /// Ω_ρ, the cutoff of the BRDF in cycles per radian: [`PlanarLobe::cutoff`](super::PlanarLobe::cutoff).
+    /// Ω_ρ, the cutoff of the BRDF, in cycles per radian
+    /// ([`PlanarLobe::cutoff`](super::PlanarLobe::cutoff)).
     pub lobe_cutoff: f64,
     /// Ω_e, the cutoff of the environment in cycles per radian.
     pub environment_cutoff: f64,
 }
 
 impl Criterion {
-    /// Eq. 20 of Durand et al. 2005, at any distance: Ω_ρ |1 + 2kd/cos θ₁|, for an environment with
-    /// content at all frequencies.
+    /// Returns the bandwidth by Eq. 20 of Durand et al. 2005, extended to any distance, which is
+    /// Ω_ρ |1 + 2kd/cos θ₁|. The environment is assumed to have light at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Eq. 20 at any distance for an environment with the cutoff Ω_e, where the lower one of Ω_ρ
-    /// and Ω_e replaces Ω_ρ.
+    /// Returns the bandwidth by Eq. 20 at any distance, for an environment with the cutoff Ω_e; the
+    /// lower of Ω_ρ and Ω_e replaces Ω_ρ.
     #[must_use]
     pub fn limited_environment(&self) -> f64 {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
     }
 
-    /// The bandwidth of an edge before a uniform environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|.
-    /// This is Eq. 21 at any distance and angle.
+    /// Returns the bandwidth of an edge before a uniform environment, which is Ω_ρ |1 + d (cos
+    /// θ₀/d' + 2k)/cos θ₁|. This formula is Eq. 21 extended to any distance and angle.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
     }
 
-    /// An upper bound for an edge before an environment with the cutoff Ω_e: Ω_ρ |1 + 2kd/cos θ₁| +
-    /// d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
+    /// Returns an upper bound on the bandwidth of an edge before an environment with the cutoff
+    /// Ω_e, which is Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
     ///
-    /// A small bright light behind an edge causes sharp shadows with any BRDF, which
-    /// [`blocker`](Self::blocker) does not cover.
+    /// [`blocker`](Self::blocker) does not cover a small bright light behind an edge, which causes
+    /// sharp shadows with any BRDF.
     #[must_use]
     pub fn combined(&self) -> f64 {
         self.environment() + self.edge() * (self.lobe_cutoff + self.environment_cutoff)
     }
 
-    /// The largest |Ωx| of the light that leaves the surface, across the ray and in cycles per
-    /// metre, including the blur of the cosine: [cos θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k| Ω_ρ + |k|
-    /// Ω_cos]/cos θ₁.
+    /// Returns the largest |Ωx| of the light that leaves the surface, perpendicular to the ray and
+    /// in cycles per metre, including the blur by the cosine: [cos θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k|
+    /// Ω_ρ + |k| Ω_cos]/cos θ₁.
     #[must_use]
     pub fn surface(&self) -> f64 {
         let behind = self.lobe_cutoff + COSINE_CUTOFF + self.environment_cutoff;
@@ -71,15 +72,17 @@ impl Criterion {
         (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as an absolute value: an approximation for a distant eye
-    /// that leaves out the 1. It requires a large |2kd/cos θ₁|; the paper says d ≫ 1.
+    /// Returns the absolute value of Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ. The printed equation is an
+    /// approximation for a distant eye that omits the term 1, and requires a large |2kd/cos θ₁|;
+    /// the paper requires d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as in the text. It is an
-    /// approximation for a distant eye and light along the normal that leaves out the 1 and cos θ₀.
+    /// Returns the bandwidth by Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k| for k, as in
+    /// the paper's text. The printed equation is an approximation for a distant eye and light along
+    /// the normal, and omits the term 1 and cos θ₀.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);
@@ -87,7 +90,8 @@ impl Criterion {
         self.distance / libm::cos(self.outgoing) * sum * self.lobe_cutoff
     }
 
-    /// Returns 1 + 2kd/cos θ₁, the effect of both shears of the surface and of travel.
+    /// Returns 1 + 2kd/cos θ₁, the effect of travel and of the two shears by the surface's
+    /// curvature.
     fn doubled_shear(&self) -> f64 {
         1.0 + 2.0 * self.curvature * self.distance / libm::cos(self.outgoing)
     }
@@ -108,9 +112,9 @@ impl Criterion {
 mod tests {
     use super::*;
 
-    /// Compares the samples per metre of the surface by Eq. 21, divided by Ω_ρ, with the error per
-    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere. Both add a
-    /// multiple of the curvature to the inverse harmonic mean distance: 2k in Eq. 21 and k/√2 in
+    /// Compares, on a sphere, the samples per metre by Eq. 21, divided by Ω_ρ, with the error per
+    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988). Both formulas add a
+    /// multiple of the curvature to the inverse harmonic mean distance: 2k in Eq. 21, and k/√2 in
     /// irradiance caching.
     #[test]
     fn eq_21_spaces_samples_as_irradiance_caching_does() {
@@ -131,7 +135,7 @@ mod tests {
             let cached = (step / distance + turned) / step;
             let apart = per_metre - cached;
             let wanted = curvature * (2.0 - std::f64::consts::FRAC_1_SQRT_2);
-            // The cosine is expanded to second order, over a millimetre.
+            // The tolerance covers the expansion of the cosine to second order over a millimetre.
             assert!(
                 (apart - wanted).abs() < 1e-5,
                 "{distance} {curvature}: {apart}"

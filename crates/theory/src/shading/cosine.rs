@@ -5,34 +5,34 @@ use crate::numerics::sinc::sinc;
 use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 −
-/// (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
+/// Returns the transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2
+/// cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
-/// It is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where
-/// the quotient is 0/0: cos⁺(1/2π) = π/2. The transform is 2 at zero and falls as 1/Ω², because
-/// the cosine has a corner at π/2. 99 % of its energy lies below 0.376. The coefficients of a
-/// Fourier series have another scale; see [`cosine_series`].
+/// The transform is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ. This form is
+/// accurate also at Ω = 1/2π, where the quotient is 0/0 and the transform is π/2. The transform is
+/// 2 at zero and falls as 1/Ω², because the cosine has a corner at π/2. 99 % of the transform's
+/// energy lies below 0.376. The coefficients of a Fourier series differ from the transform by a
+/// factor; see [`cosine_series`].
 #[must_use]
 pub fn cosine_hat(omega: f64) -> f64 {
     let w = TAU * omega;
     FRAC_PI_2 * (sinc(0.5 * (1.0 - w)) + sinc(0.5 * (1.0 + w)))
 }
 
-/// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
-/// [`cosine_hat`](n/2π)/2π.
+/// Returns the coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full
+/// circle, which is [`cosine_hat`](n/2π)/2π.
 ///
-/// Durand et al. 2005 print only the transform (Eq. 13). The coefficients are the transform's
-/// values at n/2π, divided by 2π.
+/// Durand et al. 2005 print only the transform (Eq. 13).
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU
 }
 
-/// The transform of cos² φ on |φ| < π/2: the effect of the cosine along latitudes in 4D, dE = ℓ cos
-/// θ cos² φ dθ dφ.
+/// Returns the transform of cos² φ on |φ| < π/2, which is the factor of the cosine along latitudes
+/// in 4D: dE = ℓ cos θ cos² φ dθ dφ.
 ///
-/// π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al. 2005, section
-/// 5.2, give no formula for it.
+/// The transform is π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al.
+/// 2005, section 5.2, give no formula for this transform.
 #[must_use]
 pub fn cosine_squared_hat(omega: f64) -> f64 {
     let w = TAU * omega;
@@ -40,10 +40,10 @@ pub fn cosine_squared_hat(omega: f64) -> f64 {
     0.5 * PI * sinc(0.5 * w) + 0.25 * PI * sides
 }
 
-/// The transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ))
-/// (Gradshteyn and Ryzhik, 3.631.9).
+/// Returns the transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 −
+/// πΩ)) (Gradshteyn and Ryzhik, 3.631.9).
 ///
-/// The second gamma function has poles where 1 + n/2 − πΩ is 0, −1, …; there the transform is zero.
+/// The transform is zero at the poles of the second gamma function, where 1 + n/2 − πΩ is 0, −1, …
 /// The relative error is about 10⁻¹⁵ (n + Ω) ln(n + Ω) away from zeros.
 #[must_use]
 pub fn cosine_power_hat(exponent: f64, omega: f64) -> f64 {
@@ -68,13 +68,13 @@ mod tests {
                 let ends = [0.0, 0.2, 0.5, 1.0, 1.4, 1.5, FRAC_PI_2];
                 let plain = even_transform(&ends, omega, |t| libm::pow(libm::cos(t), n));
                 let got = cosine_power_hat(n, omega);
-                // The limit is the rounding error of ln Γ, or 1e-8 for cos^2.5, at whose end Gauss
-                // rules converge slowly.
+                // The limit is the rounding error of ln Γ. For cos^2.5 the limit is 1e-8, because
+                // Gauss rules converge slowly at its ends.
                 let close = if n % 1.0 > 0.0 { 1e-8 } else { 1e-13 };
                 assert!((got - plain).abs() < close, "{n} {omega}: {got} {plain}");
             }
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
-            // The limit is three times the rounding error of ln Γ up to 25.
+            // The limit is three times the rounding error of ln Γ for arguments up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
         }
@@ -85,10 +85,10 @@ mod tests {
         for theta in [0.0_f64, 0.4, 1.2, 2.0, 3.0] {
             let wave = |n: i32| cosine_series(n) * libm::cos(f64::from(n) * theta);
             let sum = wave(0) + 2.0 * (1..4000).map(wave).sum::<f64>();
-            // The tail of 1/n² beyond 4000 is below 2/π/4000.
+            // The tolerance covers the omitted coefficients beyond 4000, which fall as 1/n² and add
+            // up to less than 2/π/4000.
             assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // The transform itself, used as a coefficient, is 2π times too large, which the test
-            // detects.
+            // The test detects that the transform is 2π times too large for a coefficient.
             assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }

@@ -1,27 +1,28 @@
-//! The cosine factors of diffuse shading, in slopes, and their transforms.
+//! Transforms of the cosine factors of diffuse shading, which are functions of slopes.
 
 use std::f64::consts::{PI, TAU};
 
-/// Transform of g(v) = (1 + v²)^(−3/2), the cosine times dθ/dv in 2D: ĝ(Ω) = 4π|Ω| K₁(2π|Ω|), 2 at
-/// zero (Durand et al. 2005, section 3.3). Ω is in cycles per unit slope.
+/// Returns the transform of g(v) = (1 + v²)^(−3/2), the cosine times dθ/dv in 2D (Durand et al.
+/// 2005, section 3.3): ĝ(Ω) = 4π|Ω| K₁(2π|Ω|), which is 2 at zero. Ω is in cycles per unit slope.
 #[must_use]
 pub fn g_hat(omega: f64) -> f64 {
     2.0 * z_k1(TAU * omega.abs())
 }
 
-/// Transform of G(u, v) = (1 + u² + v²)⁻², the cosine times dω/(du dv) in 3D (Durand et al. 2005,
-/// section 5.1): Ĝ(Ωu, Ωv) = 2π² r K₁(2πr), r = |(Ωu, Ωv)|, π at zero; equal to π/2 · ĝ(r).
+/// Returns the transform of G(u, v) = (1 + u² + v²)⁻², the cosine times dω/(du dv) in 3D (Durand et
+/// al. 2005, section 5.1): Ĝ(Ωu, Ωv) = 2π² r K₁(2πr), with r = |(Ωu, Ωv)|. The transform is π at
+/// zero, and equals π/2 · ĝ(r).
 #[must_use]
 pub fn g_hat_3d(omega_u: f64, omega_v: f64) -> f64 {
     PI * z_k1(TAU * libm::hypot(omega_u, omega_v))
 }
 
-/// Returns z K₁(z) = ∫ z cosh t exp(−z cosh t) dt over t ≥ 0, 1 at zero.
+/// Returns z K₁(z) = ∫ z cosh t exp(−z cosh t) dt over t ≥ 0, which is 1 at zero.
 ///
-/// The integrand is even and analytic: sums with equal steps h converge as exp(−π²/h), and as
-/// exp(−2π²/(z h²)) for large z.
+/// The integrand is even and analytic, so the error of sums with equal steps h falls as exp(−π²/h),
+/// and as exp(−2π²/(z h²)) for large z.
 fn z_k1(z: f64) -> f64 {
-    // 1 + z²/2 ln(z/2) is 1 up to rounding error.
+    // For small z the value is 1 + z²/2 ln(z/2), which is 1 up to rounding error.
     if z < 1e-9 {
         return 1.0;
     }

@@ -1,16 +1,17 @@
-//! Environment maps: light that depends on direction alone, on a curved surface.
+//! Spectra of environment light, which depends on direction alone, on a curved surface.
 //!
-//! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the
-//! line Ωx = kΩθ. Each Ωx then has one value, and the convolution with the cosine becomes a product
-//! (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the curvature in 1/m, convex positive.
-//! Angles are those on the surface, for flipped light. `environment` is env^.
+//! The light ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx). After the curvature step the
+//! spectrum is on the line Ωx = kΩθ. On this line each Ωx has a single value, so the convolution
+//! with the cosine becomes a product (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the
+//! curvature in 1/m, convex positive. Angles are those on the surface, for directions towards the
+//! light. `environment` is env^.
 
 use super::cosine_hat;
 use etendue_field::{Complex, cis};
 use std::f64::consts::{PI, TAU};
 
-/// The differential irradiance dE' in the frames of the local normals: 1/|k| env^(Ωx/k) cos⁺^(Ωθ −
-/// Ωx/k).
+/// Returns the spectrum of the differential irradiance dE' in the frames of the local normals:
+/// 1/|k| env^(Ωx/k) cos⁺^(Ωθ − Ωx/k).
 #[must_use]
 pub fn differential_irradiance(
     k: f64,
@@ -21,10 +22,12 @@ pub fn differential_irradiance(
     environment(x / k) * (cosine_hat(theta - x / k) / k.abs())
 }
 
-/// The differential irradiance dE'_r after the mirror step: 1/|k| env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
+/// Returns the spectrum of the differential irradiance dE'_r after the mirror step: 1/|k|
+/// env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
 ///
-/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺^(Ωx/k − Ωθ), without the hat of ℓ_i
-/// and 1/|k|, and with the sign from before the mirror.
+/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺^(Ωx/k − Ωθ). The printed formula
+/// lacks the hat of ℓ_i and the factor 1/|k|, and has the sign that is correct before the mirror
+/// step.
 #[must_use]
 pub fn mirrored_differential_irradiance(
     k: f64,
@@ -35,11 +38,11 @@ pub fn mirrored_differential_irradiance(
     differential_irradiance(k, [x, -theta], environment)
 }
 
-/// The irradiance along the surface: 1/|k| env^(Ωx/k) cos⁺^(Ωx/k), which is E(s) = ∫ env(θ) cos⁺(θ
-/// − k s) dθ.
+/// Returns the spectrum 1/|k| env^(Ωx/k) cos⁺^(Ωx/k) of the irradiance along the surface, E(s) = ∫
+/// env(θ) cos⁺(θ − k s) dθ.
 ///
-/// This is a product of spectra, and so a convolution in the primal domain (Ramamoorthi and
-/// Hanrahan 2001). Section 6.1 of Durand et al. 2005 omits 1/|k|.
+/// The irradiance is a product of spectra, and so a convolution in the primal domain (Ramamoorthi
+/// and Hanrahan 2001). Section 6.1 of Durand et al. 2005 omits 1/|k|.
 #[must_use]
 pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) -> Complex {
     differential_irradiance(k, [omega_x, 0.0], environment)

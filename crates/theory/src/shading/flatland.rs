@@ -1,5 +1,5 @@
-//! Diffuse shading in flatland: a light, strips and a receiver on parallel lines, as in the paper's
-//! Fig. 6.
+//! Diffuse shading in flatland: a light, strips and a receiver on parallel lines, as in Fig. 6 of
+//! Durand et al. 2005.
 
 use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, FrequencyAxis, Profile, cis};
@@ -16,20 +16,20 @@ pub struct Flatland {
     pub to_strips: f64,
     /// The strips, [from, to], in ascending order and without overlap.
     pub strips: Vec<[f64; 2]>,
-    /// Distance from the light to the receiver, beyond the strips.
+    /// Distance from the light to the receiver, which is beyond the strips.
     pub to_receiver: f64,
 }
 
 /// Steps of diffuse shading (Durand et al. 2005, Fig. 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiffuseStep {
-    /// Step 1: at the light.
+    /// Step 1: the light field at the light.
     Emission,
-    /// Step 2: after travel, before the strips.
+    /// Step 2: the light field after travel, before the strips.
     Travel,
-    /// Step 3: after the strips.
+    /// Step 3: the light field behind the strips.
     Visibility,
-    /// Step 4: after travel to the receiver.
+    /// Step 4: the light field after travel to the receiver.
     SecondTravel,
     /// Step 5: differential irradiance, the light field times g(v) = (1 + v²)^(−3/2).
     Cosine,
@@ -37,16 +37,16 @@ pub enum DiffuseStep {
     Reflection,
 }
 
-/// Number of nodes of the midpoint rule over slopes, or over positions on the receiver. Edges are
-/// kinks of the integrand, which cause a relative error of 10⁻⁵.
+/// Number of nodes of the midpoint rule over slopes, or over positions on the receiver. Edges cause
+/// kinks in the integrand, which result in a relative error of 10⁻⁵.
 const NODES: usize = 1024;
 
 impl Flatland {
-    /// Returns the spectrum of the windowed light field at a step, [ρ, ν], with ρ and ν ascending;
-    /// profiles and axes are those of (x, v).
+    /// Returns the spectrum of the windowed light field after a step, as an array [ρ, ν] with
+    /// ascending ρ and ν; profiles and axes are those of (x, v).
     ///
-    /// Positions are integrated in closed form, slopes by a midpoint rule, accurate to 10⁻⁵ of the
-    /// value at zero.
+    /// The integral over positions is in closed form, and the integral over slopes is a midpoint
+    /// rule that is accurate to 10⁻⁵ of the value at zero frequency.
     #[must_use]
     pub fn spectrum(
         &self,
@@ -74,7 +74,7 @@ impl Flatland {
         product(rows, [rho, nu])
     }
 
-    /// Returns the intervals of positions from which light of slope v passes.
+    /// Returns the intervals of positions that light of slope v reaches.
     fn seen(&self, step: DiffuseStep, v: f64) -> Vec<[f64; 2]> {
         let distance = match step {
             DiffuseStep::Emission => 0.0,
@@ -108,7 +108,8 @@ impl Flatland {
         [along_x, along_v]: [&Profile; 2],
         [rho, nu]: [&FrequencyAxis; 2],
     ) -> Array2<Complex> {
-        // The light that leaves is the same in all directions, so the spectrum is a product.
+        // The light that leaves the receiver is the same in all directions, so the spectrum is a
+        // product.
         let half = along_v.half_width();
         let angular = nu.values().into_iter();
         let angular: Vec<Complex> = angular
@@ -127,7 +128,7 @@ impl Flatland {
     }
 }
 
-/// Returns the parts of an interval that other intervals, in ascending order, leave open.
+/// Returns the parts of an interval that the given intervals, in ascending order, do not cover.
 fn open([from, to]: [f64; 2], intervals: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut parts = Vec::new();
     let mut low = from;
@@ -150,7 +151,7 @@ fn midpoints(profile: &Profile) -> impl Iterator<Item = (f64, f64)> {
     (0..NODES).map(move |i| ((i as f64 + 0.5) * step - half, step))
 }
 
-/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval, in closed form: the profile is a sum of
+/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval, in closed form, since the profile is a sum of
 /// cosines.
 fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
     let half = profile.half_width();
@@ -169,7 +170,7 @@ fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
         .sum()
 }
 
-/// Returns Σ over slopes v of a row over ρ times e^(−2πi ν v).
+/// Returns, for each ρ and ν, the sum over slopes v of a value for ρ times e^(−2πi ν v).
 fn product(
     rows: impl Iterator<Item = (f64, Vec<Complex>)>,
     [rho, nu]: [&FrequencyAxis; 2],

@@ -5,14 +5,15 @@ use super::panels::even_transform;
 use etendue_field::{Complex, square_root};
 use std::f64::consts::FRAC_PI_2;
 
-/// Number of halvings of the panels towards grazing angles, where the reflectance for an index N
-/// changes over 1/N; enough for indices beyond 1000.
+/// Number of times that panels are halved towards grazing angles, where the reflectance for an
+/// index N changes over 1/N. This number suffices for indices beyond 1000.
 const GRAZING: i32 = 12;
-/// Number of halvings towards the critical angle, where the reflectance has a square root.
+/// Number of times that panels are halved towards the critical angle, where the reflectance behaves
+/// as a square root.
 const CRITICAL: i32 = 40;
 
-/// An interface whose reflectance of unpolarised light depends on the angle of incidence alone: the
-/// factor f(θ) of a separable BRDF.
+/// The reflectance of an interface for unpolarised light, as a function of the angle of incidence:
+/// the factor f(θ) of a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FresnelFactor {
     /// A transparent medium. An index below 1 describes light inside a denser medium, all of which
@@ -29,7 +30,7 @@ pub enum FresnelFactor {
         /// Imaginary part k of the index, relative to the same index.
         extinction: f64,
     },
-    /// Schlick 1994, Eq. 24: F₀ + (1 − F₀)(1 − cos θ)⁵.
+    /// Schlick's approximation (Schlick 1994, Eq. 24), which is F₀ + (1 − F₀)(1 − cos θ)⁵.
     Schlick {
         /// F₀, the reflectance at normal incidence.
         normal_reflectance: f64,
@@ -37,8 +38,8 @@ pub enum FresnelFactor {
 }
 
 impl FresnelFactor {
-    /// Returns the share of unpolarised radiance that is reflected. θ from the normal, in radians,
-    /// |θ| ≤ π/2.
+    /// Returns the share of unpolarised radiance that is reflected. The angle θ is measured from
+    /// the normal, in radians, with |θ| ≤ π/2.
     #[must_use]
     pub fn reflectance(&self, theta: f64) -> f64 {
         let (sine, cosine) = libm::sincos(theta);
@@ -52,12 +53,12 @@ impl FresnelFactor {
         unpolarised_reflectance(index, cosine, sine * sine)
     }
 
-    /// Returns the transform of F(θ) cos⁺(θ), Ω in cycles per radian: the combined kernel of
-    /// Fresnel reflection and cosine (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
-    /// even.
+    /// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian: the combined kernel of
+    /// Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005 plot it in
+    /// Fig. 12-b, but give no formula.
     ///
-    /// The value is found by quadrature to 10⁻¹²; for Schlick it has the closed form F₀ C₁ + (1 −
-    /// F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁ with the transforms Cₙ of cosⁿ.
+    /// The transform is computed by quadrature to 10⁻¹². For Schlick's approximation it has the
+    /// closed form F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁, with the transforms Cₙ of cosⁿ.
     #[must_use]
     pub fn cosine_hat(&self, omega: f64) -> f64 {
         if let Self::Schlick { normal_reflectance } = *self {
@@ -71,8 +72,8 @@ impl FresnelFactor {
         })
     }
 
-    /// Returns panels that shorten towards grazing angles, and towards the critical angle, where
-    /// there is a square root.
+    /// Returns the ends of panels that become shorter towards grazing angles, and towards the
+    /// critical angle, where the reflectance behaves as a square root.
     fn ends(&self) -> Vec<f64> {
         let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
         let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();
@@ -92,12 +93,12 @@ impl FresnelFactor {
     }
 }
 
-/// Returns the share of unpolarised radiance that an interface of complex index reflects at an
-/// angle with this cosine and squared sine: the mean of both polarisations (Born and Wolf 1999,
-/// section 1.5).
+/// Returns the share of unpolarised radiance that an interface of complex index reflects, at an
+/// angle with the given cosine and squared sine: the mean over both polarisations (Born and Wolf
+/// 1999, section 1.5).
 pub(crate) fn unpolarised_reflectance(index: Complex, cosine: f64, squared_sine: f64) -> f64 {
     let square = index * index;
-    // The index times the cosine on the far side.
+    // The refractive index times the cosine of the refracted angle.
     let beyond = square_root(square - squared_sine);
     let across = (cosine - beyond) / (cosine + beyond);
     let along = (square * cosine - beyond) / (square * cosine + beyond);
@@ -112,8 +113,8 @@ mod tests {
     fn brewster_and_total_reflection() {
         let glass = FresnelFactor::Dielectric { index: 1.5 };
         let at = libm::atan(1.5_f64);
-        // At Brewster's angle one polarisation is not reflected, and the mean is half of (n² −
-        // 1)²/(n² + 1)².
+        // At Brewster's angle one polarisation is not reflected, and the mean reflectance is half
+        // of (n² − 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
         assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
         let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// Returns 1/Γ(z) for every real z, as a signed factor and the logarithm of another factor; the
 /// first factor is 0 at z = 0, −1, −2, …
 ///
-/// Uses the reflection formula below zero: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
+/// Below zero the function uses the reflection formula: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
 pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
     if z > 0.0 {
         return (1.0, -ln_gamma(z));
@@ -35,11 +35,11 @@ mod tests {
     fn factorials_and_halves() {
         let mut factorial = 1.0;
         for n in 1..=20 {
-            // The limit is the rounding error of ln Γ up to 40.
+            // The limit is the rounding error of ln Γ for arguments up to 40.
             assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13);
             factorial *= f64::from(n);
         }
-        // Γ(1/2) = √π and Γ(−3/2) = 4√π/3.
+        // The exact values are Γ(1/2) = √π and Γ(−3/2) = 4√π/3.
         assert!((reciprocal(0.5) * PI.sqrt() - 1.0).abs() < 1e-14); // rounding
         assert!((reciprocal(-1.5) * PI.sqrt() * 4.0 / 3.0 - 1.0).abs() < 1e-14); // rounding
     }
@@ -49,10 +49,10 @@ mod tests {
         for n in 0..12 {
             let z = -f64::from(n);
             assert!(reciprocal(z).abs() < f64::MIN_POSITIVE, "{z}");
-            // 1/Γ(z) = z/Γ(z + 1) on both sides of each pole.
+            // Tests 1/Γ(z) = z/Γ(z + 1) on both sides of each pole.
             for z in [z + 0.1, z - 0.1] {
                 let step = z * reciprocal(z + 1.0);
-                // The limit is the rounding error of ln Γ up to 20.
+                // The limit is the rounding error of ln Γ for arguments up to 20.
                 assert!((reciprocal(z) / step - 1.0).abs() < 1e-13, "{z}");
             }
         }

@@ -6,16 +6,16 @@ use crate::numerics::quadrature::integrate;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D,
-/// in radians (Durand et al. 2005, Eq. 15, whose θ_o lacks its prime).
+/// in radians (Durand et al. 2005, Eq. 15, which misprints θ_o' as θ_o).
 ///
 /// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
 /// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
-/// shadowing of a microfacet BRDF are omitted, because they depend on more than δ. The Fresnel
-/// factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same reason. The
-/// distributions are the slices of the 3D ones through the plane of incidence.
+/// shadowing of a microfacet BRDF are omitted, because they are not functions of δ alone. The
+/// Fresnel factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same reason. The
+/// distributions D are slices of the 3D distributions through the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarLobe {
-    /// cosⁿ δ on |δ| < π/2.
+    /// The lobe cosⁿ δ on |δ| < π/2.
     Phong {
         /// Exponent n > 0.
         exponent: f64,
@@ -25,12 +25,12 @@ pub enum PlanarLobe {
         /// Standard deviation σ > 0, in radians.
         deviation: f64,
     },
-    /// exp(−tan² τ/α²)/cos⁴ τ, τ = δ/2 (Beckmann and Spizzichino 1963).
+    /// The lobe exp(−tan² τ/α²)/cos⁴ τ, τ = δ/2 (Beckmann and Spizzichino 1963).
     Beckmann {
         /// Roughness α > 0, the root mean square slope of microfacets times √2.
         roughness: f64,
     },
-    /// 1/(α² cos² τ + sin² τ)², τ = δ/2 (Walter et al. 2007, Eq. 33, who call it GGX).
+    /// The lobe 1/(α² cos² τ + sin² τ)², τ = δ/2 (GGX; Walter et al. 2007, Eq. 33).
     Ggx {
         /// Roughness 0 < α ≤ 1.
         roughness: f64,
@@ -73,10 +73,12 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
+    /// Returns the spectrum ρ̂'(Ω) of the lobe, with Ω in cycles per radian (Durand et al. 2005,
+    /// Eq. 16). The spectrum is real and even, and 1 at zero.
     ///
-    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others
-    /// are found by quadrature, to 10⁻¹².
+    /// The spectrum of a Phong lobe is Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)), and that of a
+    /// Gaussian lobe is exp(−2π²σ²Ω²). The spectra of Beckmann and GGX lobes are computed by
+    /// quadrature, to 10⁻¹².
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> f64 {
         match *self {
@@ -91,12 +93,12 @@ impl PlanarLobe {
     }
 
     /// Returns the frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
-    /// radian; `fraction` in (0, 1).
+    /// radian; `fraction` is this share, in (0, 1).
     ///
-    /// For a Gaussian it is 0.2899/σ for 99 % and 0.2206/σ for 95 %. Durand et al. 2005, section
-    /// 6.2, call this Ω_ρ and choose it by hand. The value is computed by summation to 10⁻⁹. If a
-    /// lobe has a jump, as GGX has at the end, the last part in 10⁶ may lie beyond the range
-    /// searched, and the result is NaN.
+    /// For a Gaussian lobe the frequency is 0.2899/σ for 99 % and 0.2206/σ for 95 %. Durand et al.
+    /// 2005, section 6.2, call this frequency Ω_ρ and choose it by hand. The frequency is computed
+    /// by summation, to 10⁻⁹. A lobe with a discontinuity, such as GGX at its end, may have a
+    /// millionth of its energy beyond the searched range; for higher shares the result is NaN.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -141,7 +143,7 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns a width from which step sizes are derived.
+    /// Returns the width of the lobe from which step sizes are derived.
     fn width(&self) -> f64 {
         match *self {
             Self::Phong { exponent } => exponent.max(1.0).sqrt().recip(),
@@ -150,14 +152,14 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns panels over half of the lobe: the poles of GGX and the scale of Beckmann are at
-    /// about 2α.
+    /// Returns the ends of panels over half of the lobe. The poles of GGX are at about 2α, which is
+    /// also the width of Beckmann's lobe.
     fn ends(&self) -> Vec<f64> {
         doubling(self.width(), PI)
     }
 }
 
-/// Returns tan(δ/2); `None` if it is so large that no microfacet is that steep.
+/// Returns tan(δ/2); `None` if this slope is too large for any microfacet.
 fn slope(angle: f64) -> Option<f64> {
     let t = libm::tan(0.5 * angle);
     (angle.abs() < PI && t.abs() < 1e100).then_some(t)
@@ -183,8 +185,8 @@ mod tests {
         for lobe in LOBES {
             assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
             for omega in [0.0, 0.3, 2.0, 11.0] {
-                // Trapezoid rule: converges exponentially for functions that vanish at the ends, or
-                // are periodic at whole 2πΩ.
+                // The trapezoid rule converges exponentially for functions that vanish at the ends,
+                // and for functions that are periodic because 2πΩ is an integer.
                 if matches!(lobe, PlanarLobe::Ggx { .. } | PlanarLobe::Phong { .. }) && omega != 0.0
                 {
                     continue;
@@ -206,8 +208,8 @@ mod tests {
 
     #[test]
     fn ggx_at_whole_numbers_of_the_circle() {
-        // 1/(p − q cos δ)² has the Fourier coefficients of a Poisson kernel's derivative: rⁿ (1 + n
-        // s), s = √(p² − q²)/p.
+        // The function 1/(p − q cos δ)² is a derivative of a Poisson kernel, and has the Fourier
+        // coefficients rⁿ (1 + n s), s = √(p² − q²)/p.
         let alpha: f64 = 0.3;
         let lobe = PlanarLobe::Ggx { roughness: alpha };
         let a = alpha * alpha;
@@ -224,7 +226,8 @@ mod tests {
     #[test]
     fn cutoffs_of_a_gaussian() {
         let lobe = PlanarLobe::Gaussian { deviation: 0.05 };
-        // The quantiles of the normal distribution at 99 % and 95 %, divided by 2√2 πσ.
+        // The expected cutoffs are the quantiles of the normal distribution at 99 % and 95 %,
+        // divided by 2√2 πσ.
         for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
             let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
             assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised

@@ -3,8 +3,8 @@
 //!
 //! Angles follow the [geometry](crate::geometry): on a surface, directions point away from it, θ is
 //! counted from the normal towards T, and a mirror has θ_o = −θ_i. Frequencies are in cycles per
-//! metre and per radian. A product of a light field with a factor convolves the field's spectrum,
-//! and a convolution over angles multiplies it; neither involves a constant:
+//! metre and per radian. A product of a light field with a factor is a convolution of their
+//! spectra, and a convolution over angles is a product of spectra; no constant factors are needed:
 //!
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|
@@ -16,7 +16,7 @@
 //! | texture, BRDF that varies in space | [`texture`], [`semi_convolution`] | Eq. 18, section 4.5 |
 //! | all seven steps of a reflection | [`PlanarReflection`] | section 4.1 |
 //! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
-//! | how many samples a glossy reflection asks for | [`Criterion`] | Eq. 20, 21 |
+//! | number of samples that a glossy reflection requires | [`Criterion`] | Eq. 20, 21 |
 //! | diffuse receivers, in slopes | [`g_hat`], [`g_hat_3d`] | Eq. 7 and section 5.1 |
 //! | all six steps of diffuse shading, in slopes | [`Flatland`] | section 3, Fig. 6 |
 //!
@@ -24,7 +24,7 @@
 //! use etendue_field::Complex;
 //! use etendue_theory::shading::{Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm};
 //!
-//! // A glossy cylinder, R = 2 m, in light that is a Gaussian of 0.1 m and 0.1 rad.
+//! // A glossy cylinder of radius 2 m, in light with Gaussian profiles of 0.1 m and 0.1 rad.
 //! let gloss = SeparableTerm { before: Factor::Cosine, lobe: Some(PlanarLobe::Phong { exponent: 50.0 }), after: Factor::One, weight: None };
 //! let reflection = PlanarReflection {
 //!     incidence: 0.4,

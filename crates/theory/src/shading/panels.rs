@@ -3,8 +3,8 @@
 use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
-/// Number of nodes of a panel. With two cycles in a panel, or a pole no nearer than the panel is
-/// long, the error is below 10⁻¹⁵.
+/// Number of nodes of a panel. The error is below 10⁻¹⁵ if the panel contains at most two cycles,
+/// and poles are at least a panel's length away.
 const NODES: usize = 24;
 const CYCLES: f64 = 2.0;
 
@@ -30,8 +30,8 @@ pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -
     2.0 * ends.windows(2).map(panel).sum::<f64>()
 }
 
-/// Returns the ends of panels from 0 to `end`. The first panel is `first` long, and each next one
-/// is as long as all panels before it.
+/// Returns the ends of panels from 0 to `end`. The first panel has the length `first`, and each
+/// later panel is as long as all panels before it.
 pub(super) fn doubling(first: f64, end: f64) -> Vec<f64> {
     let mut ends = vec![0.0];
     let mut at = first;

@@ -4,23 +4,24 @@
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
-/// Frequencies n·`spacing` up to `reach` on both sides, over which spectra are summed.
+/// The frequencies n·`spacing`, up to `reach` on both sides of zero, over which spectra are summed.
 ///
-/// The error of the sum has two parts. One is the product of the factor with copies of the light
-/// displaced by 1/`spacing` along the axis (Poisson's formula); it vanishes for a fine spacing if
-/// light and factor are bounded. The other is the light's content beyond `reach`.
+/// The error of the sum has two parts. The first part is the product of the factor with copies of
+/// the light, displaced by 1/`spacing` along the axis (Poisson's formula). This part is zero if the
+/// spacing is fine and light and factor have bounded support. The second part is the spectrum of
+/// the light beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Distance between two frequencies, in cycles per unit of the axis.
     pub spacing: f64,
-    /// The largest frequency at which the *light* still has content, in cycles per unit of the
-    /// axis.
+    /// The largest frequency at which the spectrum of the *light* is not negligible, in cycles per
+    /// unit of the axis.
     pub reach: f64,
 }
 
 impl Lattice {
-    /// Returns the frequencies of a Fourier series on the full circle, 1/2π apart: exact for
-    /// factors on the half-circle and light bounded by ± 3π/2.
+    /// Returns the frequencies of a Fourier series on the full circle, which are 1/2π apart. Sums
+    /// over these frequencies are exact for factors on the half-circle and light within ± 3π/2.
     #[must_use]
     pub fn circle(reach: f64) -> Self {
         let spacing = 1.0 / TAU;
@@ -39,8 +40,8 @@ impl Lattice {
     }
 }
 
-/// Returns the spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12:
-/// their ⊗ with a Dirac).
+/// Returns the spectrum at Ω of f(θ) ℓ(x, θ), which is ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al.
+/// 2005, Eq. 12, where ⊗ is a convolution in 2D with a Dirac along Ωx).
 ///
 /// `factor` is f̂, in cycles per radian; `before` is L.
 #[must_use]
@@ -54,8 +55,8 @@ pub fn angular_product(
     lattice.sum(|q| before([x, q]) * factor(theta - q))
 }
 
-/// A wave A e^(2πi f s) of a texture along the surface. In a real texture each wave has its
-/// conjugate at −f.
+/// A wave A e^(2πi f s) of a texture along the surface. A real texture also contains the conjugate
+/// of each wave, at −f.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureWave {
     /// Frequency f, in cycles per metre of arc length.
@@ -64,11 +65,11 @@ pub struct TextureWave {
     pub amplitude: Complex,
 }
 
-/// Returns the spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f,
+/// Returns the spectrum at Ω of T(s) ℓ(s, θ), where the texture T is a sum of waves: Σ A L(Ωx − f,
 /// Ωθ) (Durand et al. 2005, Eq. 18).
 ///
-/// A texture affects only positions, so it may be applied before or after the step back from the
-/// local normals, but before the outgoing angle.
+/// A texture depends only on positions, so it may be applied before or after the step back from the
+/// local normals, but must be applied before the step of the outgoing angle.
 #[must_use]
 pub fn texture(
     waves: &[TextureWave],
@@ -82,12 +83,12 @@ pub fn texture(
         .sum()
 }
 
-/// Returns the spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ)
-/// ρ̂(Ωx − q, Ωθ) dq, a convolution along Ωx alone (Durand et al. 2005, section 4.5,
-/// "semi-convolution").
+/// Returns the spectrum at Ω after reflection by a BRDF ρ(s, δ) that varies in space. The spectrum
+/// is ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, a convolution along Ωx alone (the "semi-convolution" of Durand
+/// et al. 2005, section 4.5).
 ///
-/// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. A
-/// `brdf` that does not depend on Ωθ is a texture.
+/// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. If
+/// `brdf` does not depend on Ωθ, it represents a texture.
 #[must_use]
 pub fn semi_convolution(
     lattice: &Lattice,
@@ -128,8 +129,8 @@ mod tests {
             spacing: 0.05,
             reach: 6.0,
         };
-        // The texture is a wide Gaussian modulation of frequency 2; it is compared with the wave
-        // itself.
+        // The texture is a wave of frequency 2 with a wide Gaussian envelope, and is compared with
+        // the wave without an envelope.
         let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
         let fine = Lattice {
             spacing: 1e-4,

@@ -9,8 +9,7 @@ use std::fmt;
 /// The spectrum of a light field, L(Ωx, Ωθ).
 type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 
-/// Steps of a reflection in the order light meets them (Durand et al. 2005, section 4.1 and Fig.
-/// 10).
+/// Steps of a reflection in the order of propagation (Durand et al. 2005, section 4.1 and Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReflectionStep {
     /// Step 1, onto the surface: [`AffineMap::incidence`](AffineMap::<2>::incidence).
@@ -18,11 +17,11 @@ pub enum ReflectionStep {
     /// Step 2, into the frames of the local normals:
     /// [`AffineMap::curvature`](AffineMap::<2>::curvature).
     Curvature,
-    /// Step 3, times cosine and other factors of the direction of incidence.
+    /// Step 3, multiplication by the cosine and other factors of the direction of incidence.
     Cosine,
-    /// Step 4, mirrored: [`AffineMap::mirror`].
+    /// Step 4, mirror reflection: [`AffineMap::mirror`].
     Mirror,
-    /// Step 5, convolved with the lobe, times factors of the outgoing direction.
+    /// Step 5, convolution with the lobe, and multiplication by factors of the outgoing direction.
     Brdf,
     /// Step 6, back from the local normals: [`AffineMap::back`](AffineMap::<2>::back).
     Back,
@@ -43,11 +42,11 @@ impl ReflectionStep {
     ];
 }
 
-/// A factor of a local direction, given by its transform.
+/// A factor that depends on the local direction, given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// The constant 1. Without a [`PlanarLobe`] the surface is then an ideal mirror, whose BRDF
-    /// δ/cos θ_i' cancels the cosine. Light is then not cut off at the horizon.
+    /// The constant 1, which does not cut off light at the horizon. Without a [`PlanarLobe`], a
+    /// surface with this factor is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
     One,
     /// The clamped cosine cos⁺.
     Cosine,
@@ -57,8 +56,8 @@ pub enum Factor<'a> {
     Table(&'a AngleTable),
     /// The values of a table times cos⁺.
     TableCosine(&'a AngleTable),
-    /// Any other factor, including the cosine if it applies: f̂(Ω), in cycles per radian; complex
-    /// for asymmetric factors.
+    /// The transform f̂(Ω) of any other factor, which includes the cosine if needed, with Ω in
+    /// cycles per radian. The transform of an asymmetric factor is complex.
     Other(&'a dyn Fn(f64) -> Complex),
 }
 
@@ -76,7 +75,7 @@ impl fmt::Debug for Factor<'_> {
 }
 
 impl Factor<'_> {
-    /// Returns the spectrum of the product at Ω.
+    /// Returns the spectrum at Ω of the product of a light field and this factor.
     fn times(&self, lattice: &Lattice, omega: [f64; 2], before: PlanarSpectrum<'_>) -> Complex {
         match self {
             Self::One => before(omega),
@@ -97,32 +96,34 @@ impl Factor<'_> {
 
 use angular_product as product;
 
-/// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
+/// A separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
 pub struct SeparableTerm<'a> {
     /// The factor f(θ_i'), including the cosine.
     pub before: Factor<'a>,
-    /// The lobe ρ'; `None` for a Dirac.
+    /// The lobe ρ'; `None` represents a Dirac.
     pub lobe: Option<PlanarLobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
-    /// The weight w at each position, as a sum of waves; `None` for 1.
+    /// The weight w(s), as a sum of waves; `None` represents the weight 1.
     pub weight: Option<&'a [TextureWave]>,
 }
 
-/// Reflection in 2D, from the light frame before to the light frame after.
+/// A reflection in 2D, from the light frame before the surface to the light frame after the
+/// surface.
 #[derive(Clone, Debug)]
 pub struct PlanarReflection<'a> {
-    /// θ₀, the direction the central light comes from; radians from the normal.
+    /// θ₀, the direction from which the central ray comes, in radians from the normal.
     pub incidence: f64,
-    /// θ₁, the direction the central ray leaves in; −θ₀ for a mirror.
+    /// θ₁, the direction in which the central ray leaves, in radians from the normal; −θ₀ for a
+    /// mirror.
     pub outgoing: f64,
     /// Curvature k, in 1/m, convex positive.
     pub curvature: f64,
     /// The terms of the BRDF.
     pub terms: Vec<SeparableTerm<'a>>,
-    /// Frequencies along Ωθ over which products are summed. The reach of these frequencies covers
-    /// the content of the light in the frames of the local normals.
+    /// Frequencies along Ωθ over which products are summed. These frequencies must reach beyond the
+    /// spectrum of the light in the frames of the local normals.
     pub lattice: Lattice,
 }
 
@@ -130,13 +131,15 @@ impl PlanarReflection<'_> {
     /// Returns the spectrum at Ω after a step, for light with the spectrum `before` in the light
     /// frame.
     ///
-    /// It holds to first order in the size of the neighbourhood, like the [maps](crate::geometry);
-    /// cosine, lobe and factors are exact. If the BRDF has several terms, the spectrum
-    /// between the cosine and the BRDF is the sum of the differential irradiances of all terms.
+    /// The spectrum holds to first order in the size of the neighbourhood, like the
+    /// [maps](crate::geometry); the effects of cosine, lobe and factors are exact. If the BRDF has
+    /// several terms, the spectrum between the cosine and the BRDF is the sum of the differential
+    /// irradiances of all terms.
     ///
-    /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
-    /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et
-    /// al. 2005 drops this sign and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
+    /// For one term without h, the spectrum after step 6 is L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q,
+    /// q) f̂(−Ωθ − q) dq (docs/theory.md (36)). If f is asymmetric, the sign of −Ωθ affects the
+    /// result. Table 1 of Durand et al. 2005 omits this sign and the hat of ρ̂', and Eqs. 15 and 17
+    /// of the paper lack primes.
     #[must_use]
     pub fn spectrum(
         &self,
@@ -170,7 +173,7 @@ impl PlanarReflection<'_> {
         self.terms.iter().map(of).sum()
     }
 
-    /// Returns step 3 of a term.
+    /// Returns the spectrum at Ω after step 3, for one term of the BRDF.
     fn lit(
         &self,
         term: &SeparableTerm<'_>,
@@ -181,8 +184,9 @@ impl PlanarReflection<'_> {
         term.before.times(&self.lattice, omega, &local)
     }
 
-    /// Returns steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005;
-    /// the weights of a sum are textures (section 4.5).
+    /// Returns the contribution of one term of the BRDF to the spectrum after step 5. The product
+    /// with the lobe is Eq. 16 of Durand et al. 2005, and the weights of terms are textures
+    /// (section 4.5).
     fn reflected(
         &self,
         term: &SeparableTerm<'_>,
@@ -212,7 +216,7 @@ mod tests {
         turn * libm::exp(-PI * (0.3 * x * x + 0.1 * x * t + 0.2 * t * t))
     }
 
-    /// The transform of (1 + 0.6 sin θ) cos⁺, which distinguishes θ from −θ.
+    /// Returns the transform of (1 + 0.6 sin θ) cos⁺, an asymmetric factor.
     fn uneven(q: f64) -> Complex {
         let side = cosine_hat(q - 0.5 / PI) - cosine_hat(q + 0.5 / PI);
         Complex::new(cosine_hat(q), -0.3 * side)

@@ -1,4 +1,4 @@
-//! Factors of an angle that are tables of values.
+//! Transforms of factors that are tables of values over an angle.
 
 use super::panels::even_transform;
 use etendue_field::AngleTable;
@@ -6,9 +6,11 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
 /// in cycles per radian. This is the transform of the factor f(θi) or h(θo) of a separable BRDF
-/// (Durand et al. 2005, section 4.3), with the cosine as g if it applies. Real and even.
+/// (Durand et al. 2005, section 4.3), where g is the cosine if the factor includes it. The
+/// transform is real and even.
 ///
-/// It is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth g.
+/// The transform is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth
+/// g.
 #[must_use]
 pub fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;
@@ -35,7 +37,7 @@ mod tests {
         for omega in [0.0, 0.3, 2.0, 11.0] {
             let constant = table_hat(&of(&[1.0, 1.0, 1.0]), libm::cos, omega);
             assert!((constant - cosine_hat(omega)).abs() < 1e-12); // as promised
-            // 1 − |θ|/(π/2): π/2 sinc²(Ω π/2).
+            // The factor 1 − |θ|/(π/2) has the transform π/2 sinc²(Ω π/2).
             let half = 0.5 * PI * omega * 0.5 * TAU;
             let sinc = if omega > 0.0 {
                 libm::sin(half) / half

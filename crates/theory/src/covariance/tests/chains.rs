@@ -49,7 +49,7 @@ fn seen() -> Window {
     }
 }
 
-/// Returns C of a field of covariance S after the window [`seen`].
+/// Returns the spectral covariance C of a field with the covariance S, after the window [`seen`].
 fn windowed(field: &Matrix<4>) -> Matrix<4> {
     let stds = [0.5, 0.4, 0.3, 0.2].map(|width: f64| width / TAU.sqrt());
     power_spectrum(&gaussian_window(field, stds).unwrap()).unwrap()
@@ -174,8 +174,8 @@ fn behind_a_textured_lobe() {
     let expected = windowed(&chain.off.covariance(&left));
     let plain = of(&view(None));
     assert!(apart(&plain, &expected) < 1e-10); // rounding; maps are of differences, alike in both
-    // The spectral lines of the grating add their variance along the axis of the patch along which
-    // the grating varies.
+    // The grating adds the variance of its spectral lines along the axis of the patch on which its
+    // transmission varies.
     let textured = of(&view(Some(Pattern::Cosine(lines))));
     let mut along = [[0.0; 4]; 4];
     let axis = [chain.frame.x, chain.frame.y].map(|t| t.dot(patch().frame.x));

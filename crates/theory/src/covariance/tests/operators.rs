@@ -19,8 +19,8 @@ fn lobe() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.01, 0.006])
 }
 
-/// Returns C of a Gaussian light field, computed by mapping, windowing and blurring the field's
-/// covariance S.
+/// Returns the spectral covariance C of a Gaussian light field, computed by mapping, windowing and
+/// blurring the field's covariance S.
 fn followed() -> Matrix<4> {
     let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));
     let blocked = gaussian_window(

@@ -125,7 +125,7 @@ fn other_rules_of_refraction_do_not_converge() {
 #[test]
 fn foci_of_a_hollow_sphere() {
     let (radius, theta0) = (2.0, 0.7_f64);
-    // The rays are neighbours of the central ray, parallel to it; the error of the central
+    // The traced rays are near the central ray and parallel to it. The error of the central
     // difference is of order e².
     let e = 1e-4;
     let crossing = |axis: usize| {

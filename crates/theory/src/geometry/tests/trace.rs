@@ -22,13 +22,14 @@ fn scaled(a: Vector, t: f64) -> Vector {
 pub(super) struct LightAxes([Vector; 3]);
 
 impl LightAxes {
-    /// Returns the axes for light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
+    /// Returns the axes for light that seems to come from the angle θ, with D = −(sin θ T + cos θ
+    /// N).
     pub(super) fn coming(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[-cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, -cos]])
     }
 
-    /// Returns the axes for light that leaves at the angle θ: D = sin θ T + cos θ N.
+    /// Returns the axes for light that leaves at the angle θ, with D = sin θ T + cos θ N.
     pub(super) fn leaving(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
@@ -79,7 +80,8 @@ impl GraphSurface {
         self.0.map(|row| dot(row, p))
     }
 
-    /// Returns the point near the origin where a ray meets the surface, and the unit normal there.
+    /// Returns the point near the origin where a ray meets the surface, and the unit normal at this
+    /// point.
     fn hit(&self, [o, d]: [Vector; 2]) -> [Vector; 2] {
         let a = dot(d, self.quadratic(d));
         let half_b = dot(o, self.quadratic(d)) + d[2];

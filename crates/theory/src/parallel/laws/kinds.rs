@@ -201,6 +201,6 @@ fn the_root_of_a_point_is_two_per_cent() {
     let chain = chain_of(POINT, [(2.0, None)]);
     let [with, without] = [0.5, 0.0].map(|power| at_power(&chain, &window, power, [0.0; 4]).re);
     assert!((with / without - 1.02).abs() < 2e-3, "{}", with / without); // to the digits stated
-    // Without the factor √(1 + u² + v²) the result is a Gaussian integral: I/(D²/a² + 1/b²).
+    // Without the factor √(1 + u² + v²) the result is the Gaussian integral I/(D²/a² + 1/b²).
     assert!((without * 8.0 / 1.3 - 1.0).abs() < 1e-14, "{without}"); // the cut is at 2e-16
 }

@@ -28,8 +28,8 @@ const FEW_NODES: usize = 16;
 enum SlopePower {
     /// The constant lobe, p = 0.
     Flat,
-    /// p = 2: the factor G of docs/theory.md (7), which is the cosine of a Lambertian receiver
-    /// times dω/(du dv).
+    /// The lobe with p = 2, the factor G of docs/theory.md (7), which is the cosine of a Lambertian
+    /// receiver times dω/(du dv).
     Cosine,
     /// The lobe with p = n/2 for an integer n.
     Half(i32),

@@ -73,7 +73,7 @@ impl KernelAxis {
     }
 
     /// Returns the range of slopes for which light from the coordinate t of the receiver is inside
-    /// the window; the range is empty if no such light is inside.
+    /// the window; the range is empty if no light from this coordinate is inside.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
         if self.after <= 0.0 {

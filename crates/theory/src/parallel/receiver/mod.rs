@@ -5,8 +5,8 @@
 //! A ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h
 //! before the receiver. So as a function of slopes at (x, y), every shape upstream is a scaled
 //! copy of the shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
-//! integrals over rectangles and discs: the light and the blockers as seen from the point
-//! (docs/theory.md, section 4b).
+//! integrals over rectangles and discs. These shapes are the light and the blockers as seen from
+//! the point (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;

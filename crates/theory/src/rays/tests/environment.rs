@@ -348,8 +348,8 @@ fn curvature_shears_the_sky_onto_a_line() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(1, [0.3, 0.7]));
     let plane = on_sphere(0.0, Orientation::LocalNormals, Quantity::Radiance);
     let found = exact(&under(&environment, vec![]), &plane, &window, &grid);
-    // Σ P ρ ν / Σ P ν² is k if all power P is on the line ρ = k ν; the window widens this line
-    // along ρ only.
+    // The quotient Σ P ρ ν / Σ P ν² is k if all power P is on the line ρ = k ν; the window widens
+    // this line along ρ only.
     let full = found.slices.full();
     let (mut cross, mut own) = (0.0, 0.0);
     for (m, rho) in grid.rho.values().into_iter().enumerate() {

@@ -104,8 +104,8 @@ fn after(system: &SpecularSystem, distance: f64) -> Plane {
     Plane::orthogonal(last.travelled(distance))
 }
 
-/// Places a surface across a leg. Its normal is −D turned by θ₀ within the plane at the angle
-/// `azimuth` about D; its principal axes are turned by `twist` about the normal.
+/// Places a surface across a leg. The surface's normal is −D turned by θ₀ within the plane at the
+/// angle `azimuth` about D. Its principal axes are turned by `twist` about the normal.
 fn placed(
     leg: &Frame,
     distance: f64,

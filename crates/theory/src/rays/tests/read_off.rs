@@ -135,7 +135,7 @@ fn chain_is_the_derivative_of_the_rays() {
 #[test]
 fn printed_chains_are_not() {
     // None of the printed editions gives the correct map onto a surface, and with a curved mirror
-    // none gives the correct map behind it.
+    // none gives the correct map behind the mirror.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
     for print in [Edition::Equations, Edition::Table] {

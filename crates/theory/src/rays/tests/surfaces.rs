@@ -91,8 +91,8 @@ fn derivatives_by_every_parameter() {
         let other = view.with(parameter, value + 1e-4).unwrap();
         let read = other.value(parameter).unwrap();
         assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
-        // The reference derivative is a forward difference, with another step, of converged
-        // predictions.
+        // The reference derivative is a forward difference of converged predictions, with another
+        // step.
         let moved = exact(&other.system, &other.plane, &window, &grid);
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
@@ -136,7 +136,7 @@ fn rays_are_lost() {
         assert_eq!(system.follow([0.0; 4]).is_some(), passes);
         assert_eq!(system.hits().is_some(), passes);
     }
-    // This surface is behind the light.
+    // The added surface is behind the light.
     let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
     let behind = self::system(
         beam([0.1, 0.1]),

@@ -296,8 +296,8 @@ fn first_order_is_of_its_order() {
         let errors = errors(theta0, k, |e| white(phong(e)), orientation);
         let order = libm::log2(errors[1] / errors[2]);
         let due = if theta0 == 0.0 { 2.0 } else { 1.0 };
-        // Three sizes are tested; terms beyond the first neglected order are at most a quarter of
-        // it.
+        // Three sizes are tested; the terms of higher orders are at most a quarter of the first
+        // neglected term.
         assert!(
             (order - due).abs() < 0.25,
             "{theta0} {orientation:?}: {order} {errors:?}"
@@ -306,7 +306,7 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// Tests a sum of two BRDFs. Both have factors of the angles of incidence and departure, and
+/// Tests a sum of two BRDFs. Both BRDFs have factors of the angles of incidence and departure, and
 /// weights whose wavelength is proportional to the size of the neighbourhood.
 #[test]
 fn weighted_and_separable_brdfs_are_of_first_order() {

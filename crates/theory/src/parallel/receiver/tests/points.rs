@@ -25,8 +25,8 @@ fn square_seen_from_below_its_corner() {
 
 #[test]
 fn disc_seen_from_anywhere() {
-    // Howell 1982, section B: R = radius / offset, H = distance / offset, Z = 1 + H² + R²,
-    // F = ½ (1 − (Z − 2R²) / √(Z² − 4R²)).
+    // The form factor of a disc is F = ½ (1 − (Z − 2R²) / √(Z² − 4R²)), with R = radius / offset, H
+    // = distance / offset, Z = 1 + H² + R² (Howell 1982, section B).
     for (radius, distance) in [(0.3, 2.0), (1.5, 1.0), (20.0, 0.5), (0.01, 3.0)] {
         let receiver = alone(area(disc([0.2, -0.1], radius), 0.0), distance);
         let receiver = receiver.receiver();
@@ -37,8 +37,8 @@ fn disc_seen_from_anywhere() {
             let (r2, h2) = ((radius / offset).powi(2), (distance / offset).powi(2));
             let z = 1.0 + h2 + r2;
             let root = (z * z - 4.0 * r2).sqrt();
-            // The difference 1 − (z − 2R²)/√ is computed without cancellation from √² − (z − 2R²)²
-            // = 4R²(z − 1 − R²) = 4R²H².
+            // With `root` = √(Z² − 4R²), the difference 1 − (Z − 2R²)/`root` is computed without
+            // cancellation, because root² − (Z − 2R²)² = 4R²(Z − 1 − R²) = 4R²H².
             let expected = 2.0 * r2 * h2 / (root * (root + z - 2.0 * r2));
             let got = receiver.irradiance(0.2, -0.1 + offset) / (1.7 * PI);
             // The square root in F has a large rounding error next to the edge of a large disc.
@@ -71,8 +71,8 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
     let bench = alone(area(rectangle([0.0; 2], [0.3; 2]), 0.0), 1.0);
     let mut receiver = bench.receiver();
     receiver.albedo = 1.0;
-    // The integral ∫ L G du dv over all slopes equals the irradiance under an infinite sky of the
-    // radiance that leaves the receiver.
+    // A sky that covers all slopes and has the radiance that leaves the receiver causes the same
+    // irradiance as the lamp.
     let sky = Light::Area {
         shape: rectangle([0.0; 2], [2e6; 2]),
         radiance: receiver.exitance() * receiver.irradiance(0.1, 0.2),
