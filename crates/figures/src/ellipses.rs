@@ -30,7 +30,7 @@ pub struct Ellipses<'a> {
     pub picture: Picture<'a>,
     /// The quantity of the picture.
     pub quantity: AxisQuantity,
-    /// Lower end of the colors in decibels; below 0.
+    /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,
     /// The ellipses at two standard deviations, in the order of the key. Each of the three
     /// positions has its own color and dashes, which are not used if the ellipse at this position

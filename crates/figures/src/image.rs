@@ -52,9 +52,9 @@ fn picture(
     Ok(Some(format!("data:image/png;base64,{text}")))
 }
 
-/// Returns a photograph as a grey PNG: `radiance` is given in rows from the top, and is converted
-/// by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels is drawn
-/// white.
+/// Returns a photograph as a grey PNG. The values of `radiance` are given in rows from the top, and
+/// are converted by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the
+/// pixels is drawn white.
 ///
 /// # Errors
 /// If there are no pixels, more pixels than a PNG can hold, or fewer or more values than pixels.

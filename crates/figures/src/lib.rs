@@ -11,7 +11,7 @@
 //! * [`plate()`]: pictures in rows and columns.
 //! * [`section()`]: the cut of `strip()` alone.
 //! * [`ellipses()`]: a spectrum with covariances over it.
-//! * [`curves()`]: curves and measured points, panel beside panel.
+//! * [`curves()`]: curves and measured points, in adjacent panels.
 //! * [`stacked()`]: several figures on one page.
 //! * [`photograph()`]: the picture that a camera takes.
 //!

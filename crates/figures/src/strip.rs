@@ -19,23 +19,23 @@ use crate::text::width;
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// The light field in (y, v). The row of these pictures is drawn if all columns have such a
-    /// picture.
+    /// The light field in (y, v). The row of light fields in (y, v) is drawn if each column has
+    /// such a light field.
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`; the
     /// table has `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// The predicted spectrum. The row of predicted spectra is drawn if all columns have such a
-    /// picture.
+    /// The predicted spectrum. The row of predicted spectra is drawn if each column has a predicted
+    /// spectrum.
     pub predicted: Option<Picture<'a>>,
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The two rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
     /// The difference between the measured spectrum and a first-order chain, in percent of the
-    /// largest modulus of the measured spectrum. The row of these differences is drawn if all
-    /// columns have such a picture.
+    /// largest modulus of the measured spectrum. The row of differences is drawn if each column has
+    /// such a difference.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", as markup; may be empty.
     pub verdict: Vec<String>,
@@ -75,7 +75,7 @@ pub struct Strip<'a> {
     /// The quantity of the full radial spectra, shown in decibels below the largest value of each
     /// spectrum.
     pub full_radial: AxisQuantity,
-    /// Lower end of the colors in decibels; below 0.
+    /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,
 }
 

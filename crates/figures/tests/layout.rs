@@ -47,7 +47,7 @@ fn gallery() -> Vec<Figure> {
     figures
 }
 
-/// Returns panels with a curve and points, one panel with tiny numbers.
+/// Returns panels with a curve and points; one of the panels has tiny numbers.
 fn lines(count: usize) -> Curves {
     let curve = |kind, name: &str, scale: f64| Curve {
         kind,

@@ -1,5 +1,5 @@
-//! Values of colours, spectra and pictures, compared with Mitsuba 3.9.1: `llvm_ad_mono` for
-//! luminance, `scalar_rgb` for channels.
+//! Values of colours, spectra and pictures, compared with the variants `llvm_ad_mono` (luminance)
+//! and `scalar_rgb` (channels) of Mitsuba 3.9.1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

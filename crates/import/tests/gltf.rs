@@ -128,7 +128,8 @@ fn base_colours_are_linear_and_their_pictures_srgb() {
     let Material::Diffuse { reflectance } = &sides[0] else {
         panic!("{:?}", sides[0]);
     };
-    // v = 0 is the upper row, which is white; level 188 below is 0.502886 in linear light.
+    // The upper row of the picture, at v = 0, is white. The lower row has level 188, which is
+    // 0.502886 in linear light.
     let at = |u, v| reflectance.value(DVec2::new(u, v));
     assert_close(
         &[at(0.5, 0.25), at(0.5, 0.75)],

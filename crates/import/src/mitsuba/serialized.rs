@@ -12,7 +12,7 @@ const HAS_NORMALS: u32 = 0x1;
 const HAS_UVS: u32 = 0x2;
 const HAS_COLORS: u32 = 0x8;
 const IS_DOUBLE: u32 = 0x2000;
-/// Maximum length of a mesh's name, which is skipped, bytes.
+/// Maximum length, in bytes, of a mesh's name, which the reader skips.
 const LONGEST_NAME: u64 = 1 << 16;
 /// Maximum ratio of unpacked to packed bytes: zlib reaches 1032 for zeros, and less than 20 for
 /// meshes.

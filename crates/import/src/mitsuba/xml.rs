@@ -73,7 +73,7 @@ impl<'a> Tree<'a> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
         // The number of attributes is checked first, because the time of the XML parser grows with
-        // its square.
+        // the square of this number.
         if let Some(offset) = crowded(text) {
             let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);

@@ -68,7 +68,7 @@ impl<'a> ObjReader<'a> {
         }
     }
 
-    /// Reads a material library statement: one file with spaces in its name, or several.
+    /// Reads a material library statement: one file with spaces in its name, or several files.
     fn library(&mut self, line: usize, names: &str) {
         let folders = [self.folder.clone()];
         if self.files.find(&folders, names).is_ok() {

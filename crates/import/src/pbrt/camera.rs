@@ -226,7 +226,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Checks the filter: a box of one pixel is exact.
+    /// Checks a box filter; a note states if its width is not one pixel.
     fn check_box(&self, entity: &Entity) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {

@@ -128,7 +128,7 @@ impl PbrtReader<'_> {
         Ok(Some(found))
     }
 
-    /// Returns a spectrum that pbrt knows by name, or reads it from a file of pairs.
+    /// Returns a spectrum that pbrt knows by name, or reads a spectrum from a file of pairs.
     fn named_spectrum(&self, name: &str) -> Result<PbrtSpectrum, String> {
         if named::index(name).is_some() || named::is_illuminant(name) {
             return Ok(PbrtSpectrum::Named(name.to_owned()));
