@@ -31,8 +31,8 @@
 //! # Limits
 //!
 //! The maximum nesting depth is 64 for files, 4096 for blocks, 16 for textures and 8 for materials.
-//! A scene has at most 16384 included files, 256 parameters of `Attribute` at once, and 2²⁰ shapes including
-//! instances. At most 4 GiB are read and unpacked in all.
+//! A scene has at most 16384 included files, 256 parameters of `Attribute` at once, and 2²⁰ shapes
+//! including instances. At most 4 GiB are read and unpacked in all.
 
 mod area;
 mod block;

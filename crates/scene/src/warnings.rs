@@ -19,8 +19,8 @@ const PIECES: f64 = 8.0;
 /// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// The slopes at which the factor is evaluated for each point, in units of the half-width of the
-/// window.
+/// The slopes, in units of the window's half-width, at which the ratio of the radiances of photons
+/// and of backward rays is evaluated for each point.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
@@ -29,12 +29,12 @@ impl Scene {
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
     /// to the normal t of the triangle. If photons come along d and leave along e, their radiance
-    /// is (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated
-    /// normals do not conserve étendue. The effect of a mesh on a plane is the ratio of two
-    /// spectra at the measured frequencies along x and y, both computed where the light hits the
-    /// mesh. The first spectrum is that of the window times the factor minus 1; the second
-    /// spectrum is that of the window alone. If facets are finer than the waves of these
-    /// frequencies, their effects average out.
+    /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
+    /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
+    /// of two spectra at the measured frequencies along x and y, both computed where the light hits
+    /// the mesh. The first spectrum is that of the window times f − 1, and the second spectrum is
+    /// that of the window alone. If facets are finer than the waves of these frequencies, their
+    /// effects average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -282,7 +282,7 @@ impl<'a> WindowView<'a> {
             return;
         }
         let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
-        // Light on the wrong side of a triangle is lost completely, or counted twice.
+        // Light on the wrong side of a triangle is either lost or counted twice.
         let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
         if factor.is_finite() {
             sums.difference += weight * (factor - 1.0);

@@ -144,8 +144,8 @@ fn written_ply_reads_back_here_and_elsewhere() {
 }
 
 /// The triangles of an OBJ file as points agree with tobj's. The test omits three statements that
-/// tobj reads differently: the `l` line, which tobj takes for a triangle, the colour, which tobj
-/// requires on all vertices or none, and the continued line, which tobj refuses.
+/// tobj does not read correctly. Of these, tobj takes the `l` line for a triangle, refuses a colour
+/// that only some vertices have, and refuses the continued line.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();
@@ -219,7 +219,7 @@ fn faults_of_obj_files_are_told() {
     assert_eq!(told, "vertices (`v` lines) is 0; allowed: at least 3");
 }
 
-/// Returns an ASCII triangle, with one piece replaced; the piece must be there.
+/// Returns a PLY file of a triangle with `from` replaced by `to`; the file must contain `from`.
 fn edited(from: &str, to: &str) -> String {
     let sound = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                  element face 1\nproperty list uchar int vertex_indices\nend_header\n\
@@ -500,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// Checks the properties of every mesh, however the mesh is made.
+/// Checks the properties that every mesh must have.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

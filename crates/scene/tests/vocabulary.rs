@@ -255,7 +255,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // If planes or visits refer to this object, they are not reported as faulty too.
+        // Planes and visits that refer to a faulty object are not reported as faulty too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"

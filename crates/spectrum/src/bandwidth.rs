@@ -92,7 +92,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // The loop ends here only because of rounding errors, because the total power exceeds every
+    // Only rounding errors let the loop end without a result, because the total power exceeds every
     // fraction of itself.
     Some(axis.max() + 0.5 * axis.spacing)
 }

@@ -1,10 +1,10 @@
 //! Computes bandwidths of a picture along each direction in the plane of its two slopes.
 //!
-//! A picture is a windowed function of two slopes. Its 2D spectrum is measured along lines
-//! through zero, one line for each azimuth: slices with ρ = 0 alone. [`DirectionalBandwidth`]
-//! has, for each direction e, the smallest B for which the power at |ν · e| > B is at most a
-//! twentieth of the total. Each frequency represents its polar cell, whose power is spread
-//! uniformly over the range of ν · e within the cell.
+//! A picture is a windowed function of two slopes. The 2D spectrum of a picture is measured by
+//! slices that contain only ρ = 0, which are lines through zero, one for each azimuth. For each
+//! direction e, [`DirectionalBandwidth`] has the smallest B for which the power at |ν · e| > B is
+//! at most a twentieth of the total. Each frequency represents its polar cell, whose power is
+//! spread uniformly over the range of ν · e within the cell.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
 use crate::estimate::TooFewBatches;
@@ -224,7 +224,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // This line is reached only because of rounding errors.
+        // Only rounding errors let the search end without a result.
         self.bins.len() as f64 * self.step
     }
 }

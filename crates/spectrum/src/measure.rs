@@ -44,7 +44,7 @@ pub trait Watch: Sync {
         true
     }
 
-    /// Receives a batch of which more parts are finished, but not all.
+    /// Receives an unfinished batch each time further parts of the batch are finished.
     fn begun(&self, _batch: &PartialBatch) {}
 
     /// Receives a finished batch.
@@ -118,7 +118,7 @@ struct BatchParts<'a> {
     source: &'a dyn PhotonSource,
     batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &'a dyn Watch,
-    /// The batches of which parts have been taken so far.
+    /// The batches whose parts have been taken at least partly.
     all: &'a mut Vec<Arc<BatchSum>>,
     /// The number of the next part of the last batch in `all`.
     next: u32,

@@ -40,12 +40,12 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// Returns H, the share of the energy at frequencies above a cut in the spectrum at ν = 0: Σ_{|ρ|
-/// > cut} P(ρ, 0) / Σ P(ρ, 0).
+/// Returns H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0), the share of the energy at frequencies above a
+/// cut in the spectrum at ν = 0.
 ///
-/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν
-/// = 0 is that of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow
-/// (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
+/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν =
+/// 0 is that of the windowed irradiance. On such a plane, H distinguishes a sharp shadow from a
+/// smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);

@@ -23,7 +23,7 @@ pub struct RadialPower {
     pub sigma: Array2<f64>,
 }
 
-/// The power spectrum U of a plane from products of independent batches (docs/theory.md (13)):
+/// The power spectrum U of a plane from products of independent batches (docs/theory.md (13)).
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
@@ -32,7 +32,7 @@ pub struct RadialPower {
 /// are correlated.
 ///
 /// If batch r is left out, the estimate is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and
-/// row_r = Σ_(s≠r) Re(S_r conj S_s): the jackknife needs no copies.
+/// row_r is Σ_(s≠r) Re(S_r conj S_s). The jackknife therefore needs no copies of the slices.
 #[derive(Clone, Debug)]
 pub struct CrossPower<'m> {
     grid: SliceGrid,

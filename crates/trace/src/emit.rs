@@ -247,8 +247,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; such
-        // a ray carries no light.
+        // Because of rounding, a ray can lie exactly on the edge of a range, where the density is
+        // zero; a ray on the edge carries no light.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {

@@ -256,7 +256,8 @@ mod tests {
             for i in 1..N - 1 {
                 for j in 1..N - 1 {
                     let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
-                    // Corners that four squares share, and points on the edge between them.
+                    // The tested points are corners that four squares share, and points on the edge
+                    // between two such corners.
                     let [p, _, end] = triangles[(2 * (i * N + j)) as usize];
                     for t in [0.0, 0.3, 0.5, 1.0] {
                         let ray = ray(&leg, DVec3::new(x, y, 0.0), p.lerp(end, t));

@@ -7,8 +7,7 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 /// The difference between a 4D spectrum and the alias-free slices of the same photons, at the
 /// frequencies that both have.
 ///
-/// All values are relative norms: ‖·‖ over the shared frequencies, divided by the norm of the
-/// slices.
+/// All values are norms over the shared frequencies, divided by the norm of the slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aliasing {
     /// Number of frequencies compared; only one frequency of each conjugate pair counts.
@@ -38,10 +37,11 @@ impl FieldSpectrum {
     /// Compares the 4D spectrum with the slices of the same photons, at all shared frequencies
     /// below `share` of Nyquist.
     ///
-    /// Frequencies with Ωy = Ωv = 0 are shared with the slice at azimuth 0, and frequencies with
-    /// Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the number of azimuths is even;
-    /// if the spacing of the slices is finer than the natural spacing, only every n-th frequency
-    /// is shared. Returns `None` if no frequency is shared or if there is no light.
+    /// The spectrum shares frequencies with Ωy = Ωv = 0 with the slice at azimuth 0. The spectrum
+    /// shares frequencies with Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the
+    /// number of azimuths is even. If the spacing of the slices is finer than the natural spacing,
+    /// only every n-th frequency is shared. Returns `None` if no frequency is shared or if there is
+    /// no light.
     ///
     /// At the shared frequencies, only the two axes along the line have aliasing; at other
     /// frequencies, all four axes have aliasing.

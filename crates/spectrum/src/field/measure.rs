@@ -29,8 +29,9 @@ pub struct FieldOptions {
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
     /// Whether the covariance of the spectrum is computed too, over the frequencies of the plane.
-    /// If it is, the grid extends to 1.5 times these frequencies, and the alias at the highest of
-    /// these frequencies is an eighth of the spectrum at twice the highest frequency.
+    /// If the covariance is computed, the grid extends to 1.5 times the largest frequencies of the
+    /// plane. The alias at the largest frequency is then an eighth of the spectrum at twice this
+    /// frequency.
     pub covariance: bool,
 }
 
@@ -65,8 +66,8 @@ impl FieldOptions {
     }
 
     /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: for the
-    /// field, for its spectrum, and for the grid of each group that is kept or being measured.
-    /// The caller should compare it with the available memory before measuring.
+    /// field, for its spectrum, and for the grid of each group that is kept or being measured. The
+    /// caller should compare this number with the available memory before the measurement.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);

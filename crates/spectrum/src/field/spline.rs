@@ -1,9 +1,9 @@
 //! Computes B-splines: the shares of cells, the splines' transforms, and the aliasing due to
 //! sampling on a grid.
 //!
-//! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order
-//! p with the transform sinc^p. By Poisson's summation formula, the transform of the shares at f
-//! cycles per cell, |f| ≤ ½, divided by sinc^p(f), is
+//! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order p
+//! with the transform sinc^p. Poisson's summation formula gives the transform of the shares at f
+//! cycles per cell, |f| ≤ ½, divided by sinc^p(f):
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!

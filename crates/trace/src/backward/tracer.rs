@@ -339,7 +339,7 @@ impl Backward {
         if leaves.is_some_and(nearer) {
             return 0.0;
         }
-        // cos θ cos θ' dA / r².
+        // The irradiance is the radiance times cos θ cos θ' dA / r².
         let solid = radiance_per_flux * area / way.length_squared().powi(2);
         let incoming = IncomingRay { leg, heading, ray };
         solid * self.arriving(&incoming, end, block + 1, words)
