@@ -33,8 +33,8 @@ pub struct Comparison<'a> {
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Measured and predicted values in finer cells over the same axes. The picture shows these
-    /// finer values, and the table has the original values.
+    /// Measured and predicted values in finer cells over the same axes. The picture shows the
+    /// values in finer cells, and the table has the original values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 

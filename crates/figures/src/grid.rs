@@ -271,8 +271,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// Returns the height beside which the y label of a picture is centred. This height includes
-    /// the pictures below that have the same axes as this picture. Returns `None` if the label of
+    /// Returns the height beside which the y label of a picture is centred. The height includes all
+    /// pictures further down that have the same axes as the picture. Returns `None` if the label of
     /// a picture further up covers this picture.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;

@@ -69,8 +69,8 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture in a plate. Columns that do not fit at this width are placed below
-/// the first columns.
+/// Minimum width of a picture in a plate. Columns that do not fit at the minimum width are placed
+/// below the first columns.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;

@@ -178,8 +178,8 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture in a strip. Columns that do not fit at this width are placed below
-/// the first columns.
+/// Minimum width of a picture in a strip. Columns that do not fit at the minimum width are placed
+/// below the first columns.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.

@@ -52,8 +52,8 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Returns the number of units per metre, and the centre of the drawing, such that the path,
-    /// the planes and the lights are visible.
+    /// Returns the scale in units per metre and the centre of the drawing that make the path, the
+    /// planes and the lights visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
             .objects

@@ -141,7 +141,7 @@ fn options() -> usvg::Options<'static> {
     options
 }
 
-/// Reduces the font list to the loaded font, so that no other font replaces it.
+/// Reduces the font list to the loaded font, so no other font can replace this font.
 fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }
@@ -184,7 +184,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 
-/// A plane is shifted in the drawing only if its line would cover something.
+/// A plane is shifted in the drawing only if the line of the plane would cover an object.
 #[test]
 fn planes_in_free_space_stand_where_they_are() {
     let places = |side| {

@@ -1,4 +1,4 @@
-//! Small files that would take much time or memory without limits on the work.
+//! Small files that would take much time or memory if the work were not limited.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -165,7 +165,7 @@ impl Resolver<'_> {
         frame
     }
 
-    /// Refuses two flat objects in one plane, because rounding would decide which of them light
+    /// Refuses two flat objects in one plane, because rounding would decide which object light
     /// meets first.
     fn distinct(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
         let mut flat: Vec<&PathStop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();

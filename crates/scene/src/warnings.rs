@@ -33,8 +33,8 @@ impl Scene {
     /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
     /// of two spectra at the measured frequencies along x and y, both computed where the light hits
     /// the mesh. The first spectrum is that of the window times f − 1, and the second spectrum is
-    /// that of the window alone. If facets are finer than the waves of these frequencies, their
-    /// effects average out.
+    /// that of the window alone. The effects of facets that are finer than the waves of these
+    /// frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -107,8 +107,8 @@ struct WindowView<'a> {
     smooth: &'a SmoothMesh,
     /// The frame at the hit; its D points along the light that leaves the mesh.
     frame: Frame,
-    /// The number 1 if light arrives along the normals of the mesh, and −1 if it arrives against
-    /// them.
+    /// A sign, which is 1 if light arrives along the normals of the mesh, and −1 if light arrives
+    /// against the normals.
     side: f64,
     plane: &'a VirtualPlane,
     /// The distance from the hit to the plane.
@@ -212,8 +212,8 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Adds a piece of a triangle; the piece is repeatedly divided into four until it is small in
-    /// the window.
+    /// Adds a piece of a triangle; the piece is repeatedly divided into four until the pieces are
+    /// small compared with the window.
     fn add(
         &self,
         whole: &[DVec3; 3],

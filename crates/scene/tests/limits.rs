@@ -350,8 +350,8 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
     assert!(is_plain(&told), "{told:.500}");
 }
 
-/// If each bracket doubled the work, this test would take a billion times as long as with thirty
-/// brackets fewer.
+/// If each of the thirty brackets in this test doubled the work, the test would take a billion
+/// times as long as without brackets.
 #[test]
 fn each_part_of_a_value_that_is_set_is_read_once() {
     let value = format!("{}1{}", "(a:".repeat(30), ",b)".repeat(30));

@@ -280,7 +280,7 @@ fn faults_of_ply_files_are_told() {
     }
 }
 
-/// If a binary file is cut at any byte, or has impossible values, it is refused.
+/// A binary file that is cut at any byte, or has impossible values, is refused.
 #[test]
 fn faults_of_binary_ply_files_are_told() {
     let sound = Mesh::star(1.0, 0.0, 0, 2).unwrap().ply(); // 6 vertices, 8 triangles
@@ -336,8 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// If a list states a length of four thousand million, it is read up to the end of the file, and
-/// no memory is allocated in advance.
+/// A list with a stated length of four thousand million is read up to the end of the file, and no
+/// memory is allocated in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -453,9 +453,9 @@ fn a_star_is_closed_outward_and_of_its_volume() {
     assert!(Mesh::star(1.0, 0.3, 5, 113).unwrap().triangles().len() >= 50_000);
 }
 
-/// The volume of the mesh converges to that of the smooth surface as rings⁻²: with half the rings
-/// the error is four times as large, and extrapolation gives the closed form. (∫ over the sphere
-/// of (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
+/// The volume of the mesh converges to that of the smooth surface as rings⁻². With half the rings
+/// the error is four times as large, and extrapolation gives the closed form. (∫ over the sphere of
+/// (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {

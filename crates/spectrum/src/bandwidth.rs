@@ -77,8 +77,8 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Adds the two cells at this distance from zero; the single cell at zero extends to both
-        // sides.
+        // Adds the two cells at the same distance from zero; the single cell at zero extends to
+        // both sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (

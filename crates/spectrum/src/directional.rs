@@ -322,8 +322,8 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // If the mean is not removed, it hides the bandwidth of the sine. If the mean is removed
-        // a second time, the result does not change.
+        // A mean that is not removed hides the bandwidth of the sine. If the mean is removed a
+        // second time, the result does not change.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

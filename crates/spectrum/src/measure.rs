@@ -38,8 +38,9 @@ pub trait Watch: Sync {
     /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether a part of a batch should be measured; it is called just before this part
-    /// would be measured. If it returns false, the remaining parts of the batch are not measured.
+    /// Returns whether a part of a batch should be measured, and is called just before the
+    /// measurement of the part. If the result is false, the remaining parts of the batch are not
+    /// measured.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
@@ -210,7 +211,7 @@ fn measure_part(
     }
 }
 
-/// A receiver of the crossings of one plane: it applies the plane's quantity and window, and
+/// A receiver of the crossings of one plane, which applies the plane's quantity and window, and
 /// accumulates the sums.
 struct Recorder<'plan> {
     plane: &'plan VirtualPlane,

@@ -62,9 +62,9 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
 /// the plane, `[nearest, farthest]` in metres.
 ///
 /// A blocker at the distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005,
-/// section 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside
-/// the wedge if its distance from the wedge is within the main lobe of a Hann window,
-/// 1/half-width along each axis. Frequencies within the main lobe around zero are left out,
+/// section 3.2; Egan et al. 2009). The window blurs the lines of blockers. A frequency therefore
+/// counts as inside the wedge if its distance from the wedge is within the main lobe of a Hann
+/// window, 1/half-width along each axis. Frequencies within the main lobe around zero are left out,
 /// because they contain the mean of the light. Returns `None` if the sum of the power over all
 /// other frequencies is not positive.
 #[must_use]

@@ -39,9 +39,9 @@ pub struct CrossPower<'m> {
     batches: Vec<&'m Slices>,
     /// The range of azimuths over which to average.
     azimuths: Range<usize>,
-    /// The sum Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum Σ S_r at the azimuths of the range, [azimuth, ρ ≥ 0, ν].
     sum: Array3<Complex>,
-    /// The sum over pairs T at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum T over pairs at the azimuths of the range, [azimuth, ρ ≥ 0, ν].
     pairs: Array3<f64>,
 }
 
@@ -213,9 +213,8 @@ impl<'m> CrossPower<'m> {
     }
 
     /// Returns the largest bandwidth over the azimuths, with its standard error at the azimuth of
-    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise
-    /// decides which of them is largest, and the result exceeds the true value by about its
-    /// error.
+    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise decides
+    /// which bandwidth is largest, and the result exceeds the true value by about the error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);

@@ -143,7 +143,8 @@ fn photons_have_the_covariance_of_their_field() {
     assert!(wrong.abs() > 20.0, "{wrong}");
 }
 
-/// If a group has only 20 photons, the noise power exceeds the moments, but does not bias them.
+/// If a group has only 20 photons, the noise power exceeds the moments, but does not bias the
+/// estimates.
 #[test]
 fn few_photons_have_no_bias() {
     let (mut all, mut naive) = (Vec::new(), Vec::new());

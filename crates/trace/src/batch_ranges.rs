@@ -53,8 +53,8 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// Returns the number of photons in each part of a batch except the last part. This number is
-    /// chosen so that part numbers fit in 32 bits.
+    /// Returns the number of photons in each part of a batch except the last part. The length of
+    /// the parts is chosen to make part numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
         let parts = count / PART.max(count >> 31);

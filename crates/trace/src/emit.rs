@@ -79,8 +79,8 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // These bounds contain the slopes of all rays from the light to the region that
-                // the plane sees.
+                // The bounds contain the slopes of all rays from the light to the region that the
+                // plane sees.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
@@ -274,11 +274,11 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// Returns ranges for uniform emission: for each virtual plane across the first leg, the range
-/// within which light crosses the plane's window, and for all other planes together, the range
-/// within which light meets the first surface. The ranges bound slopes for a point light or a
-/// projector, and positions for a beam. The list is empty if any of these ranges is unknown or
-/// receives no light.
+/// Returns ranges for uniform emission. Each virtual plane across the first leg has the range
+/// within which light crosses the plane's window. All other planes together have the range within
+/// which light meets the first surface. The ranges bound slopes for a point light or a projector,
+/// and positions for a beam. The list is empty if any of these ranges is unknown or receives no
+/// light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {

@@ -194,9 +194,8 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // The mid-point rule has an error of about 1 %, because the density jumps at the
-            // outline of the surface, in 1 % of the cells, and has poles at lines that graze the
-            // surface.
+            // The mid-point rule has an error of about 1 %. The density jumps at the outline of the
+            // surface, in 1 % of the cells, and has poles at lines that graze the surface.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

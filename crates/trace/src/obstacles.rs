@@ -160,8 +160,8 @@ impl Obstacles {
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
-        // If a ray starts farther to the side than this bound, the hierarchy tests the ray from a
-        // nearer point.
+        // If a ray starts farther to the side than the bound `origins`, the hierarchy tests the ray
+        // from a nearer point.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),

@@ -240,7 +240,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
     }
 }
 
-/// A wall that lights a nearby floor from all around, so that light travels along and against the
+/// A wall that lights a nearby floor from all around; light therefore travels along and against the
 /// central ray.
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;

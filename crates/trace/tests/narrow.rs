@@ -15,7 +15,7 @@ const LIGHTS: [&str; 3] = [
         grating: (axis: X, frequency: 3, modulation: 0.8, phase: 0.5)))",
     "Beam(center: (0, 0, 0), irradiance: 2, image: (width: (0.5, 0.4)))",
 ];
-/// A blocker in the path of the light, a little beside the middle of the path.
+/// A blocker in the path of the light, a little to the side of the path's middle.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.1, 0, 0.4), shapes: [Disc(center: (0, 0), radius: 0.05)])"#;
 const BALL: &str = r#"Smooth(name: "s", center: (0, 0, 1), facing: (0.3, -0.5, -0.8),

@@ -111,8 +111,8 @@ impl<'a> GltfReader<'a> {
         });
     }
 
-    /// Adds the second of the two surfaces that represent a surface with emission on both sides;
-    /// each of them emits on its front.
+    /// Adds the second of the two surfaces that represent a surface with emission on both sides.
+    /// Each of the two surfaces emits on its front.
     fn add_back(
         &mut self,
         key: (usize, usize),

@@ -24,8 +24,8 @@ impl<'a> MitsubaReader<'a> {
         object.properties.iter().any(|p| p.name == name)
     }
 
-    /// Returns the value of a property, as converted by `read`, or `None` if it is missing, or if
-    /// a cause of refusal was reported.
+    /// Returns the value of a property, as converted by `read`, or `None` if the property is
+    /// missing, or if a cause of refusal was reported.
     fn ask<T>(
         &self,
         object: &'a MitsubaObject,

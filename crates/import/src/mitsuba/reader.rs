@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; it is needed because instances may repeat groups.
+/// Maximum number of shapes of a world; the limit is needed because instances may repeat groups.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts objects to a world.

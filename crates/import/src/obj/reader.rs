@@ -186,7 +186,8 @@ impl<'a> ObjReader<'a> {
     }
 }
 
-/// Returns an attribute of the vertices, or `None` if it is missing or zero at every vertex.
+/// Returns an attribute of the vertices, or `None` if the attribute is missing or zero at every
+/// vertex.
 fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
     let found: Vec<T> = order
         .iter()

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; it is needed because instances may repeat objects.
+/// Maximum number of shapes of a world; the limit is needed because instances may repeat objects.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts a scene to a world.

@@ -27,7 +27,7 @@ enum PbrtSpectrum {
 }
 
 impl PbrtReader<'_> {
-    /// Returns the number for a colour or spectrum, or `None` if it is missing.
+    /// Returns the number for a colour or spectrum, or `None` if the parameter is missing.
     pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
             return Ok(None);

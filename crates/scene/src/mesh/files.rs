@@ -14,10 +14,10 @@ impl Mesh {
     /// texture coordinates, colors, weights, materials, points and lines are ignored, and free-form
     /// surfaces are refused. PLY files may be ASCII or binary in either byte order, with
     /// coordinates and lists of any type. The readers ignore all elements and properties of PLY
-    /// files except vertices with their coordinates and faces with their corners. If a face has
-    /// more than three corners, it becomes a fan of triangles about its first corner, which is
-    /// correct for convex faces; a face has at most 4,096 corners. Triangles of zero area are
-    /// dropped, unless no other triangles remain.
+    /// files except vertices with their coordinates and faces with their corners. A face of more
+    /// than three corners becomes a fan of triangles about its first corner, which is correct for
+    /// convex faces. A face has at most 4,096 corners. Triangles of zero area are dropped, unless
+    /// no other triangles remain.
     ///
     /// # Errors
     /// The first fault found: its position in the file, the faulty value and the values

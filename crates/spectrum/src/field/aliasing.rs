@@ -12,15 +12,15 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 pub struct Aliasing {
     /// Number of frequencies compared; only one frequency of each conjugate pair counts.
     pub compared: usize,
-    /// The difference. The relative difference between spectrum and slices; it includes the error
-    /// of the slices, which is below 2·10⁻⁷ Σw at each frequency.
+    /// The difference. The relative difference between spectrum and slices, including the error of
+    /// the slices, which is below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
     /// The expected difference due to aliasing, if the spectrum beyond Nyquist is as strong as in
     /// the outermost quarter below Nyquist. The expected difference is not a bound: it is correct
     /// for white noise, too large if the spectrum falls off, and too small if the spectrum rises
     /// again.
     pub expected: f64,
-    /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above
+    /// The bound of [`FieldSpectrum::alias_bound`], which holds for any photons, and is far above
     /// the difference for most photons.
     pub bound: f64,
 }

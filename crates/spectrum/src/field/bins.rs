@@ -145,8 +145,8 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// Returns |F|² of a prediction as a full radial spectrum: in each bin of [`RadialBins`], [|Ωxy|,
-/// |Ωuv|], the mean over the frequencies that a measurement on `grid` has in this bin.
+/// Returns |F|² of a prediction as a full radial spectrum, [|Ωxy|, |Ωuv|]. The value of each bin of
+/// [`RadialBins`] is the mean over the frequencies that a measurement on `grid` has in the bin.
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv), and is called only for Ωv ≥ 0.
 #[must_use]

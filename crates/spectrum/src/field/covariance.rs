@@ -232,9 +232,10 @@ impl FieldCovariance {
     }
 
     /// Returns the factor by which each variance grows if half of the band is extended to the
-    /// entire band: 1 if the band contains the spectrum, about 2 if the field has an edge, and
-    /// more if replicas lie between half of the band and its end. The spectrum of a field with an
-    /// edge has no second moment. Returns `None` if the power is not above the noise.
+    /// entire band. The factor is 1 if half of the band contains the spectrum, and about 2 if the
+    /// field has an edge. The factor is larger if replicas lie beyond half of the band. The
+    /// spectrum of a field with an edge has no second moment. Returns `None` if the power is not
+    /// above the noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

@@ -104,7 +104,7 @@ pub struct FieldMeasurement {
 /// The contribution of a group of batches to the spectrum of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldGroup {
-    /// The number of batches in this group, divided by the number of all batches.
+    /// The number of batches in the group, divided by the number of all batches.
     pub share: f64,
     /// The contribution of the group to the spectrum; its expectation is `share` times that of
     /// the spectrum.

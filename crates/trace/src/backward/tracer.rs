@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // This normal is on the side of the surface to which the light travels.
+                // The normal is on the side of the surface to which the light travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -388,9 +388,10 @@ fn radiance_factor(
 
 impl Backward {
     /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
-    /// drawn by the lobe of the BRDF; on the first leg, it is drawn with equal probability by the
-    /// lobe or towards a point of the light. The estimate divides by the density of this mixture
-    /// of strategies (the balance heuristic of Veach and Guibas 1995 for one sample).
+    /// drawn by the lobe of the BRDF. On the first leg, the direction is drawn with equal
+    /// probability by the lobe or towards a point of the light. The estimate divides by the density
+    /// of this mixture of strategies (the balance heuristic of Veach and Guibas 1995 for one
+    /// sample).
     fn reflected(
         &self,
         leg: usize,
