@@ -258,9 +258,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// Returns the width below which the x label of a picture is centred. If the pictures of a
-    /// block are narrow and have the same axis, this width is the width of the entire block.
-    /// Returns `None` if the label of a picture further to the left covers this picture.
+    /// Returns the width over which the x label of a picture is centred. If the pictures of a block
+    /// are narrow and have the same axis, this width is the width of the entire block. Returns
+    /// `None` if the picture shares the label of a picture further to the left.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -271,9 +271,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// Returns the height beside which the y label of a picture is centred. The height includes all
-    /// pictures further down that have the same axes as the picture. Returns `None` if the label of
-    /// a picture further up covers this picture.
+    /// Returns the height over which the y label of a picture is centred. The height includes all
+    /// pictures further down that have the same axes as the picture. Returns `None` if the picture
+    /// shares the label of a picture further up.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);

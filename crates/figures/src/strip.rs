@@ -152,8 +152,8 @@ impl StripRow {
         })
     }
 
-    /// Returns the picture of this row to draw: the finer picture if there is one, otherwise the
-    /// picture of the table.
+    /// Returns the picture of the row that is drawn: the finer picture if there is one, otherwise
+    /// the picture of the table.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),

@@ -117,8 +117,8 @@ struct WindowView<'a> {
     half: [f64; 2],
 }
 
-/// Sums over points of a mesh, or the spectra of these sums: one of the window, and one of the
-/// difference between photons and backward rays in the window.
+/// Two sums over points of a mesh, or the spectra of these sums: the window, and the difference
+/// between photons and backward rays in the window.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
     difference: f64,
@@ -186,8 +186,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Returns the square root of the ratio of two energies: that of the difference and that of
-    /// the window.
+    /// Returns the square root of the energy of the difference divided by the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);

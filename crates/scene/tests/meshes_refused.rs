@@ -137,8 +137,8 @@ fn triangles_too_thin_are_dropped_or_named() {
 /// way.
 #[test]
 fn the_side_of_a_hit_is_that_of_its_own_triangle() {
-    // The mesh is a roof that faces down and, beside the path, a plate above the hit that faces
-    // up.
+    // The mesh consists of a roof that faces down and a plate that faces up; the plate is above the
+    // hit, beside the path.
     let roof = "v -1 -1 -0.5\nv 1 -1 -0.5\nv 1 1 -0.5\nv -1 1 -0.5\nv 0 0 -0.4\n";
     let above = "v -0.1 0.1 0.3\nv 0.1 0.1 0.3\nv 0.1 0.4 0.3\nv -0.1 0.4 0.3\n";
     let faces = "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";

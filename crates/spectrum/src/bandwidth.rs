@@ -1,5 +1,5 @@
-//! Computes bandwidths of slices: the frequency below which most of the power lies, at the
-//! azimuth at which this frequency is largest.
+//! Computes bandwidths of slices. A bandwidth is the frequency below which most of the power lies,
+//! at the azimuth where this frequency is largest.
 
 use etendue_field::{FrequencyAxis, SliceGrid};
 use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
@@ -7,7 +7,8 @@ use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
 /// The default fraction of the power that lies within a bandwidth.
 pub const BANDWIDTH_FRACTION: f64 = 0.95;
 
-/// The bandwidth of one slice along one of its axes: [`bandwidth_rho`] or [`bandwidth_nu`].
+/// A function that returns the bandwidth of a slice along an axis: [`bandwidth_rho`] or
+/// [`bandwidth_nu`].
 pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
 
 /// The largest of the bandwidths at all azimuths, with its azimuth.
@@ -159,8 +160,8 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722; for a
-        // half-width of 0.09105 it is 6.12.
+        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722. For a
+        // half-width of 0.09105, the bandwidth is 6.12.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();

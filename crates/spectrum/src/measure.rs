@@ -64,8 +64,8 @@ impl Watch for Told<'_> {
 /// Runs [`measure`] on distinct batches in any order; each batch continues after its finished
 /// parts. Returns the finished batches, and the unfinished batches that `watch` has stopped.
 ///
-/// Threads take the parts of batches in order, which keeps the number of unfinished batches
-/// small. A part is added to the sum only after all parts before it.
+/// Threads take the parts of batches in order, which keeps the number of unfinished batches small.
+/// A part is added to the sum only after all earlier parts.
 #[must_use]
 pub fn measure_watched(
     source: &dyn PhotonSource,

@@ -142,8 +142,8 @@ impl Emitter {
     }
 
     /// Returns the number of the first block of random words that a photon's interactions with
-    /// surfaces use. From block 1, the emission uses only the last word, to select the virtual
-    /// plane at which a ray is aimed; light from an environment uses all words of block 1.
+    /// surfaces use. Of block 1, the emission uses only the last word, which selects the virtual
+    /// plane at which a ray is aimed. Light from an environment uses all words of block 1.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -152,9 +152,9 @@ impl Emitter {
         }
     }
 
-    /// Emits several photons together: returns their rays and the weights of these rays in
-    /// radiance space; the weight is zero if a ray carries no light. `words` returns the random
-    /// words of one block of random numbers of one photon.
+    /// Emits several photons together, and returns the rays with their weights in radiance space.
+    /// The weight of a ray that carries no light is zero. `words` returns the random words of one
+    /// block of random numbers of one photon.
     #[must_use]
     pub fn emit(
         &self,

@@ -214,8 +214,9 @@ fn seen_of_patch(
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
     // A point of the patch at the distance r from the normal at the hit lies at most |k| r² from
-    // the tangent plane. Lines through the window meet a slab of this thickness within a box. The
-    // box is computed repeatedly; the first computation uses the box of the entire patch.
+    // the tangent plane. Within the slab of points at most |k| r² from the tangent plane, lines
+    // through the window stay inside a box. The box is computed repeatedly; the first computation
+    // uses the box of the entire patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);

@@ -32,8 +32,8 @@ struct Angular {
     /// Indices of Ωu and Ωv in the spectrum.
     index: [usize; 2],
     ring: usize,
-    /// Number of frequencies that this frequency represents; if Ωv > 0, the conjugate frequency
-    /// counts too.
+    /// Weight of the frequency in sums: 2 if Ωv > 0, because the conjugate frequency counts too,
+    /// otherwise 1.
     weight: u64,
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     reason = "the index is whole and from 0 to n, because a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
-    // For even P, this is the cell below t; for odd P, it is the cell nearest to t.
+    // For even P, `cell` is the cell below t; for odd P, `cell` is the cell nearest to t.
     let cell = (t + (P % 2) as f64 * 0.5).floor();
     let d = t - cell;
     let shares: [f64; 3] = match P {

@@ -388,10 +388,9 @@ fn radiance_factor(
 
 impl Backward {
     /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
-    /// drawn by the lobe of the BRDF. On the first leg, the direction is drawn with equal
-    /// probability by the lobe or towards a point of the light. The estimate divides by the density
-    /// of this mixture of strategies (the balance heuristic of Veach and Guibas 1995 for one
-    /// sample).
+    /// drawn by the lobe of the BRDF. On the first leg, half of the directions are drawn by the
+    /// lobe, and half towards a point of the light. The estimate divides by the density of this
+    /// mixture (the balance heuristic of Veach and Guibas 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,
