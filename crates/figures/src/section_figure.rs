@@ -7,7 +7,7 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
-    /// Draws the scene to scale and the other cut; returns the area for this cut.
+    /// Draws the scene to scale and the cut through y; returns the area for the main cut.
     pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
         let [width, height] = size;
         let mut top = y;

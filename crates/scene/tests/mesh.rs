@@ -66,7 +66,8 @@ fn line_ends_of_all_kinds_and_a_fan() {
     }
 }
 
-/// A triangle in binary PLY of every pair of types that can hold it, in either byte order.
+/// Reads a triangle from binary PLY files in either byte order, for every pair of types of
+/// coordinates and indices.
 #[test]
 fn binary_ply_of_all_types_and_both_orders() {
     let types = [
@@ -143,9 +144,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points agree with tobj's. The test omits three statements that
-/// tobj does not read correctly. Of these, tobj takes the `l` line for a triangle, refuses a colour
-/// that only some vertices have, and refuses the continued line.
+/// The corners of the triangles of an OBJ file agree with those that tobj reads. The test omits
+/// three statements that tobj does not read correctly. Of these, tobj takes the `l` line for a
+/// triangle, refuses a colour that only some vertices have, and refuses the continued line.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();

@@ -193,7 +193,7 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     ("Distance(4)", "Distance(5)", "planes[5].at"),
     ("Distance(4)", "Distance(3.5)", "planes[5].at"),
     ("After(\"wall\")", "After(\"roof\")", "planes[1].at"),
-    // A floor behind the light, which is not visited.
+    // A floor that lies behind the light, and that the path does not visit.
     (FLOOR, BEHIND, "planes[3].at"),
 ];
 const TWO_BOUNCES: &str = include_str!("../../../scenes/two_bounces.ron");

@@ -134,8 +134,9 @@ mod tests {
     }
 
     /// Two laws hold. For any direction, the density over (x, y) integrates to 1, even if lines
-    /// meet the surface twice. The test also checks that points follow the density: the mean of a
-    /// function divided by the density, over sampled points, is the integral of the function.
+    /// meet the surface twice. The test also checks that sampled points follow the density. The
+    /// mean over these points of a function divided by the density must be the integral of the
+    /// function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {

@@ -1,8 +1,9 @@
 //! Intersects the rays of a leg with a mesh.
 //!
 //! The triangles stay in the frame at the light, with one hierarchy over all triangles, and rays
-//! are transformed to that frame. Each hit is decided in the frame of the leg, in which a
-//! direction is (u, v, 1) and two triangles that share an edge use the same arithmetic for it.
+//! are transformed to that frame. Each hit is decided in the frame of the leg, in which a direction
+//! is (u, v, 1). In this frame, two triangles that share an edge use the same arithmetic for the
+//! edge.
 
 use crate::line::{direction, start};
 use etendue_field::triangle_distance;

@@ -105,7 +105,7 @@ fn planes_on_a_surface_have_one_flux() {
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
         assert!(d.dot(*p - center) < 0.0); // it arrives from outside
     }
-    // The other virtual planes also record each of these photons: on the same line, with the same
+    // The other virtual planes also record each tested photon, on the same line and with the same
     // power.
     for others in [&across, &tangent] {
         let mut found = 0;

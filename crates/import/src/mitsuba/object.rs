@@ -51,7 +51,7 @@ pub(super) enum Value {
     /// Pairs of a wavelength, nm, and a value.
     Spectrum(Rc<[[f64; 2]]>),
     Transform(DAffine3),
-    /// The index of an object that is defined in this place.
+    /// The index of an object that is defined within the property.
     Object(usize),
     /// The id of an object that is defined elsewhere.
     Reference(String),
