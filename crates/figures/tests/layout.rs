@@ -109,7 +109,7 @@ fn no_texts_overlap() {
 }
 
 /// A page is at most 7 inches wide, and an inch has 96 units. All texts, including sub- and
-/// superscripts, have at least 6 points.
+/// superscripts, have a font size of at least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {

@@ -205,8 +205,9 @@ fn jpeg_and_radiance_pictures_are_read() {
     }
 }
 
-/// Two BMP files of 2 × 2 pixels, with three bytes a pixel and with a palette. In a BMP file, rows
-/// are stored from below, and colours as blue, green and red. As in Mitsuba, v increases downwards.
+/// Two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a palette. In a BMP
+/// file, rows are stored from below, and colours as blue, green and red. As in Mitsuba, v increases
+/// downwards.
 #[test]
 fn bmp_pictures_are_read() {
     let header = |offset: u32, bits: u16, colors: u32| {

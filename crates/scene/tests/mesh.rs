@@ -66,8 +66,7 @@ fn line_ends_of_all_kinds_and_a_fan() {
     }
 }
 
-/// Reads a triangle from binary PLY files in either byte order, for every pair of types of
-/// coordinates and indices.
+/// Reads a triangle from binary PLY files of every pair of types, in either byte order.
 #[test]
 fn binary_ply_of_all_types_and_both_orders() {
     let types = [

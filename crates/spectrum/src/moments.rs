@@ -6,10 +6,10 @@ use ndarray::{ArrayView2, Axis};
 /// Returns the second moment Σ P ρᵐ νⁿ / Σ P of the power P, where `powers` is [m, n] with m + n
 /// = 2.
 ///
-/// The sum runs over the frequencies of the grid: if the field has an edge, the moment grows
+/// The sum runs over the frequencies of the grid. If the field has an edge, the moment grows
 /// without bound with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more
-/// meaningful. The unit is (cycles per metre)^m times (cycles per unit slope)^n. Returns `None`
-/// if Σ P is not positive.
+/// meaningful. The unit is (cycles per metre)^m times (cycles per unit slope)^n. Returns `None` if
+/// Σ P is not positive.
 #[must_use]
 pub fn second_moment(
     power: ArrayView2<'_, f64>,

@@ -43,7 +43,7 @@ fn picture() -> Vec<u8> {
     bytes
 }
 
-/// Returns a file with a triangle as mesh 0, of one material.
+/// Returns a file whose mesh 0 is a triangle of one material.
 pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     let material = if material.is_empty() { "{}" } else { material };
     let data = STANDARD.encode(buffer());
