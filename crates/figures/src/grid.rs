@@ -84,8 +84,8 @@ impl PictureRow<'_, '_> {
     }
 }
 
-/// Left edge of the first picture; the row name, the axis label and the tick texts are to the
-/// left of it.
+/// Left edge of the first picture. The row name, the axis label and the tick texts are to the left
+/// of the first picture.
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;

@@ -29,7 +29,7 @@ pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
 }
 
 /// Returns the data URI of a picture of `columns` × `rows` pixels, whose colors are a function of
-/// (column, row); row 0 is at the top.
+/// (column, row). Row 0 is at the top.
 fn picture(
     columns: usize,
     rows: usize,

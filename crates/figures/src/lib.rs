@@ -15,7 +15,7 @@
 //! * [`stacked()`]: several figures on one page.
 //! * [`photograph()`]: the picture that a camera takes.
 //!
-//! Arrays are [x, y] with both axes ascending; pictures show x to the right and y upwards.
+//! Arrays are [x, y] with both axes ascending. Pictures show x to the right and y upwards.
 //!
 //! # Markup
 //!

@@ -24,8 +24,8 @@ pub struct StripColumn<'a> {
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
-    /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`; the
-    /// table has `spectrum`.
+    /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`. The
+    /// table has the values of `spectrum`.
     pub finer: Option<Picture<'a>>,
     /// The predicted spectrum. The row of predicted spectra is drawn if each column has a predicted
     /// spectrum.

@@ -13,8 +13,8 @@ const HEAD: f64 = 30.0;
 
 /// Minimum distance between a plane's number and any object.
 const CLEAR: f64 = 2.0;
-/// Maximum distance of a plane's number from one end of the plane; if there is no space near this
-/// end, the number is placed near the other end.
+/// Maximum distance of a plane's number from one end of the plane. If there is no space near this
+/// end, the number of the plane is placed near the other end.
 const NEAR: u32 = 60;
 const FARTHEST: u32 = 200;
 

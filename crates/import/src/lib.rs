@@ -1,7 +1,7 @@
 //! Reads scenes of other programs into a [`World`](etendue_world::World).
 //!
 //! Supported formats are the XML of Mitsuba 3, the files of pbrt-v4, glTF 2.0 (JSON or binary), OBJ
-//! with MTL, and PLY. Content that a world cannot represent is a *cause of refusal*; a scene is
+//! with MTL, and PLY. Content that a world cannot represent is a *cause of refusal*. A scene is
 //! refused with all causes at once. Minor omissions and approximations are *notes*. No content of a
 //! scene is dropped without a message.
 

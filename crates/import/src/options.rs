@@ -23,7 +23,7 @@ pub struct Options {
 /// A sampled spectrum becomes a colour as in Mitsuba. The spectrum is interpolated linearly at 1000
 /// wavelengths from 360 to 830 nm, and is zero beyond its ends. The 1000 interpolated values are
 /// weighted with the CIE 1931 matching functions and converted to linear sRGB. Reflectances are
-/// also weighted with D65 and clamped to 0 to 1; radiances and indices of refraction are clamped to
+/// also weighted with D65 and clamped to 0 to 1. Radiances and indices of refraction are clamped to
 /// at least 0. A spectrum that is given by one number becomes this number. For lights, each channel
 /// is multiplied by the same channel of the equal-energy white, (1.2048, 0.9483, 0.9089).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,6 +1,6 @@
 //! Scenes of pbrt-v4.
 //!
-//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]; `reader` and the
+//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]. `reader` and the
 //! modules below it turn this scene into a world. Each parameter that is read is marked, and each
 //! parameter without a mark becomes a note. Conventions are those of pbrt-v4's source.
 //!

@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec3};
 const ALIKE: f64 = 1e-4;
 
 /// Returns the reason why a geometry cannot have the given placement, or `None` if the placement is
-/// allowed. `shines` states whether the shape emits; a sphere that emits must stay a sphere,
+/// allowed. `shines` states whether the shape emits. A sphere that emits must stay a sphere,
 /// because points of a light are drawn uniformly by area.
 pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Option<&'static str> {
     let fits = match geometry {

@@ -27,7 +27,7 @@ fn cameras_look_along_minus_z_with_y_up() {
     let middle = camera.look([256.0, 128.0], [0.5; 2]);
     assert_close(&middle.from.to_array(), &[1.0, 2.0, 3.0], 1e-12);
     assert_close(&middle.along.to_array(), &[0.0, 0.0, -1.0], 1e-12);
-    // X points to the right of the picture and Y up; yfov is the vertical angle.
+    // X points to the right of the picture and Y up. The angle yfov is the vertical angle of view.
     let top = camera.look([256.0, 0.0], [0.5; 2]).along;
     assert_close(&[top.y / -top.z, top.x], &[libm::tan(0.4), 0.0], 1e-7);
     let right = camera.look([512.0, 128.0], [0.5; 2]).along;

@@ -181,8 +181,8 @@ fn square(side: usize, bright: usize) -> Vec<u8> {
 
 #[test]
 fn skies_are_squares_of_equal_area() {
-    // The bright pixel lies to the right of the centre; its direction is tilted from Z towards X by
-    // slightly more than 45°.
+    // The bright pixel lies to the right of the centre. The direction of the pixel is tilted from Z
+    // towards X by slightly more than 45°.
     let (side, bright) = (16, 8 * 16 + 12);
     let files = [
         ("a.hdr", &*square(side, bright)),

@@ -162,8 +162,8 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// Returns the distances from the central ray to the edges of an array, along X and along Y; an
-/// edge lies half a pitch beyond the centres of the outermost squares.
+/// Returns the distances from the central ray to the edges of an array, along X and along Y. An
+/// edge of an array lies half a pitch beyond the centres of the outermost squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;

@@ -33,8 +33,8 @@ use obstacles::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative
-/// to `folder`; `memory` is the memory of this machine, in bytes.
+/// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative to
+/// `folder`. `memory` is the memory of this machine, in bytes.
 ///
 /// # Errors
 /// [`SceneError::Values`] with every fault found; if the scene exceeds the counts of

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 /// The smallest relative difference between the spectra of photons and of backward rays for which
 /// a mesh causes a warning.
 const LEVEL: f64 = 0.01;
-/// The maximum number of triangles examined; in finer meshes only every second, every third, …
+/// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
 /// The number of pieces across a window into which triangles are subdivided.
@@ -211,7 +211,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Adds a piece of a triangle; the piece is repeatedly divided into four until the pieces are
+    /// Adds a piece of a triangle. The piece is repeatedly divided into four until the pieces are
     /// small compared with the window.
     fn add(
         &self,

@@ -371,7 +371,8 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The scene file does not state the phase of this grating; the next edit sets the phase.
+        // The scene file does not state the phase of this grating. The next edit sets the phase of
+        // the grating.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

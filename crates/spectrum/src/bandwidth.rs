@@ -32,8 +32,8 @@ pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64)
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several
-/// azimuths have the largest bandwidth, returns the first of them.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]. If several
+/// azimuths have the largest bandwidth, the first of them is returned.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,

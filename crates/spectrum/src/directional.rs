@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn a_window_has_the_bandwidth_of_its_profile() {
         let found = DirectionalBandwidth::of_window(&window(), &grid());
-        // The expected bandwidth is 0.55722 along the axes by the midpoint rule; the polar cells
-        // change it by up to 2 %.
+        // The expected bandwidth is 0.55722 along the axes by the midpoint rule. The polar cells
+        // change the bandwidth by up to 2 %.
         for azimuth in [0.0, FRAC_PI_2] {
             let value = found.at(azimuth);
             assert!((value - 0.557).abs() < 0.012, "{value}");

@@ -12,8 +12,8 @@ use std::ops::Range;
 /// ascending.
 #[derive(Clone, Debug)]
 pub struct RadialPower {
-    /// The power without the noise of the photons; it is unbiased, and noise can make it
-    /// negative.
+    /// The power without the noise of the photons. The estimate of the power is unbiased, and noise
+    /// can make the estimate negative.
     pub power: Array2<f64>,
     /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,

@@ -107,7 +107,7 @@ fn measured(seed: u64, each: u64) -> FieldMeasurement {
 }
 
 /// Returns the known covariance: the entries ρx², ρx νu and νu², and the corresponding entries
-/// along y; all other entries are zero.
+/// along y. All other entries of the covariance are zero.
 fn known() -> [[f64; 4]; 4] {
     let mut matrix = [[0.0; 4]; 4];
     for axis in 0..2 {

@@ -192,7 +192,7 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Returns rays aimed at virtual planes, as columns of x, y, u and v; the plane at which each
+    /// Returns rays aimed at virtual planes, as columns of x, y, u and v. The plane at which each
     /// ray is aimed is drawn at random.
     #[inline]
     fn aimed(
@@ -225,7 +225,7 @@ impl Emitter {
         rays
     }
 
-    /// Returns a ray of a light without extent and its density; the slopes of a point light or a
+    /// Returns a ray of a light without extent and its density. The slopes of a point light or a
     /// projector, or the positions of a beam, are uniform within one of several ranges.
     fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
@@ -248,7 +248,7 @@ impl Emitter {
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
         // Because of rounding, a ray can lie exactly on the edge of a range, where the density is
-        // zero; a ray on the edge carries no light.
+        // zero. A ray on the edge of a range carries no light.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {

@@ -37,8 +37,8 @@ impl BlockerMesh {
     }
 
     /// Returns the first triangle that a ray meets beyond `from`, and the distance of this
-    /// triangle; among triangles at the same distance, returns the triangle with the lowest
-    /// number. Hits beyond `until` may be ignored.
+    /// triangle. Among triangles at the same distance, the triangle with the lowest number is
+    /// returned. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -55,8 +55,8 @@ impl BlockerMesh {
         first
     }
 
-    /// Returns the last triangle on the line of a ray before `until`; among triangles at the same
-    /// distance, returns the triangle with the lowest number.
+    /// Returns the last triangle on the line of a ray before `until`. Among triangles at the same
+    /// distance, the triangle with the lowest number is returned.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {

@@ -239,7 +239,7 @@ impl Obstacles {
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// Returns the share of light on a ray that reaches a plane from the distance `from`; the
+    /// Returns the share of light on a ray that reaches a plane from the distance `from`. The
     /// search goes backwards from the plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,

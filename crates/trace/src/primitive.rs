@@ -26,7 +26,7 @@ pub(crate) enum Primitive {
 impl Primitive {
     /// Returns the distance along the central ray at which a ray meets the primitive, and the
     /// number of the part (such as a triangle) that the ray meets. If there are several hits,
-    /// returns the first hit beyond `from`; hits of a mesh beyond `until` may be ignored.
+    /// returns the first hit beyond `from`. Hits of a mesh beyond `until` may be ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,

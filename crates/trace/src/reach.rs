@@ -1,5 +1,5 @@
-//! Computes the regions from which light can reach the window of a virtual plane; emission and
-//! scattering are aimed at these regions.
+//! Computes the regions from which light can reach the window of a virtual plane. Emission and
+//! scattering are aimed at the computed regions.
 
 use crate::line::{direction, start};
 use crate::plane_on_leg::PlaneOnLeg;
@@ -47,7 +47,7 @@ pub(crate) fn reach(
     (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
 }
 
-/// Returns the corners of the region that light can leave, in the frame at the light; for a mesh,
+/// Returns the corners of the region that light can leave, in the frame at the light. For a mesh,
 /// returns the corners of the bounding box.
 pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {

@@ -17,10 +17,10 @@ use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that
-/// it meets; gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and
-/// a Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the
-/// end of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
+/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that it
+/// meets. Gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and a
+/// Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the end
+/// of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
 /// continues from leg to leg. If a photon meets an obstacle other than the surface at the end of
 /// its leg, the photon ends.
 ///

@@ -300,7 +300,7 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // The tolerance is four standard errors; the relative error of the mid-point rule is
+        // The tolerance is four standard errors. The relative error of the mid-point rule is
         // (step)²/24, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,

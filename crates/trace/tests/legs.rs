@@ -157,7 +157,7 @@ fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let [mean, error] = photons[2][0];
     assert!(error < 3e-3 * mean, "{mean} ± {error}");
-    // The mid-point rule over 8 × 8 points of the light is accurate to 1e-3; the remaining
+    // The mid-point rule over 8 × 8 points of the light is accurate to 1e-3. The remaining
     // difference is noise.
     assert!(
         (mean - sum).abs() < 4.0 * error + 1e-3 * sum,

@@ -7,7 +7,7 @@ use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the property with the given name; if several nested objects have this name, the
+    /// Returns the property with the given name. If several nested objects have the same name, the
     /// last of these objects counts, as in Mitsuba.
     pub(super) fn property(
         &self,
@@ -164,7 +164,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// Returns the only child object of a kind, if one exists; a second child of this kind is a
+    /// Returns the only child object of a kind, if one exists. A second child of the same kind is a
     /// cause of refusal.
     pub(super) fn child(
         &self,

@@ -78,8 +78,8 @@ pub(super) enum ObjectKind {
 }
 
 impl ObjectKind {
-    /// Returns the kind of object that an element of this name defines; a spectrum with a type is
-    /// a texture.
+    /// Returns the kind of object that an element of this name defines. A spectrum with a type is a
+    /// texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
         Some(match name {
             "scene" => Self::Scene,

@@ -127,7 +127,7 @@ impl<R: Read> UnpackedStream<R> {
         Err(format!("has a name of more than {LONGEST_NAME} bytes"))
     }
 
-    /// Reads the number of vertices or triangles, and checks that the file is long enough; each
+    /// Reads the number of vertices or triangles, and checks that the file is long enough. Each
     /// vertex or triangle takes more than a byte.
     fn count(&mut self) -> Result<u64, String> {
         let count = u64::from_le_bytes(self.some()?);

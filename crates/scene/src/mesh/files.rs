@@ -20,9 +20,9 @@ impl Mesh {
     /// no other triangles remain.
     ///
     /// # Errors
-    /// The first fault found: its position in the file, the faulty value and the values
-    /// that are allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as
-    /// these formats do; lines and corners are always counted from 1.
+    /// The first fault found: its position in the file, the faulty value and the values that are
+    /// allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as these formats
+    /// do. Lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
             let mesh = ply::detailed::read(bytes, false)?;

@@ -48,7 +48,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Returns the statements of an OBJ file, each with the number of its first line; comments are
+/// Returns the statements of an OBJ file, each with the number of its first line. Comments are
 /// removed, and continued lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
@@ -72,7 +72,7 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Returns the points of the `v` lines; at least one is required, and values after the three
+/// Returns the points of the `v` lines. At least one point is required, and values after the three
 /// coordinates (weight, color) are ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();

@@ -38,8 +38,8 @@ impl Mesh {
         };
         let segments = 2 * rings;
         let step = PI / f64::from(rings);
-        // sin π is not exactly zero in f64, so the poles are set explicitly; they have a relief
-        // only for l = 0.
+        // sin π is not exactly zero in f64, so the poles are set explicitly. The poles have a
+        // relief only for l = 0.
         let pole = point(0.0, 0.0).z;
         let mut vertices = vec![DVec3::new(0.0, 0.0, pole)];
         for ring in 1..rings {

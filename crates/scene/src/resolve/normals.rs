@@ -5,8 +5,8 @@ use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The smallest allowed cosine between the normal of a vertex and the normals of the triangles
-/// around it; the angle is 89.4°.
+/// The smallest allowed cosine, that of 89.4°, between the normal of a vertex and the normals of
+/// the triangles around it.
 ///
 /// An interpolated normal is a weighted mean of the normals of three vertices, with weights from 0
 /// to 1. The component of each vertex normal along the normal of the triangle is at least the
@@ -24,7 +24,7 @@ const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
     /// Returns the normal of each vertex, the area-weighted mean of the normals of the triangles
-    /// around it; the normal is zero if the vertex has no triangle.
+    /// around it. The normal of a vertex without triangles is zero.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {

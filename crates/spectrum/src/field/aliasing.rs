@@ -43,7 +43,7 @@ impl FieldSpectrum {
     /// only every n-th frequency is shared. Returns `None` if no frequency is shared or if there is
     /// no light.
     ///
-    /// At the shared frequencies, only the two axes along the line have aliasing; at other
+    /// At the shared frequencies, only the two axes along the line have aliasing. At other
     /// frequencies, all four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {

@@ -80,7 +80,7 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of a power that is even in Ω; `power` is called with indices of a
+    /// Returns the moments of a power that is even in Ω. `power` is called with indices of a
     /// transform, and only for frequencies along v from zero on.
     ///
     /// The power is summed for each Ωx, and these sums are added in order, so the result is

@@ -19,8 +19,8 @@ pub struct FullRadial {
     pub nu_edges: Vec<f64>,
     /// Number of frequencies in each bin, including conjugates.
     pub counts: Array2<u64>,
-    /// The power without the noise of the photons; it is unbiased except for aliasing, and noise
-    /// can make it negative.
+    /// The power without the noise of the photons. The estimate of the power is unbiased except for
+    /// aliasing, and noise can make the estimate negative.
     pub power: Array2<f64>,
     /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,

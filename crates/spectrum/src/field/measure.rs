@@ -87,7 +87,7 @@ pub struct FieldMeasurement {
     pub grid: FieldGrid,
     /// Number of photons that crossed the plane.
     pub tally: PlaneTally,
-    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres; the field is
+    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres. The field is
     /// smoothed by the spline of the assignment. The unit of the field is the unit of L W, W m⁻²
     /// sr⁻¹.
     pub field: Array4<f64>,
@@ -106,8 +106,8 @@ pub struct FieldMeasurement {
 pub struct FieldGroup {
     /// The number of batches in the group, divided by the number of all batches.
     pub share: f64,
-    /// The contribution of the group to the spectrum; its expectation is `share` times that of
-    /// the spectrum.
+    /// The contribution of the group to the spectrum. The expectation of the contribution is
+    /// `share` times that of the spectrum.
     pub spectrum: FieldSpectrum,
 }
 
@@ -120,7 +120,7 @@ pub struct FieldGroup {
 /// are summed in order, so the result is bitwise identical on any number of threads.
 ///
 /// One call measures one plane, because of the memory of its grids: see [`FieldOptions::bytes`].
-/// `progress` is called with the number of photons as they are traced; each photon counts twice
+/// `progress` is called with the number of photons as they are traced. Each photon counts twice
 /// unless the grids of groups are kept.
 ///
 /// # Errors

@@ -16,8 +16,8 @@ pub struct FieldSpectrum {
     pub grid: FieldGrid,
     /// The method that assigned rays to the cells of the grid.
     pub assignment: Assignment,
-    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`]; the
-    /// field is real, so frequencies along v run only from zero to Nyquist.
+    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`]. The field
+    /// is real, so frequencies along v run only from zero to Nyquist.
     pub values: Array4<Complex>,
 }
 

@@ -19,7 +19,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
 }
 
 /// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
-/// axis, with the ray's share in each cell; the shares add up to 1.
+/// axis, with the ray's share in each cell. The shares add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -158,7 +158,7 @@ mod tests {
                     largest <= worst + 1e-14,
                     "{assignment:?} {f}: {largest} {worst}"
                 ); // rounding
-                // Positions of the ray are sampled in steps of 1/1000 of a cell; for order 3, |ε|
+                // Positions of the ray are sampled in steps of 1/1000 of a cell. For order 3, |ε|
                 // stays below the sum of moduli.
                 let tsc = assignment == Assignment::Tsc;
                 let least = if tsc { 0.8 } else { 0.99 };

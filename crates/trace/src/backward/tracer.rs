@@ -109,8 +109,8 @@ impl Backward {
                 [(x - x0) / distance, (y - y0) / distance]
             }
             TracedLight::Sky(sky) if sampler.to_light => {
-                // Half of the rays draw their slopes in proportion to the environment's radiance;
-                // directions that do not go forward are discarded.
+                // Half of the rays draw their slopes in proportion to the environment's radiance.
+                // Directions that do not go forward are discarded.
                 let drawn = if r[2] < 0.5 {
                     sky.slopes(words(1))
                 } else {
@@ -141,7 +141,7 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives at the end point of a ray; `block` selects the random
+    /// Returns the radiance that arrives at the end point of a ray. `block` selects the random
     /// numbers of the next surface on the way back to the light.
     #[expect(
         clippy::too_many_lines,
@@ -227,8 +227,8 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives in a direction at a point of the surface that ends a
-    /// leg; the direction and the point are in the frame at the light.
+    /// Returns the radiance that arrives in a direction at a point of the surface that ends a leg.
+    /// The direction and the point are in the frame at the light.
     fn along(
         &self,
         leg: usize,
@@ -364,8 +364,8 @@ impl Backward {
 }
 
 /// Returns the ratio of the radiance after a deflection to the radiance before it, for light that
-/// arrives along `came` and leaves along `along`. This ratio is (n'/n)² at an interface; at an
-/// ideal lens, the ratio conserves flux in two-plane coordinates.
+/// arrives along `came` and leaves along `along`. The ratio of radiances is (n'/n)² at an
+/// interface. At an ideal lens, the ratio of radiances conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
