@@ -31,7 +31,7 @@ pub struct Comparison<'a> {
     pub measured: ArrayView2<'a, f64>,
     /// Predicted values, or other values with which the measured values are compared.
     pub predicted: ArrayView2<'a, f64>,
-    /// (measured − predicted) / σ.
+    /// The difference (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
     /// Measured and predicted values in finer cells over the same axes. The picture shows the
     /// values in finer cells, and the table has the original values.

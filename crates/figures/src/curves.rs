@@ -48,7 +48,7 @@ impl Curve {
 /// A panel of curves in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePanel {
-    /// Title above the frame, markup.
+    /// Title above the frame, as markup.
     pub title: String,
     /// The quantity along x.
     pub x: AxisQuantity,

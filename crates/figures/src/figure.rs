@@ -77,7 +77,7 @@ const POINT: f32 = 0.75;
 
 impl Figure {
     /// Returns the drawing as a PDF page at natural size, at most as wide as two columns of a
-    /// journal. Texts are stored as text.
+    /// journal. Texts on the page are stored as text.
     ///
     /// # Errors
     /// If the SVG cannot be read back or the page cannot be written.

@@ -56,7 +56,7 @@ pub struct Section {
     pub length: f64,
     /// Whether the central ray has bends; if it has bends, the cut is drawn unfolded.
     pub unfolded: bool,
-    /// Largest x shown, metres.
+    /// Largest x shown, in metres.
     pub half_width: f64,
     /// Segments of lights, blockers and surfaces.
     pub segments: Vec<Segment>,

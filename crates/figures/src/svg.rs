@@ -80,7 +80,7 @@ impl TextStyle {
 pub(crate) struct Stroke {
     pub(crate) color: &'static str,
     pub(crate) width: f64,
-    /// Dash pattern, or empty.
+    /// Dash pattern; empty for a solid line.
     pub(crate) dash: &'static str,
 }
 

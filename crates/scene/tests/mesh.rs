@@ -454,8 +454,8 @@ fn a_star_is_closed_outward_and_of_its_volume() {
 }
 
 /// The volume of the mesh converges to that of the smooth surface as rings⁻². With half the rings
-/// the error is four times as large, and extrapolation gives the closed form. (∫ over the sphere of
-/// (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
+/// the error is four times as large, and extrapolation gives the closed form. The closed form is ∫
+/// (1 + ε sinˡθ cos lφ)³ / 3 over the sphere, in which odd powers of the cosine vanish.
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {

@@ -10,7 +10,7 @@ use crate::range::in_range;
 use crate::report::quoted;
 use crate::spectrum::{Role, rgb};
 
-/// Planck's second constant, nm K.
+/// The second radiation constant of Planck's law, in nm K.
 const PLANCK: f64 = 1.438_776_877e7;
 
 /// The temperature of the CIE's illuminant A, K.

@@ -14,11 +14,11 @@ const COUNT: usize = 11;
 
 /// The moments ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
-/// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫
-/// ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of these two
-/// ratios exists, because P falls as Ω⁻² along the normal of the edge, and the sum grows with the
-/// band. Each result therefore belongs to a band, and only results over the same band can be
-/// compared.
+/// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals
+/// the ratio ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of
+/// these two ratios exists, because P falls as Ω⁻² along the normal of the edge, and the sum grows
+/// with the band. Each result therefore belongs to a band, and only results over the same band can
+/// be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor that all moments share.
