@@ -61,9 +61,9 @@ pub struct Axis {
     pub max: f64,
     /// Whether the axis is logarithmic; if it is, both edges are above 0.
     pub is_log: bool,
-    /// Whether the numbers decrease to the right or upwards, as for the rows of a photograph,
-    /// which count from the top. If the numbers decrease, the first cell of an array is at the
-    /// edge with the highest values.
+    /// Whether the numbers decrease to the right or upwards, like the row numbers of a photograph,
+    /// which are counted from the top. If the numbers decrease, the first cell of an array is at
+    /// the edge with the highest values.
     pub is_reversed: bool,
 }
 
@@ -221,7 +221,8 @@ const OVERHANG: f64 = 7.0;
 
 /// The usual first digits of the distance between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// The first digits that are used if the usual first digits give fewer than three ticks.
+/// The first digits of the distance between ticks if the usual first digits give fewer than three
+/// ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
 /// Returns the maximum number of ticks whose texts do not overlap along `length`, and the font
@@ -283,7 +284,7 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
 /// above 0.
 fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
-    // The tolerance prevents 0.2, computed as 0.20000000000000004, from becoming 0.5.
+    // The tolerance prevents a step of 0.2, computed as 0.20000000000000004, from becoming 0.5.
     let mut steps = digits.iter().map(|digit| digit * decade);
     steps
         .find(|candidate| *candidate >= least * (1.0 - 1e-9))

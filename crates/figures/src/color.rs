@@ -14,12 +14,12 @@ pub enum Scale {
     /// 10 log₁₀ of a power divided by the largest reference value, from `floor` to 0 dB; powers ≤
     /// 0 are below the floor.
     Decibel {
-        /// Lower end of the colors, in decibels, below 0.
+        /// Lower end of the color scale in decibels, a number below 0.
         floor: f64,
     },
     /// A linear scale from −`most` to `most`, with colors from blue to red.
     Signed {
-        /// Upper end of the colors; above 0.
+        /// Upper end of the color scale, a number above 0.
         most: f64,
     },
     /// A scale of angles in degrees, once around the circle.
@@ -36,15 +36,16 @@ pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 /// the colors remain distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
-    /// Black, purple, orange, pale yellow.
+    /// The colors run from black through purple and orange to pale yellow.
     Inferno,
-    /// Black, purple, pink, pale yellow.
+    /// The colors run from black through purple and pink to pale yellow.
     Magma,
-    /// Purple, blue, green, yellow.
+    /// The colors run from purple through blue and green to yellow.
     Viridis,
-    /// Blue, grey, yellow: nearly the same for all types of colour vision.
+    /// The colors run from blue through grey to yellow, and look nearly the same for all types of
+    /// colour vision.
     Cividis,
-    /// Black to white by the transfer curve of sRGB, as for photographs.
+    /// The colors run from black to white by the transfer curve of sRGB, as in photographs.
     Grey,
 }
 
@@ -55,7 +56,7 @@ pub(crate) enum Colors {
     Sequential(Palette),
     /// Blue, white, red.
     Diverging,
-    /// Cyclic colors: pale, blue, dark, red, pale.
+    /// Cyclic colors, which run from pale through blue, dark and red back to pale.
     Cyclic,
 }
 
@@ -183,7 +184,7 @@ impl Shading {
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,
-            // If a power is negative after noise removal, it is below any floor.
+            // A power that is negative after noise removal is below any floor of the color scale.
             Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }

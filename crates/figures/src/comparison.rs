@@ -31,10 +31,10 @@ pub struct Comparison<'a> {
     pub measured: ArrayView2<'a, f64>,
     /// Predicted values, or other values with which the measured values are compared.
     pub predicted: ArrayView2<'a, f64>,
-    /// (measured − predicted) / σ.
+    /// The difference (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Measured and predicted values on finer cells over the same axes. The picture shows these
-    /// finer values, and the table has the original values.
+    /// Measured and predicted values in finer cells over the same axes. The picture shows the
+    /// values in finer cells, and the table has the original values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 
@@ -42,7 +42,8 @@ pub struct Comparison<'a> {
 const Z_LIMIT: f64 = 4.0;
 /// Side length of a panel.
 const PANEL: f64 = 240.0;
-/// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
+/// Left edges of the three panels and of the two color bars. The first two panels share a color
+/// bar.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
 const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
 /// The length by which the label of a color bar may exceed the bar.

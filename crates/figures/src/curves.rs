@@ -48,7 +48,7 @@ impl Curve {
 /// A panel of curves in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePanel {
-    /// Title above the frame, markup.
+    /// Title above the frame, as markup.
     pub title: String,
     /// The quantity along x.
     pub x: AxisQuantity,
@@ -77,8 +77,9 @@ const ACROSS: usize = 3;
 const RIGHT: f64 = 20.0;
 /// Minimum width of the text above the panels.
 const TITLE: f64 = 440.0;
-/// Height of a panel; the constant below is the maximum width of a panel.
+/// Height of a panel.
 const HEIGHT: f64 = 136.0;
+/// Maximum width of a panel.
 const WIDEST: f64 = 262.0;
 /// Minimum width of a panel that has other panels beside it.
 const NARROWEST: f64 = 100.0;
@@ -103,7 +104,7 @@ const SAMPLE: f64 = 30.0;
 /// # Errors
 /// If the numbers cannot be written.
 pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
-    // Long numbers beside an axis shift the name of the axis outwards.
+    // Long numbers beside an axis shift the label of the axis outwards.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
         upright_ticks(&y, HEIGHT)
@@ -210,8 +211,8 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // If all values are far from zero, they would look like a flat line on an axis that
-        // includes zero.
+        // On an axis that includes zero, values that are all far from zero would look like a flat
+        // line.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]

@@ -228,7 +228,7 @@ impl<'a> SectionLayout<'a> {
         let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            // The edges of a filled body have no dark side.
+            // The edges of a filled body have no dark side, so they are not hatched.
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
@@ -257,8 +257,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// Returns the part of a line between a height just above the plot and a height just below
-    /// the plot. If the line is horizontal, it is returned unchanged.
+    /// Returns the part of a line between a height just above the plot and a height just below the
+    /// plot. A horizontal line is returned unchanged.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];
@@ -318,7 +318,8 @@ impl<'a> SectionLayout<'a> {
         svg.line(start, [tip[0] - 6.0, tip[1]], stroke);
         let wings = [-3.5, 3.5].map(|wing| [tip[0] - 9.0, tip[1] + wing]);
         svg.polygon(&[tip, wings[0], wings[1]], INK);
-        // The name is placed in the widest gap between planes and segments, if it fits.
+        // The name of the central ray is placed in the widest gap between planes and segments, if
+        // the name fits.
         let text = "central ray";
         let marks = self.section.planes.iter();
         let mut stops: Vec<f64> = marks

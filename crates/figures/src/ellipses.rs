@@ -30,11 +30,10 @@ pub struct Ellipses<'a> {
     pub picture: Picture<'a>,
     /// The quantity of the picture.
     pub quantity: AxisQuantity,
-    /// Lower end of the colors in decibels; below 0.
+    /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,
-    /// The ellipses at two standard deviations, in the order of the key. Each of the three
-    /// positions has its own color and dashes, which are not used if the ellipse at this position
-    /// is missing.
+    /// The ellipses at two standard deviations, in the order of the key. Each position has its own
+    /// color and dashes, which are not used if the ellipse at the position is missing.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
@@ -45,8 +44,8 @@ impl Ellipses<'_> {
         all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
     }
 
-    /// Returns the strokes over the picture in their order: all halos, then solid lines, then
-    /// dashes, so that ellipses that coincide are all visible.
+    /// Returns the strokes over the picture in drawing order: all halos, then solid lines, then
+    /// dashes. In this order, ellipses that coincide are all visible.
     fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
         let halo = Stroke::solid(HALO, 3.4);
         let halos = self.drawn().map(move |(ellipse, ..)| (ellipse, halo));

@@ -24,7 +24,8 @@ pub struct Figure {
     pub csv: String,
 }
 
-/// The reason why a figure could not be made. The reason lies in the drawing, not in the values.
+/// The reason why a figure could not be made. The reason lies in the drawing of the figure, not in
+/// the values that the figure shows.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -76,7 +77,7 @@ const POINT: f32 = 0.75;
 
 impl Figure {
     /// Returns the drawing as a PDF page at natural size, at most as wide as two columns of a
-    /// journal. Texts are stored as text.
+    /// journal. Texts on the page are stored as text.
     ///
     /// # Errors
     /// If the SVG cannot be read back or the page cannot be written.
@@ -158,7 +159,7 @@ pub(crate) fn csv_text(
     String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
 }
 
-/// Returns a number with as many digits as are needed to read it back exactly.
+/// Returns a number as text, with as many digits as are needed to read the number back exactly.
 pub(crate) fn decimal(value: &f64) -> String {
     format!("{value:?}")
 }

@@ -22,8 +22,8 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// Returns the ratio of the picture's height to its width. This ratio is 1, unless both axes
-    /// count pixels, because pixels are drawn square.
+    /// Returns the ratio of the picture's height to its width. The ratio is 1 unless both axes
+    /// count pixels, which are drawn square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -55,7 +55,7 @@ pub(crate) struct PictureRow<'b, 'a> {
     pub(crate) bar: [String; 2],
     pub(crate) scale: Scale,
     /// Whether all pictures of the row have the same range of colors. If the range is not shared,
-    /// each picture is relative to its own largest value.
+    /// the colors of each picture are relative to the largest value of that picture.
     pub(crate) shared: bool,
     /// A picture for each column, with the lines over the picture.
     pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
@@ -84,13 +84,13 @@ impl PictureRow<'_, '_> {
     }
 }
 
-/// Left edge of the first picture; the row name, the axis label and the tick texts are to the
-/// left of it.
+/// Left edge of the first picture. The row name, the axis label and the tick texts are to the left
+/// of the first picture.
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
 /// Gaps between pictures that are side by side. The first gap is used if the right picture has no
-/// numbers beside its axis, and the second gap if it has numbers.
+/// numbers beside its axis, and the second gap if the right picture has such numbers.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
 /// The gap that replaces the first of [`GAPS`] if many pictures are side by side.
 const CLOSE: f64 = 16.0;
@@ -151,8 +151,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
-        // Maximum picture widths. The first maximum is for one block, and the second for several
-        // blocks, which would make a long page.
+        // Maximum picture widths. The first maximum holds for one block, and the second for several
+        // blocks, because several blocks of wide pictures would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -258,9 +258,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// Returns the width below which the x label of a picture is centred. If the pictures of a
-    /// block are narrow and have the same axis, this width is the width of the entire block.
-    /// Returns `None` if the label of a picture further to the left covers this picture.
+    /// Returns the width over which the x label of a picture is centred. If the pictures of a block
+    /// are narrow and have the same axis, this width is the width of the entire block. Returns
+    /// `None` if the picture shares the label of a picture further to the left.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -271,9 +271,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// Returns the height beside which the y label of a picture is centred. This height includes
-    /// the pictures below that have the same axes as this picture. Returns `None` if the label of
-    /// a picture further up covers this picture.
+    /// Returns the height over which the y label of a picture is centred. The height includes all
+    /// pictures further down that have the same axes as the picture. Returns `None` if the picture
+    /// shares the label of a picture further up.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);

@@ -29,7 +29,7 @@ pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
 }
 
 /// Returns the data URI of a picture of `columns` × `rows` pixels, whose colors are a function of
-/// (column, row); row 0 is at the top.
+/// (column, row). Row 0 is at the top.
 fn picture(
     columns: usize,
     rows: usize,
@@ -52,9 +52,9 @@ fn picture(
     Ok(Some(format!("data:image/png;base64,{text}")))
 }
 
-/// Returns a photograph as a grey PNG: `radiance` is given in rows from the top, and is converted
-/// by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels is drawn
-/// white.
+/// Returns a photograph as a grey PNG. The values of `radiance` are given in rows from the top, and
+/// are converted by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the
+/// pixels is drawn white.
 ///
 /// # Errors
 /// If there are no pixels, more pixels than a PNG can hold, or fewer or more values than pixels.

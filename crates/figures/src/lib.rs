@@ -1,8 +1,8 @@
 //! Draws light fields, spectra, and the path of the light between planes.
 //!
 //! Input: plain values (arrays, axes, positions in metres). Output: a [`Figure`], which is an SVG
-//! with a CSV of its numbers, and which can also be written as a PNG. The crate computes no
-//! physics and uses neither disk nor system fonts: the same values give the same bytes.
+//! with a CSV of its numbers, and which can also be written as a PNG. The crate computes no physics
+//! and uses neither the disk nor system fonts, so the same values give the same bytes.
 //!
 //! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in
 //!   σ.
@@ -11,11 +11,11 @@
 //! * [`plate()`]: pictures in rows and columns.
 //! * [`section()`]: the cut of `strip()` alone.
 //! * [`ellipses()`]: a spectrum with covariances over it.
-//! * [`curves()`]: curves and measured points, panel beside panel.
+//! * [`curves()`]: curves and measured points, in adjacent panels.
 //! * [`stacked()`]: several figures on one page.
 //! * [`photograph()`]: the picture that a camera takes.
 //!
-//! Arrays are [x, y] with both axes ascending; pictures show x to the right and y upwards.
+//! Arrays are [x, y] with both axes ascending. Pictures show x to the right and y upwards.
 //!
 //! # Markup
 //!

@@ -57,7 +57,7 @@ impl Hatching {
         let near = |a: [f64; 2]| libm::hypot(a[0] - start[0], a[1] - start[1]) < 0.1;
         let behind = self.last.filter(|(point, _)| near(*point));
         let mut at = behind.map_or(HATCH, |(_, behind)| STEP - behind);
-        // The limit bounds the number of strokes for extreme lengths.
+        // The limit bounds the number of strokes on extremely long segments.
         while at < length.min(20_000.0) {
             let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
             let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);

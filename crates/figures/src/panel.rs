@@ -24,9 +24,9 @@ pub(crate) struct Panel<'a> {
     /// Whether tick texts and labels are written; ticks are always drawn.
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
-    /// The lengths along which the x label and the y label are centred, measured from the left
-    /// and from the top of the panel. These lengths may include the panels to the right and
-    /// below. The length is `None` for a label that is not written.
+    /// The lengths along which the x label and the y label are centred, measured from the left and
+    /// from the top of the panel. The lengths for the labels may include the panels to the right
+    /// and below. The length is `None` for a label that is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 

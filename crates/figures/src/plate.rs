@@ -22,7 +22,7 @@ pub struct PlateRow<'a> {
     /// The mapping of values to colors.
     pub scale: Scale,
     /// Whether all pictures of the row have the same range of colors. If the range is not shared,
-    /// each picture is relative to its own largest value.
+    /// the colors of each picture are relative to the largest value of that picture.
     pub shared: bool,
     /// A picture for each column.
     pub pictures: Vec<Picture<'a>>,
@@ -69,15 +69,15 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture in a plate. Columns that do not fit at this width are placed below
-/// the first columns.
+/// Minimum width of a picture in a plate. Columns that do not fit at the minimum width are placed
+/// below the first columns.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;
 
 /// Draws a plate, at most as wide as the page.
 ///
-/// The CSV has the numbers of the bars; it is empty without bars.
+/// The CSV has the numbers of the bars, and is empty if there are no bars.
 ///
 /// # Errors
 /// If a heat map or the numbers cannot be written.

@@ -54,9 +54,9 @@ pub struct Section {
     pub across: String,
     /// Length of the central ray, metres.
     pub length: f64,
-    /// Whether the central ray has bends, so that the cut is drawn unfolded.
+    /// Whether the central ray has bends; if it has bends, the cut is drawn unfolded.
     pub unfolded: bool,
-    /// Largest x shown, metres.
+    /// Largest x shown, in metres.
     pub half_width: f64,
     /// Segments of lights, blockers and surfaces.
     pub segments: Vec<Segment>,

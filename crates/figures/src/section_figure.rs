@@ -7,7 +7,7 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
-    /// Draws the scene to scale and the other cut; returns the area for this cut.
+    /// Draws the scene to scale and the cut through y; returns the area for the main cut.
     pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
         let [width, height] = size;
         let mut top = y;
@@ -44,7 +44,7 @@ const OTHER: f64 = 150.0;
 /// # Errors
 /// If the numbers cannot be written.
 pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Error> {
-    // At this width, the names of the planes fit side by side.
+    // A width of 120 units per plane suffices for the names of the planes side by side.
     let inner = (120.0 * section.planes.len() as f64).max(640.0);
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);

@@ -12,7 +12,7 @@ pub(crate) const SOFT: &str = "#555555";
 pub(crate) const FAINT: &str = "#9a9a9a";
 /// Lines of theory.
 pub(crate) const THEORY_COLOR: &str = "#1f6fb4";
-/// Frames, ticks and axis lines.
+/// Line width of frames, ticks and axis lines.
 pub(crate) const STROKE: f64 = 0.8;
 /// Length of a tick.
 pub(crate) const TICK: f64 = 4.0;

@@ -19,23 +19,23 @@ use crate::text::width;
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// The light field in (y, v). The row of these pictures is drawn if all columns have such a
-    /// picture.
+    /// The light field in (y, v). The row of light fields in (y, v) is drawn if each column has
+    /// such a light field.
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
-    /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`; the
-    /// table has `spectrum`.
+    /// The spectrum in finer cells over the same axes, which is drawn instead of `spectrum`. The
+    /// table has the values of `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// The predicted spectrum. The row of predicted spectra is drawn if all columns have such a
-    /// picture.
+    /// The predicted spectrum. The row of predicted spectra is drawn if each column has a predicted
+    /// spectrum.
     pub predicted: Option<Picture<'a>>,
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The two rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
     /// The difference between the measured spectrum and a first-order chain, in percent of the
-    /// largest modulus of the measured spectrum. The row of these differences is drawn if all
-    /// columns have such a picture.
+    /// largest modulus of the measured spectrum. The row of differences is drawn if each column has
+    /// such a difference.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", as markup; may be empty.
     pub verdict: Vec<String>,
@@ -75,7 +75,7 @@ pub struct Strip<'a> {
     /// The quantity of the full radial spectra, shown in decibels below the largest value of each
     /// spectrum.
     pub full_radial: AxisQuantity,
-    /// Lower end of the colors in decibels; below 0.
+    /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,
 }
 
@@ -152,8 +152,8 @@ impl StripRow {
         })
     }
 
-    /// Returns the picture of this row to draw: the finer picture if there is one, otherwise the
-    /// picture of the table.
+    /// Returns the picture of the row that is drawn: the finer picture if there is one, otherwise
+    /// the picture of the table.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),
@@ -178,8 +178,8 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture in a strip. Columns that do not fit at this width are placed below
-/// the first columns.
+/// Minimum width of a picture in a strip. Columns that do not fit at the minimum width are placed
+/// below the first columns.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.

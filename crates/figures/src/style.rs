@@ -16,7 +16,7 @@ pub struct Style {
     pub scene: bool,
     /// Whether verdicts are written below the planes.
     pub verdicts: bool,
-    /// Maximum page width in inches, within [`Style::WIDTHS`]; it determines the number of
+    /// Maximum page width in inches, within [`Style::WIDTHS`]; the width determines the number of
     /// pictures side by side.
     pub width: f64,
     /// Lower end of the colors of spectra in decibels, below 0; `None` uses the figure's default.

@@ -80,7 +80,7 @@ impl TextStyle {
 pub(crate) struct Stroke {
     pub(crate) color: &'static str,
     pub(crate) width: f64,
-    /// Dash pattern, or empty.
+    /// Dash pattern; empty for a solid line.
     pub(crate) dash: &'static str,
 }
 
@@ -276,13 +276,14 @@ fn is_near(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= MAX_COORDINATE)
 }
 
-/// The part of a line within the coordinate limit (Liang and Barsky 1984, ACM Trans. Graph. 3(1)).
+/// Returns the part of a line within the coordinate limit (Liang and Barsky 1984, ACM Transactions
+/// on Graphics 3(1)).
 fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
         let along = to[axis] - from[axis];
         // The line parameters at which the line crosses the two borders of the range. If the line
-        // runs along a border, these parameters are NaN.
+        // runs along a border, the parameters of the crossings are NaN.
         let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));
@@ -326,8 +327,8 @@ fn number(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// In the drawing of a mirror of some micrometres beside a light of a metre, coordinates
-    /// reached 10⁹, and the SVG renderer failed.
+    /// Coordinates reached 10⁹ in the drawing of a micrometre-sized mirror beside a metre-sized
+    /// light, and the SVG renderer failed.
     #[test]
     fn lines_far_away_are_cut_and_keep_their_way() {
         assert_eq!(

@@ -13,8 +13,8 @@ const HEAD: f64 = 30.0;
 
 /// Minimum distance between a plane's number and any object.
 const CLEAR: f64 = 2.0;
-/// Maximum distance of a plane's number from one end of the plane; if there is no space near this
-/// end, the number is placed near the other end.
+/// Maximum distance of a plane's number from one end of the plane. If there is no space near this
+/// end, the number of the plane is placed near the other end.
 const NEAR: u32 = 60;
 const FARTHEST: u32 = 200;
 
@@ -52,8 +52,8 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Returns the number of units per metre, and the centre of the drawing, such that the path,
-    /// the planes and the lights are visible.
+    /// Returns the scale in units per metre and the centre of the drawing that make the path, the
+    /// planes and the lights visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
             .objects

@@ -47,7 +47,7 @@ fn gallery() -> Vec<Figure> {
     figures
 }
 
-/// Returns panels with a curve and points, one panel with tiny numbers.
+/// Returns panels with a curve and points; one of the panels has tiny numbers.
 fn lines(count: usize) -> Curves {
     let curve = |kind, name: &str, scale: f64| Curve {
         kind,
@@ -109,7 +109,7 @@ fn no_texts_overlap() {
 }
 
 /// A page is at most 7 inches wide, and an inch has 96 units. All texts, including sub- and
-/// superscripts, have at least 6 points.
+/// superscripts, have a font size of at least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {
@@ -141,7 +141,7 @@ fn options() -> usvg::Options<'static> {
     options
 }
 
-/// Reduces the font list to the loaded font, so that no other font replaces it.
+/// Reduces the font list to the loaded font, so no other font can replace this font.
 fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }
@@ -184,7 +184,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 
-/// A plane is shifted in the drawing only if its line would cover something.
+/// A plane is shifted in the drawing only if the line of the plane would cover an object.
 #[test]
 fn planes_in_free_space_stand_where_they_are() {
     let places = |side| {

@@ -31,10 +31,9 @@ fn the_raster_shows_cells_as_sharp_rectangles() {
     let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| 2 * number(name));
     let bright = raster.at(x + w - w / 10, y + h / 6);
     assert!(bright[0] > 240 && bright[1] > 240, "{bright:?}");
-    // At a distance of three pixels inside the cell's edges, beyond the frame, the color is still
-    // that of the cell.
+    // Three pixels inside the edges of the cell, clear of the frame, the color is that of the cell.
     assert_eq!(raster.at(x + w - w / 5 + 3, y + h / 3 - 3), bright);
-    // At a distance of three pixels outside the cell, the color is that of the value 0.
+    // Three pixels outside the cell, the color is that of the value 0.
     let dark = raster.at(x + 10, y + h - 10);
     assert!(dark.iter().all(|c| *c < 10), "{dark:?}");
     assert_eq!(raster.at(x + w - w / 5 - 3, y + h / 3 - 3), dark);

@@ -48,7 +48,7 @@ pub(crate) const OBSERVER: [[f64; COUNT]; 3] = [
     ],
 ];
 
-/// Relative power of the standard illuminant D65, 100 at 560 nm.
+/// Relative power of the standard illuminant D65, scaled to 100 at 560 nm.
 #[rustfmt::skip]
 pub(crate) const D65: [f64; COUNT] = [
     46.6383, 49.3637, 52.0891, 51.0323, 49.9755, 52.3118, 54.6482, 68.7015, 82.7549, 87.1204,

@@ -1,9 +1,9 @@
 //! Reads scenes of other programs into a [`World`](etendue_world::World).
 //!
-//! Supported formats are Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with
-//! MTL; PLY. Content that a world cannot represent is a *cause of refusal*; a scene is refused
-//! with all causes at once. Minor omissions and approximations are *notes*. No content of a scene
-//! is dropped without a message.
+//! Supported formats are the XML of Mitsuba 3, the files of pbrt-v4, glTF 2.0 (JSON or binary), OBJ
+//! with MTL, and PLY. Content that a world cannot represent is a *cause of refusal*. A scene is
+//! refused with all causes at once. Minor omissions and approximations are *notes*. No content of a
+//! scene is dropped without a message.
 
 mod cie;
 mod files;
@@ -26,19 +26,20 @@ pub use options::{Color, Options};
 
 use std::path::Path;
 
-/// Reads a scene file; its extension, in any case, determines the format:
+/// Reads a scene file. The extension of the file, in upper or lower case, determines the format:
 ///
-/// - `xml`: Mitsuba 3.
-/// - `pbrt`: pbrt-v4.
-/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. The cameras do not
-///   state a number of pixels, so pictures are 512 pixels wide. The numbers of lights are taken as
-///   radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not
-///   `doubleSided` are black on their back.
-/// - `obj`: surfaces with the materials of MTL files, on both sides, and `Ke` as radiance on their front. No camera.
-/// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
+/// * `xml`: Mitsuba 3.
+/// * `pbrt`: pbrt-v4.
+/// * `gltf`, `glb`: glTF 2.0. Coordinates are right-handed with Y up, and cameras look along −Z.
+///   The cameras do not state a number of pixels, so pictures are 512 pixels wide. The numbers of
+///   lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹.
+///   Surfaces that are not `doubleSided` are black on their back.
+/// * `obj`: surfaces with the materials of MTL files, which scatter on both sides and emit `Ke` as
+///   radiance on their front. There is no camera.
+/// * `ply`: one diffuse surface with reflectance 0.5 on both sides. There is no camera.
 ///
 /// # Errors
-/// Returns all causes why the file cannot be imported.
+/// Returns all causes for which the file cannot be imported.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
@@ -63,7 +64,7 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
 /// Reads the text of a Mitsuba 3 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// Returns all causes why the text cannot be imported.
+/// Returns all causes for which the text cannot be imported.
 pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     mitsuba::import_text(text, folder, options)
 }
@@ -71,7 +72,7 @@ pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Im
 /// Reads the text of a pbrt-v4 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// Returns all causes why the text cannot be imported.
+/// Returns all causes for which the text cannot be imported.
 pub fn import_pbrt(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     pbrt::import_text(text, folder, options)
 }

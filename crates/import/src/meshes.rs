@@ -122,8 +122,8 @@ impl MeshParts {
         turned
     }
 
-    /// Returns the triangles of the mesh, or `None` if it has no triangles or its arrays do not
-    /// match in size.
+    /// Returns the triangles of the mesh, or `None` if the mesh has no triangles or has arrays that
+    /// do not match in size.
     pub(crate) fn finish(self) -> Option<Triangles> {
         if self.corners.is_empty() {
             return None;

@@ -1,6 +1,6 @@
 //! Scenes of Mitsuba 3, in XML.
 //!
-//! `xml` turns the files into objects; `reader` and the modules below it turn the objects into a
+//! `xml` turns the files into objects. `reader` and the modules below it turn the objects into a
 //! world. Each property that is read is marked, and each property without a mark becomes a note.
 //! Conventions were checked against Mitsuba 3.9.1.
 

@@ -37,8 +37,8 @@ impl fmt::Display for Note {
 pub struct Imported {
     /// The world.
     pub world: World,
-    /// Notes on omissions and approximations, in the order of reading; if notes are too many, the
-    /// last note states the number of further notes.
+    /// Notes on omissions and approximations, in the order of reading; if there are too many notes,
+    /// the last note states the number of further notes.
     pub notes: Vec<Note>,
 }
 

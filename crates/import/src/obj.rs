@@ -1,11 +1,14 @@
-//! Scenes of OBJ files with the materials of MTL files (Wavefront, Advanced Visualizer manual, appendices B1 and B2); and single meshes, PLY.
+//! Scenes of OBJ files with the materials of MTL files (Wavefront, Advanced Visualizer manual,
+//! appendices B1 and B2), and single meshes of PLY files.
 //!
-//! - Coordinates are the file's, right-handed. There is no camera.
-//! - Each part between `usemtl` lines is a shape. Without a material it is diffuse, 0.5.
-//! - Surfaces scatter light on both sides and shine on their front: where their normals point, or where corners run counterclockwise.
-//! - `Kd`, `Ks`, `Ke` and `Tf` are linear. Pictures are sRGB; their linear values multiply these
-//!   numbers. The first row of a picture is at v = 1.
-//! - `Ke` is radiance, W m⁻² sr⁻¹.
+//! * Coordinates are those of the file, and are right-handed. There is no camera.
+//! * Each part between `usemtl` lines is a shape. A shape without a material is diffuse with
+//!   reflectance 0.5.
+//! * Surfaces scatter light on both sides and emit light on their front. The front is the side to
+//!   which the normals point or, without normals, the side from which corners run counterclockwise.
+//! * `Kd`, `Ks`, `Ke` and `Tf` are linear. Pictures are sRGB, and their linear values multiply the
+//!   numbers of `Kd`, `Ks`, `Ke` and `Tf`. The first row of a picture is at v = 1.
+//! * `Ke` is radiance, W m⁻² sr⁻¹.
 
 mod entry;
 mod map;

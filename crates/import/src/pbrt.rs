@@ -1,37 +1,38 @@
 //! Scenes of pbrt-v4.
 //!
-//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]; `reader` and the
+//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]. `reader` and the
 //! modules below it turn this scene into a world. Each parameter that is read is marked, and each
 //! parameter without a mark becomes a note. Conventions are those of pbrt-v4's source.
 //!
 //! # Light
 //!
-//! The value of a light is that of a pixel in which pbrt shows the light, with the default sensor
-//! and an imaging ratio of 1. pbrt divides each light by the integral of its spectrum with the
-//! eye's sensitivity ȳ, and for an `rgb` by that of the white of its colour space; its sensor does
-//! not divide again. So
+//! The value of a light is the value of a pixel in which pbrt shows the light, with the default
+//! sensor and an imaging ratio of 1. The program pbrt divides each light by an integral over the
+//! eye's sensitivity ȳ times the spectrum of the light or, for an `rgb`, times the white of the
+//! colour space. The sensor of pbrt does not divide again. The values of lights are therefore:
 //!
-//! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`: (1, 1, 1) shows 1 in each channel, and has luminance 1;
-//! * `blackbody` and `spectrum` have luminance 1, whatever their values, times `scale`: only their colour is that of the spectrum;
-//! * without any of these, a light is white: (1, 1, 1);
-//! * `power` and `illuminance` above 0 apply to white light: a colour of luminance 1 is
-//!   multiplied by the required value, divided by the value that the light has with radiance or
-//!   intensity 1.
+//! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`. The colour (1, 1, 1)
+//!   shows 1 in each channel, and has luminance 1.
+//! * `blackbody` and `spectrum` have luminance 1 times `scale`, whatever their values. Only the
+//!   colour of the light depends on the spectrum.
+//! * A light without `rgb`, `blackbody` or `spectrum` is white, with the colour (1, 1, 1).
+//! * `power` and `illuminance` above 0 apply to white light. A colour of luminance 1 is multiplied
+//!   by the required value, divided by the value that the light has with radiance or intensity 1.
 //!
-//! Reflectances and indices are colours in linear sRGB too. Spectra of reflectances and indices
-//! are weighted with D65 and converted as described at [`Color`](crate::Color).
+//! Reflectances and indices of refraction are also colours in linear sRGB. Spectra of reflectances
+//! and indices are weighted with D65 and converted as described at [`Color`](crate::Color).
 //!
 //! # Space
 //!
-//! pbrt's left-handed coordinates are kept. The camera's map mirrors instead, so its X points to
-//! the left of the picture. A mirror does not change light transport. The front of a surface is
-//! where pbrt's normal points.
+//! The left-handed coordinates of pbrt are kept. The map of the camera mirrors coordinates instead,
+//! so the camera's X axis points to the left of the picture. Mirrored coordinates do not change
+//! light transport. The front of a surface is the side to which pbrt's normal points.
 //!
 //! # Limits
 //!
-//! Limits: files nest at most 64 deep and 16384 in all, blocks 4096 deep, textures 16 and materials
-//! 8; at most 256 parameters of `Attribute` at once; at most 2²⁰ shapes with all instances. At most
-//! 4 GiB are read and unpacked in all.
+//! The maximum nesting depth is 64 for files, 4096 for blocks, 16 for textures and 8 for materials.
+//! A scene has at most 16384 included files, 256 parameters of `Attribute` at once, and 2²⁰ shapes
+//! including instances. At most 4 GiB are read and unpacked in all.
 
 mod area;
 mod block;

@@ -91,8 +91,8 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         _ => v,
     };
     let grey = channels.count == 1;
-    // If all three numbers are equal, their value is used as it is, because rounding would change
-    // it in a computed luminance.
+    // The value of a grey pixel is used directly, because a luminance computed from three equal
+    // values would have a rounding error.
     let number = |rgb: [f64; 3]| match grey {
         true => linear(rgb[0]),
         false => color.of(rgb.map(linear)),

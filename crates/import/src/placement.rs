@@ -8,8 +8,9 @@ use glam::{DAffine3, DMat3, DVec3};
 /// numbers, so the axes differ slightly.
 const ALIKE: f64 = 1e-4;
 
-/// Returns the reason why a geometry cannot have the given placement, or `None` if it can.
-/// `shines` states whether the shape emits: points of a light are drawn uniformly by area.
+/// Returns the reason why a geometry cannot have the given placement, or `None` if the placement is
+/// allowed. `shines` states whether the shape emits. A sphere that emits must stay a sphere,
+/// because points of a light are drawn uniformly by area.
 pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Option<&'static str> {
     let fits = match geometry {
         Geometry::Sphere => !shines || is_similarity(to_world.matrix3),
@@ -35,14 +36,14 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Op
     }
 }
 
-/// Whether a map keeps angles, so that it maps spheres to spheres.
+/// Whether a map keeps angles, and therefore maps spheres to spheres.
 pub(crate) fn is_similarity(map: DMat3) -> bool {
     let [x, y, z] = axes(map);
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns the similarity that has the X axis of a regular map, and otherwise only rotates and
-/// mirrors as the map does.
+/// Returns the similarity that maps X as a regular map does, maps Y to the same side in the plane
+/// of both axes, and mirrors if the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);
     let along = x.normalize();

@@ -66,8 +66,8 @@ impl Messages {
         }
     }
 
-    /// Returns the kept messages, of which the last message gives the number of further messages
-    /// of this kind.
+    /// Returns the kept messages; the last message gives the number of further messages of the same
+    /// kind.
     fn finish(mut self, kind: &str) -> Vec<Note> {
         if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
             let more = SourcePlace::whole(&last.file).note(format!("and {more} more {kind}"));

@@ -67,7 +67,7 @@ fn cameras_look_along_z_with_y_up() {
         &[0.666_67, 0.666_67, 0.333_33],
         1e-5,
     );
-    // Clip planes: Mitsuba's ray begins at 0.015 and has length 14999.986.
+    // Clip planes: Mitsuba's ray begins at the distance 0.015 and has the length 14999.986.
     assert_close(&corner.seen, &[0.015, 15_000.0], 2e-2);
 }
 

@@ -1,5 +1,5 @@
-//! Values of colours, spectra and pictures, compared with Mitsuba 3.9.1: `llvm_ad_mono` for
-//! luminance, `scalar_rgb` for channels.
+//! Values of colours, spectra and pictures, compared with the variants `llvm_ad_mono` (luminance)
+//! and `scalar_rgb` (channels) of Mitsuba 3.9.1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -205,8 +205,9 @@ fn jpeg_and_radiance_pictures_are_read() {
     }
 }
 
-/// Two BMP files of 2 × 2 pixels, with three bytes a pixel and with a palette. Rows are stored from
-/// below, and colours as blue, green, red; as in Mitsuba, v increases downwards.
+/// Two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a palette. In a BMP
+/// file, rows are stored from below, and colours as blue, green and red. As in Mitsuba, v increases
+/// downwards.
 #[test]
 fn bmp_pictures_are_read() {
     let header = |offset: u32, bits: u16, colors: u32| {

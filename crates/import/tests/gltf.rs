@@ -27,7 +27,7 @@ fn cameras_look_along_minus_z_with_y_up() {
     let middle = camera.look([256.0, 128.0], [0.5; 2]);
     assert_close(&middle.from.to_array(), &[1.0, 2.0, 3.0], 1e-12);
     assert_close(&middle.along.to_array(), &[0.0, 0.0, -1.0], 1e-12);
-    // X points to the right of the picture and Y up; yfov is the vertical angle.
+    // X points to the right of the picture and Y up. The angle yfov is the vertical angle of view.
     let top = camera.look([256.0, 0.0], [0.5; 2]).along;
     assert_close(&[top.y / -top.z, top.x], &[libm::tan(0.4), 0.0], 1e-7);
     let right = camera.look([512.0, 128.0], [0.5; 2]).along;
@@ -128,7 +128,8 @@ fn base_colours_are_linear_and_their_pictures_srgb() {
     let Material::Diffuse { reflectance } = &sides[0] else {
         panic!("{:?}", sides[0]);
     };
-    // v = 0 is the upper row, which is white; level 188 below is 0.502886 in linear light.
+    // The upper row of the picture, at v = 0, is white. The lower row has level 188, which is
+    // 0.502886 in linear light.
     let at = |u, v| reflectance.value(DVec2::new(u, v));
     assert_close(
         &[at(0.5, 0.25), at(0.5, 0.75)],

@@ -82,7 +82,8 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
     for round in 0..rounds {
-        // Even rounds damage the scene file, and odd ones one of the files that it uses.
+        // Even rounds damage the scene file, and odd rounds damage one of the files that the scene
+        // uses.
         let which = match files.len() {
             others @ 2.. if round % 2 == 1 => 1 + next(&mut state) % (others - 1),
             _ => 0,
@@ -155,7 +156,7 @@ fn everything() -> String {
 
 #[test]
 fn deep_and_wide_gltf_scenes_end() {
-    // A chain of nodes, each the child of the previous one.
+    // A chain of nodes, each of which is the child of the previous node.
     let node = |i: usize| format!(r#"{{"mesh":0,"children":[{}]}}"#, i + 1);
     let mut nodes: Vec<String> = (0..20_000).map(node).collect();
     nodes.push("{\"mesh\":0}".to_owned());

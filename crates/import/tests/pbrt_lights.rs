@@ -181,7 +181,8 @@ fn square(side: usize, bright: usize) -> Vec<u8> {
 
 #[test]
 fn skies_are_squares_of_equal_area() {
-    // The pixel right of the centre: above X, slightly more than 45° from Z.
+    // The bright pixel lies to the right of the centre. The direction of the pixel is tilted from Z
+    // towards X by slightly more than 45°.
     let (side, bright) = (16, 8 * 16 + 12);
     let files = [
         ("a.hdr", &*square(side, bright)),
@@ -199,7 +200,7 @@ fn skies_are_squares_of_equal_area() {
     let Light::Sky(map) = &read_sky.world.lights[0] else {
         panic!("{:?}", read_sky.world.lights);
     };
-    // The sums are the total light of the map and the mean direction of this light.
+    // The sums are the total light of the map and the mean direction of the map's light.
     let raster = map.radiance.raster();
     let (w, h) = (raster.width(), raster.height());
     let (mut sum, mut toward) = (0.0, DVec3::ZERO);
@@ -210,8 +211,7 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // The means over pixels conserve the light of this spot, which has the size of a pixel, to a
-    // few per cent.
+    // The means over pixels conserve the light of a spot of the size of a pixel to a few per cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
     // The centre of the pixel is at u = 9/16 and v = 1/16 in coordinates from −1 to 1, so r =

@@ -207,7 +207,7 @@ fn textures_scale_and_mix() {
     assert!(causes(noise)[0].contains("texture `marble` is not supported"));
 }
 
-/// Returns a grey picture of 1 × 2 pixels, the upper one white.
+/// Returns a grey picture of 1 × 2 pixels, whose upper pixel is white.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 2);

@@ -47,7 +47,7 @@ impl MeshObject {
         })
     }
 
-    /// Checks whether light comes to a hit from the side that the mesh's normals point away from.
+    /// Checks whether light arrives at a hit from the side opposite to the mesh's normals.
     #[must_use]
     pub fn is_met_on_its_back(&self, hit: &Hit) -> bool {
         let nearest = self.nearest(hit);

@@ -1,8 +1,8 @@
 //! Defines the experiment: a scene file, and the [`Scene`] to which [`resolve`] converts this
 //! file.
 //!
-//! A [`SceneFile`] holds exactly what is written in the file; [`resolve`] checks the file,
-//! reports all faults together, and returns a [`Scene`] that is valid by construction. Later
+//! A [`SceneFile`] holds exactly what is written in the file. The function [`resolve`] checks the
+//! file, reports all faults together, and returns a [`Scene`] that is valid by construction. Later
 //! stages do not check validity again.
 //!
 //! ```

@@ -162,8 +162,8 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// Returns the distances from the central ray to the edges of an array, along X and along Y; an
-/// edge lies half a pitch beyond the centres of the outermost squares.
+/// Returns the distances from the central ray to the edges of an array, along X and along Y. An
+/// edge of an array lies half a pitch beyond the centres of the outermost squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
@@ -183,8 +183,8 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
-    // The point at which the light that the plane sees leaves the first leg, or the plane itself
-    // if the plane is on the first leg.
+    // The distance of the plane if the plane is on the first leg, or else the distance at which
+    // light leaves the first leg.
     let end = match plane.leg {
         0 => plane.distance,
         1 if scene.path.legs[1].frame.d.z < -0.999 => scene.path.first_hit(),

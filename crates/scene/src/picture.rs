@@ -59,11 +59,12 @@ impl Channels {
     }
 }
 
-/// Reads the bytes of a picture. The extension of `file`, in any case, determines the format.
+/// Reads the bytes of a picture. The extension of `file`, in upper or lower case, determines the
+/// format.
 ///
-/// From OpenEXR, it reads the luminance of the first layer with channels R, G and B, or the
-/// layer's channel Y, over the entire data window. From PNG, it reads grey or colour of 8 or 16
-/// bits, with levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
+/// An OpenEXR file gives the luminance of the first layer with channels R, G and B, or the layer's
+/// channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits, with
+/// levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
 pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
@@ -73,11 +74,11 @@ pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Ra
     read_channels(file, bytes)?.luminance()
 }
 
-/// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in any case, determines
-/// the format.
+/// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in upper or lower case,
+/// determines the format.
 ///
-/// From OpenEXR, it reads the first layer with channels R, G and B, or Y, over the entire data
-/// window. From PNG, it reads grey or colour of 8 or 16 bits. Alpha is ignored.
+/// An OpenEXR file gives the first layer with channels R, G and B, or Y, over the entire data
+/// window. A PNG file gives grey or colour of 8 or 16 bits. Alpha is ignored.
 ///
 /// # Errors
 /// When the file is damaged, or when it is larger than allowed.

@@ -1,5 +1,5 @@
 //! Reads files as bytes, within limits on their kind, length and folder. Only regular files of a
-//! bounded length are read; a file that a scene names must also be below the scene's folder.
+//! bounded length are read. A file that a scene names must also be below the scene's folder.
 
 use std::fs::{self, File};
 use std::io::{self, Read};

@@ -33,8 +33,8 @@ use obstacles::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative
-/// to `folder`; `memory` is the memory of this machine, in bytes.
+/// Checks a scene file and resolves it to a scene. The paths of meshes and pictures are relative to
+/// `folder`. `memory` is the memory of this machine, in bytes.
 ///
 /// # Errors
 /// [`SceneError::Values`] with every fault found; if the scene exceeds the counts of
@@ -165,7 +165,7 @@ impl Resolver<'_> {
         frame
     }
 
-    /// Refuses two flat objects in one plane, because rounding would decide which of them light
+    /// Refuses two flat objects in one plane, because rounding would decide which object light
     /// meets first.
     fn distinct(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
         let mut flat: Vec<&PathStop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();

@@ -35,8 +35,8 @@ pub struct Scene {
     pub run: Run,
 }
 
-/// The central ray, which consists of straight legs from surface to surface; positions and slopes
-/// of light are measured from it.
+/// The central ray, which consists of straight legs from surface to surface. Positions and slopes
+/// of light are measured from the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
     /// Frame at the light, in the world of the scene file.
@@ -85,7 +85,7 @@ pub enum Object {
 impl Hit {
     /// Returns the frame (T, B, N) at the hit for light that arrives in the frame `arriving`, and
     /// the longitude θ₀ of the direction from which the light comes. T lies in the plane of
-    /// incidence; at normal incidence, X is rotated to −T (docs/conventions.md).
+    /// incidence. At normal incidence, X is rotated to −T (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -177,8 +177,8 @@ pub struct MeshObject {
 pub struct SmoothMesh {
     /// The interaction of the mesh with light.
     pub event: Specular,
-    /// Unit normals at the corners of the triangles, in the frame at the light; outward is the
-    /// side given by the triangles' winding.
+    /// Unit normals at the corners of the triangles, in the frame at the light. The outward side is
+    /// given by the winding of the triangles.
     pub normals: Arc<[[DVec3; 3]]>,
 }
 
@@ -206,7 +206,8 @@ pub struct PatchObject {
 pub enum Event {
     /// Specular interaction, which sends each ray in one direction.
     Specular(Specular),
-    /// Reflection by a sum of BRDFs on the side that the surface faces; the other side is black.
+    /// Reflection by a sum of BRDFs on the side that the surface faces. The other side of the
+    /// surface is black.
     Reflects(Reflectance),
 }
 
@@ -227,8 +228,8 @@ impl Event {
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// Frame of the rectangle, in the frame at the light; O is the centre, and X and Y run along
-    /// the edges. D is the normal on the side at which light arrives.
+    /// Frame of the rectangle, in the frame at the light. O is the centre of the rectangle, and X
+    /// and Y run along its edges. D is the normal on the side at which light arrives.
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 /// The smallest relative difference between the spectra of photons and of backward rays for which
 /// a mesh causes a warning.
 const LEVEL: f64 = 0.01;
-/// The maximum number of triangles examined; in finer meshes only every second, every third, …
+/// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
 /// The number of pieces across a window into which triangles are subdivided.
@@ -19,8 +19,8 @@ const PIECES: f64 = 8.0;
 /// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// The slopes at which the factor is evaluated for each point, in units of the half-width of the
-/// window.
+/// The slopes, in units of the window's half-width, at which the ratio of the radiances of photons
+/// and of backward rays is evaluated for each point.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
@@ -29,12 +29,12 @@ impl Scene {
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
     /// to the normal t of the triangle. If photons come along d and leave along e, their radiance
-    /// is (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated
-    /// normals do not conserve étendue. The effect of a mesh on a plane is the ratio of two
-    /// spectra at the measured frequencies along x and y, both computed where the light hits the
-    /// mesh. The first spectrum is that of the window times the factor minus 1; the second
-    /// spectrum is that of the window alone. If facets are finer than the waves of these
-    /// frequencies, their effects average out.
+    /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
+    /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
+    /// of two spectra at the measured frequencies along x and y, both computed where the light hits
+    /// the mesh. The first spectrum is that of the window times f − 1, and the second spectrum is
+    /// that of the window alone. The effects of facets that are finer than the waves of these
+    /// frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -107,8 +107,8 @@ struct WindowView<'a> {
     smooth: &'a SmoothMesh,
     /// The frame at the hit; its D points along the light that leaves the mesh.
     frame: Frame,
-    /// The number 1 if light arrives along the normals of the mesh, and −1 if it arrives against
-    /// them.
+    /// A sign, which is 1 if light arrives along the normals of the mesh, and −1 if light arrives
+    /// against the normals.
     side: f64,
     plane: &'a VirtualPlane,
     /// The distance from the hit to the plane.
@@ -117,8 +117,8 @@ struct WindowView<'a> {
     half: [f64; 2],
 }
 
-/// Sums over points of a mesh, or the spectra of these sums: one of the window, and one of the
-/// difference between photons and backward rays in the window.
+/// Two sums over points of a mesh, or the spectra of these sums: the window, and the difference
+/// between photons and backward rays in the window.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
     difference: f64,
@@ -186,8 +186,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Returns the square root of the ratio of two energies: that of the difference and that of
-    /// the window.
+    /// Returns the square root of the energy of the difference divided by the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);
@@ -212,8 +211,8 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Adds a piece of a triangle; the piece is repeatedly divided into four until it is small in
-    /// the window.
+    /// Adds a piece of a triangle. The piece is repeatedly divided into four until the pieces are
+    /// small compared with the window.
     fn add(
         &self,
         whole: &[DVec3; 3],
@@ -282,7 +281,7 @@ impl<'a> WindowView<'a> {
             return;
         }
         let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
-        // Light on the wrong side of a triangle is lost completely, or counted twice.
+        // Light on the wrong side of a triangle is either lost or counted twice.
         let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
         if factor.is_finite() {
             sums.difference += weight * (factor - 1.0);

@@ -350,8 +350,8 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
     assert!(is_plain(&told), "{told:.500}");
 }
 
-/// If each bracket doubled the work, this test would take a billion times as long as with thirty
-/// brackets fewer.
+/// If each of the thirty brackets in this test doubled the work, the test would take a billion
+/// times as long as without brackets.
 #[test]
 fn each_part_of_a_value_that_is_set_is_read_once() {
     let value = format!("{}1{}", "(a:".repeat(30), ",b)".repeat(30));
@@ -371,7 +371,8 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The scene file does not state the phase of this grating; the next edit sets the phase.
+        // The scene file does not state the phase of this grating. The next edit sets the phase of
+        // the grating.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

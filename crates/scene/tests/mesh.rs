@@ -66,7 +66,7 @@ fn line_ends_of_all_kinds_and_a_fan() {
     }
 }
 
-/// A triangle in binary PLY of every pair of types that can hold it, in either byte order.
+/// Reads a triangle from binary PLY files of every pair of types, in either byte order.
 #[test]
 fn binary_ply_of_all_types_and_both_orders() {
     let types = [
@@ -143,9 +143,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points agree with tobj's. The test omits three statements that
-/// tobj reads differently: the `l` line, which tobj takes for a triangle, the colour, which tobj
-/// requires on all vertices or none, and the continued line, which tobj refuses.
+/// The corners of the triangles of an OBJ file agree with those that tobj reads. The test omits
+/// three statements that tobj does not read correctly. Of these, tobj takes the `l` line for a
+/// triangle, refuses a colour that only some vertices have, and refuses the continued line.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();
@@ -219,7 +219,7 @@ fn faults_of_obj_files_are_told() {
     assert_eq!(told, "vertices (`v` lines) is 0; allowed: at least 3");
 }
 
-/// Returns an ASCII triangle, with one piece replaced; the piece must be there.
+/// Returns a PLY file of a triangle with `from` replaced by `to`; the file must contain `from`.
 fn edited(from: &str, to: &str) -> String {
     let sound = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                  element face 1\nproperty list uchar int vertex_indices\nend_header\n\
@@ -280,7 +280,7 @@ fn faults_of_ply_files_are_told() {
     }
 }
 
-/// If a binary file is cut at any byte, or has impossible values, it is refused.
+/// A binary file that is cut at any byte, or has impossible values, is refused.
 #[test]
 fn faults_of_binary_ply_files_are_told() {
     let sound = Mesh::star(1.0, 0.0, 0, 2).unwrap().ply(); // 6 vertices, 8 triangles
@@ -336,8 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// If a list states a length of four thousand million, it is read up to the end of the file, and
-/// no memory is allocated in advance.
+/// A list with a stated length of four thousand million is read up to the end of the file, and no
+/// memory is allocated in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -453,9 +453,9 @@ fn a_star_is_closed_outward_and_of_its_volume() {
     assert!(Mesh::star(1.0, 0.3, 5, 113).unwrap().triangles().len() >= 50_000);
 }
 
-/// The volume of the mesh converges to that of the smooth surface as rings⁻²: with half the rings
-/// the error is four times as large, and extrapolation gives the closed form. (∫ over the sphere
-/// of (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
+/// The volume of the mesh converges to that of the smooth surface as rings⁻². With half the rings
+/// the error is four times as large, and extrapolation gives the closed form. The closed form is ∫
+/// (1 + ε sinˡθ cos lφ)³ / 3 over the sphere, in which odd powers of the cosine vanish.
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {
@@ -500,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// Checks the properties of every mesh, however the mesh is made.
+/// Checks the properties that every mesh must have.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

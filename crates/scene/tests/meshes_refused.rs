@@ -112,8 +112,8 @@ fn vertices_beyond_all_coordinates_are_named() {
     );
 }
 
-/// The long thin triangles of real files are dropped; a mesh that consists only of such triangles
-/// is refused.
+/// The long thin triangles of real files are dropped. A mesh that consists only of long thin
+/// triangles is refused.
 #[test]
 fn triangles_too_thin_are_dropped_or_named() {
     let sliver = format!("{SQUARE}v 0 -1.00000000000001 0\n{ROOF}f 1 6 2\n");
@@ -137,8 +137,8 @@ fn triangles_too_thin_are_dropped_or_named() {
 /// way.
 #[test]
 fn the_side_of_a_hit_is_that_of_its_own_triangle() {
-    // The mesh is a roof that faces down and, beside the path, a plate above the hit that faces
-    // up.
+    // The mesh consists of a roof that faces down and a plate that faces up. The plate is above the
+    // hit, beside the path.
     let roof = "v -1 -1 -0.5\nv 1 -1 -0.5\nv 1 1 -0.5\nv -1 1 -0.5\nv 0 0 -0.4\n";
     let above = "v -0.1 0.1 0.3\nv 0.1 0.1 0.3\nv 0.1 0.4 0.3\nv -0.1 0.4 0.3\n";
     let faces = "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
@@ -174,8 +174,8 @@ fn a_header_of_any_length_is_read_in_proportion() {
     assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
 }
 
-/// The relative difference between photons and backward rays is 3 % with two cells; with eight
-/// cells, it is below the difference that 4e7 photons detect.
+/// The relative difference between photons and backward rays is 3 % with two cells. With eight
+/// cells, the difference is below the difference that 4e7 photons detect.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

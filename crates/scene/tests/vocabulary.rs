@@ -193,7 +193,7 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     ("Distance(4)", "Distance(5)", "planes[5].at"),
     ("Distance(4)", "Distance(3.5)", "planes[5].at"),
     ("After(\"wall\")", "After(\"roof\")", "planes[1].at"),
-    // A floor behind the light, which is not visited.
+    // A floor that lies behind the light, and that the path does not visit.
     (FLOOR, BEHIND, "planes[3].at"),
 ];
 const TWO_BOUNCES: &str = include_str!("../../../scenes/two_bounces.ron");
@@ -255,7 +255,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // If planes or visits refer to this object, they are not reported as faulty too.
+        // Planes and visits that refer to a faulty object are not reported as faulty too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"

@@ -1,5 +1,5 @@
-//! Computes bandwidths of slices: the frequency below which most of the power lies, at the
-//! azimuth at which this frequency is largest.
+//! Computes bandwidths of slices. A bandwidth is the frequency below which most of the power lies,
+//! at the azimuth where this frequency is largest.
 
 use etendue_field::{FrequencyAxis, SliceGrid};
 use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
@@ -7,7 +7,8 @@ use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
 /// The default fraction of the power that lies within a bandwidth.
 pub const BANDWIDTH_FRACTION: f64 = 0.95;
 
-/// The bandwidth of one slice along one of its axes: [`bandwidth_rho`] or [`bandwidth_nu`].
+/// A function that returns the bandwidth of a slice along an axis: [`bandwidth_rho`] or
+/// [`bandwidth_nu`].
 pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
 
 /// The largest of the bandwidths at all azimuths, with its azimuth.
@@ -31,8 +32,8 @@ pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64)
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several
-/// azimuths have the largest bandwidth, returns the first of them.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]. If several
+/// azimuths have the largest bandwidth, the first of them is returned.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,
@@ -77,8 +78,8 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Adds the two cells at this distance from zero; the single cell at zero extends to both
-        // sides.
+        // Adds the two cells at the same distance from zero; the single cell at zero extends to
+        // both sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (
@@ -92,7 +93,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // The loop ends here only because of rounding errors, because the total power exceeds every
+    // Only rounding errors let the loop end without a result, because the total power exceeds every
     // fraction of itself.
     Some(axis.max() + 0.5 * axis.spacing)
 }
@@ -159,8 +160,8 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722; for a
-        // half-width of 0.09105 it is 6.12.
+        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722. For a
+        // half-width of 0.09105, the bandwidth is 6.12.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();

@@ -1,4 +1,4 @@
-//! Defines the measurement of one batch of photons, of all its parts or of some.
+//! Defines the measurement of one batch of photons, and the sum of the first parts of a batch.
 
 use crate::ray_moments::RayMoments;
 use etendue_field::{Ledger, PlaneTally, Projection, Slices};
@@ -15,7 +15,7 @@ pub struct PlaneBatch {
     pub slices: Slices,
     /// The windowed field projected onto (x, u).
     pub projection: Projection,
-    /// Second moments of the windowed field, also per emitted photon.
+    /// Second moments of the windowed field, per emitted photon.
     pub moments: RayMoments,
 }
 

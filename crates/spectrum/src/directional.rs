@@ -1,10 +1,10 @@
 //! Computes bandwidths of a picture along each direction in the plane of its two slopes.
 //!
-//! A picture is a windowed function of two slopes. Its 2D spectrum is measured along lines
-//! through zero, one line for each azimuth: slices with ρ = 0 alone. [`DirectionalBandwidth`]
-//! has, for each direction e, the smallest B for which the power at |ν · e| > B is at most a
-//! twentieth of the total. Each frequency represents its polar cell, whose power is spread
-//! uniformly over the range of ν · e within the cell.
+//! A picture is a windowed function of two slopes. The 2D spectrum of a picture is measured by
+//! slices that contain only ρ = 0, which are lines through zero, one for each azimuth. For each
+//! direction e, [`DirectionalBandwidth`] has the smallest B for which the power at |ν · e| > B is
+//! at most a twentieth of the total. Each frequency represents its polar cell, whose power is
+//! spread uniformly over the range of ν · e within the cell.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
 use crate::estimate::TooFewBatches;
@@ -224,7 +224,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // This line is reached only because of rounding errors.
+        // Only rounding errors let the search end without a result.
         self.bins.len() as f64 * self.step
     }
 }
@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn a_window_has_the_bandwidth_of_its_profile() {
         let found = DirectionalBandwidth::of_window(&window(), &grid());
-        // The expected bandwidth is 0.55722 along the axes by the midpoint rule; the polar cells
-        // change it by up to 2 %.
+        // The expected bandwidth is 0.55722 along the axes by the midpoint rule. The polar cells
+        // change the bandwidth by up to 2 %.
         for azimuth in [0.0, FRAC_PI_2] {
             let value = found.at(azimuth);
             assert!((value - 0.557).abs() < 0.012, "{value}");
@@ -322,8 +322,8 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // If the mean is not removed, it hides the bandwidth of the sine. If the mean is removed
-        // a second time, the result does not change.
+        // A mean that is not removed hides the bandwidth of the sine. If the mean is removed a
+        // second time, the result does not change.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

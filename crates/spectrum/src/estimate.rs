@@ -15,9 +15,8 @@ pub struct SliceEstimate {
     pub batches: usize,
     /// The mean S̄ of the slices S_r of the batches.
     pub mean: Slices,
-    /// The variance σ² of the mean (docs/theory.md (12)): E|S̄ − E S̄|², with the unbiased
-    /// estimate Σ|S_r − S̄|²/(R(R−1)), which also holds if the batches differ in size. [azimuth,
-    /// ρ ≥ 0, ν].
+    /// The variance σ² = E|S̄ − E S̄|² of the mean, [azimuth, ρ ≥ 0, ν]. The estimate Σ|S_r −
+    /// S̄|²/(R(R−1)) of σ² is unbiased even if the batches differ in size (docs/theory.md (12)).
     pub variance: Array3<f64>,
 }
 

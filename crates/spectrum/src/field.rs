@@ -1,10 +1,10 @@
 //! Measures the windowed light field on a 4D grid, its transform, and the full radial spectrum.
 //!
-//! The slices need no grid and have no aliasing. Results that need all four dimensions together
-//! use a grid: the field as a file, and the power over (|Ωxy|, |Ωuv|), averaged over both
-//! azimuths. [`measure_field`] traces the photons of one plane onto a
-//! [`FieldGrid`](etendue_field::FieldGrid); [`FieldSpectrum::aliasing`] estimates the error due
-//! to the grid.
+//! The slices need no grid and have no aliasing. Two results need all four dimensions together and
+//! use a grid: the field that is written to a file, and the power over (|Ωxy|, |Ωuv|), averaged
+//! over both azimuths. The function [`measure_field`] traces the photons of one plane onto a
+//! [`FieldGrid`](etendue_field::FieldGrid). The method [`FieldSpectrum::aliasing`] estimates the
+//! error due to the grid.
 
 mod aliasing;
 mod bins;

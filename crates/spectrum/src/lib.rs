@@ -1,17 +1,18 @@
 //! Converts photons that cross virtual planes to spectra with statistical errors.
 //!
-//! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes.
-//! [`measure`] runs batches of photons and records, for each batch and plane, the
-//! [`Slices`](etendue_field::Slices) of the windowed light field, its projection on (x, u), and
-//! the numbers of photons inside and outside the window. The output is a [`Measurement`],
-//! complete or partial, and the estimates made from its independent batches: mean slices with
-//! their variance ([`estimate::slices`]), radial power without the photons' noise
+//! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. The
+//! function [`measure`] runs batches of photons. For each batch and plane, the function records the
+//! [`Slices`](etendue_field::Slices) of the windowed light field, the field's projection on (x, u),
+//! and the numbers of photons inside and outside the window. The output is a complete or partial
+//! [`Measurement`]. Estimates are made from the independent batches of a measurement: mean slices
+//! with their variance ([`estimate::slices`]), radial power without the photons' noise
 //! ([`CrossPower`]), and slopes ([`moments`]) and bandwidths ([`bandwidth`](mod@bandwidth)) with
-//! jackknife errors. [`field`] has the light field on a 4D grid, with its full radial spectrum.
+//! jackknife errors. The module [`field`] has the light field on a 4D grid, with its full radial
+//! spectrum.
 //!
-//! [`SliceTransform`](etendue_transform::SliceTransform) computes the transform of rays to
-//! slices. This crate does not trace photons, predict spectra or decide on agreement: another
-//! crate compares the results with a prediction.
+//! [`SliceTransform`](etendue_transform::SliceTransform) computes the transform of rays to slices.
+//! This crate does not trace photons or predict spectra, and another crate compares the results
+//! with a prediction.
 
 pub mod bandwidth;
 mod batch;

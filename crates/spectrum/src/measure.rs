@@ -38,13 +38,14 @@ pub trait Watch: Sync {
     /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether a part of a batch should be measured; it is called just before this part
-    /// would be measured. If it returns false, the remaining parts of the batch are not measured.
+    /// Returns whether a part of a batch should be measured, and is called just before the
+    /// measurement of the part. If the result is false, the remaining parts of the batch are not
+    /// measured.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
 
-    /// Receives a batch of which more parts are finished, but not all.
+    /// Receives an unfinished batch each time further parts of the batch are finished.
     fn begun(&self, _batch: &PartialBatch) {}
 
     /// Receives a finished batch.
@@ -63,8 +64,8 @@ impl Watch for Told<'_> {
 /// Runs [`measure`] on distinct batches in any order; each batch continues after its finished
 /// parts. Returns the finished batches, and the unfinished batches that `watch` has stopped.
 ///
-/// Threads take the parts of batches in order, which keeps the number of unfinished batches
-/// small. A part is added to the sum only after all parts before it.
+/// Threads take the parts of batches in order, which keeps the number of unfinished batches small.
+/// A part is added to the sum only after all earlier parts.
 #[must_use]
 pub fn measure_watched(
     source: &dyn PhotonSource,
@@ -118,7 +119,7 @@ struct BatchParts<'a> {
     source: &'a dyn PhotonSource,
     batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &'a dyn Watch,
-    /// The batches of which parts have been taken so far.
+    /// The batches whose parts have been taken at least partly.
     all: &'a mut Vec<Arc<BatchSum>>,
     /// The number of the next part of the last batch in `all`.
     next: u32,
@@ -210,7 +211,7 @@ fn measure_part(
     }
 }
 
-/// A receiver of the crossings of one plane: it applies the plane's quantity and window, and
+/// A receiver of the crossings of one plane, which applies the plane's quantity and window, and
 /// accumulates the sums.
 struct Recorder<'plan> {
     plane: &'plan VirtualPlane,

@@ -44,7 +44,7 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement with `batches`; the batches must have distinct numbers and slices
+    /// Returns the measurement with `batches`. The batches must have distinct numbers and slices
     /// that match `planes`.
     pub(crate) fn of(planes: &[VirtualPlane], batches: impl Iterator<Item = Batch>) -> Self {
         Self {

@@ -6,10 +6,10 @@ use ndarray::{ArrayView2, Axis};
 /// Returns the second moment Σ P ρᵐ νⁿ / Σ P of the power P, where `powers` is [m, n] with m + n
 /// = 2.
 ///
-/// The sum runs over the frequencies of the grid: if the field has an edge, the moment grows
+/// The sum runs over the frequencies of the grid. If the field has an edge, the moment grows
 /// without bound with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more
-/// meaningful. The unit is (cycles per metre)^m times (cycles per unit slope)^n. Returns `None`
-/// if Σ P is not positive.
+/// meaningful. The unit is (cycles per metre)^m times (cycles per unit slope)^n. Returns `None` if
+/// Σ P is not positive.
 #[must_use]
 pub fn second_moment(
     power: ArrayView2<'_, f64>,
@@ -40,12 +40,12 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// Returns H, the share of the energy at frequencies above a cut in the spectrum at ν = 0: Σ_{|ρ|
-/// > cut} P(ρ, 0) / Σ P(ρ, 0).
+/// Returns H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0), the share of the energy at frequencies above a
+/// cut in the spectrum at ν = 0.
 ///
-/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν
-/// = 0 is that of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow
-/// (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
+/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν =
+/// 0 is that of the windowed irradiance. On such a plane, H distinguishes a sharp shadow from a
+/// smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -62,9 +62,9 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
 /// the plane, `[nearest, farthest]` in metres.
 ///
 /// A blocker at the distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005,
-/// section 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside
-/// the wedge if its distance from the wedge is within the main lobe of a Hann window,
-/// 1/half-width along each axis. Frequencies within the main lobe around zero are left out,
+/// section 3.2; Egan et al. 2009). The window blurs the lines of blockers. A frequency therefore
+/// counts as inside the wedge if its distance from the wedge is within the main lobe of a Hann
+/// window, 1/half-width along each axis. Frequencies within the main lobe around zero are left out,
 /// because they contain the mean of the light. Returns `None` if the sum of the power over all
 /// other frequencies is not positive.
 #[must_use]

@@ -12,8 +12,8 @@ use std::ops::Range;
 /// ascending.
 #[derive(Clone, Debug)]
 pub struct RadialPower {
-    /// The power without the noise of the photons; it is unbiased, and noise can make it
-    /// negative.
+    /// The power without the noise of the photons. The estimate of the power is unbiased, and noise
+    /// can make the estimate negative.
     pub power: Array2<f64>,
     /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,
@@ -23,7 +23,7 @@ pub struct RadialPower {
     pub sigma: Array2<f64>,
 }
 
-/// The power spectrum U of a plane from products of independent batches (docs/theory.md (13)):
+/// The power spectrum U of a plane from products of independent batches (docs/theory.md (13)).
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
@@ -32,16 +32,16 @@ pub struct RadialPower {
 /// are correlated.
 ///
 /// If batch r is left out, the estimate is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and
-/// row_r = Σ_(s≠r) Re(S_r conj S_s): the jackknife needs no copies.
+/// row_r is Σ_(s≠r) Re(S_r conj S_s). The jackknife therefore needs no copies of the slices.
 #[derive(Clone, Debug)]
 pub struct CrossPower<'m> {
     grid: SliceGrid,
     batches: Vec<&'m Slices>,
     /// The range of azimuths over which to average.
     azimuths: Range<usize>,
-    /// The sum Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum Σ S_r at the azimuths of the range, [azimuth, ρ ≥ 0, ν].
     sum: Array3<Complex>,
-    /// The sum over pairs T at these azimuths, [azimuth, ρ ≥ 0, ν].
+    /// The sum T over pairs at the azimuths of the range, [azimuth, ρ ≥ 0, ν].
     pairs: Array3<f64>,
 }
 
@@ -213,9 +213,8 @@ impl<'m> CrossPower<'m> {
     }
 
     /// Returns the largest bandwidth over the azimuths, with its standard error at the azimuth of
-    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise
-    /// decides which of them is largest, and the result exceeds the true value by about its
-    /// error.
+    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise decides
+    /// which bandwidth is largest, and the result exceeds the true value by about the error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);

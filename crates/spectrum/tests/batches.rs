@@ -32,7 +32,8 @@ fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
     measure(source, &source.planes, batches, &|_| ())
 }
 
-/// A source of photons for which the photons at each plane of a shower are a separate part.
+/// A source of photons whose batches have two parts: the photons at one plane of a shower, and the
+/// photons at the other plane.
 struct Parted(Shower);
 
 impl PhotonSource for Parted {

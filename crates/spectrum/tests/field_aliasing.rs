@@ -135,10 +135,10 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // The spectrum is compensated by too low a power of the sinc: the power is lower by one
-        // for TSC, and by two for CIC, whose bound is as wide as the effect of one power. For
-        // assignment to the nearest cell, the bound is so wide that it holds even without any
-        // compensation.
+        // The spectrum is compensated by too low a power of the sinc. The power is lower by one for
+        // TSC. For CIC, the power is lower by two, because the bound is as wide as the effect of
+        // one power. For assignment to the nearest cell, the bound is so wide that it holds even
+        // without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),

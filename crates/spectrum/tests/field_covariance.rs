@@ -107,7 +107,7 @@ fn measured(seed: u64, each: u64) -> FieldMeasurement {
 }
 
 /// Returns the known covariance: the entries ρx², ρx νu and νu², and the corresponding entries
-/// along y; all other entries are zero.
+/// along y. All other entries of the covariance are zero.
 fn known() -> [[f64; 4]; 4] {
     let mut matrix = [[0.0; 4]; 4];
     for axis in 0..2 {
@@ -143,7 +143,8 @@ fn photons_have_the_covariance_of_their_field() {
     assert!(wrong.abs() > 20.0, "{wrong}");
 }
 
-/// If a group has only 20 photons, the noise power exceeds the moments, but does not bias them.
+/// If a group has only 20 photons, the noise power exceeds the moments, but does not bias the
+/// estimates.
 #[test]
 fn few_photons_have_no_bias() {
     let (mut all, mut naive) = (Vec::new(), Vec::new());

@@ -186,8 +186,7 @@ fn the_jackknife_leaves_groups_out() {
     assert!(largest(&(&three.power - &expected)) < 1e-12 * largest(&expected)); // rounding
 }
 
-/// A source of photons all over a box, with weights of zero mean, so that the field contains only
-/// noise.
+/// A source of photons all over a box, with weights of zero mean, whose field contains only noise.
 struct White(u64);
 
 impl PhotonSource for White {

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// How the surface between the previous leg and this leg scatters light.
 #[derive(Debug)]
 pub(crate) enum Bounce {
-    /// Diffuse reflection, with the albedo and a scatterer; the scatterer is `None` if no virtual
+    /// Diffuse reflection, with the albedo and a scatterer. The scatterer is `None` if no virtual
     /// plane sees light of this leg.
     Diffuse(f64, Option<Scatterer>),
     /// Reflection by a BRDF that may vary over a patch, in the frame of the leg.

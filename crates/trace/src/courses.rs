@@ -36,9 +36,9 @@ impl<T> Both<T> {
 }
 
 /// Checks whether light may travel back along a leg. Light may travel back along a leg if part of
-/// the surface at the leg's end lies behind part of the surface at the leg's beginning, or if the
-/// window of a plane on one of these surfaces contains light that travels back. Light of the
-/// first leg always goes forward.
+/// the surface at the leg's end lies behind part of the surface at the leg's beginning. Light may
+/// also travel back if the window of a plane on one of these surfaces contains such light. Light of
+/// the first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {

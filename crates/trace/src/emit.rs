@@ -79,8 +79,8 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // These bounds contain the slopes of all rays from the light to the region that
-                // the plane sees.
+                // The bounds contain the slopes of all rays from the light to the region that the
+                // plane sees.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
@@ -142,8 +142,8 @@ impl Emitter {
     }
 
     /// Returns the number of the first block of random words that a photon's interactions with
-    /// surfaces use. From block 1, the emission uses only the last word, to select the virtual
-    /// plane at which a ray is aimed; light from an environment uses all words of block 1.
+    /// surfaces use. Of block 1, the emission uses only the last word, which selects the virtual
+    /// plane at which a ray is aimed. Light from an environment uses all words of block 1.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -152,9 +152,9 @@ impl Emitter {
         }
     }
 
-    /// Emits several photons together: returns their rays and the weights of these rays in
-    /// radiance space; the weight is zero if a ray carries no light. `words` returns the random
-    /// words of one block of random numbers of one photon.
+    /// Emits several photons together, and returns the rays with their weights in radiance space.
+    /// The weight of a ray that carries no light is zero. `words` returns the random words of one
+    /// block of random numbers of one photon.
     #[must_use]
     pub fn emit(
         &self,
@@ -192,7 +192,7 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Returns rays aimed at virtual planes, as columns of x, y, u and v; the plane at which each
+    /// Returns rays aimed at virtual planes, as columns of x, y, u and v. The plane at which each
     /// ray is aimed is drawn at random.
     #[inline]
     fn aimed(
@@ -225,7 +225,7 @@ impl Emitter {
         rays
     }
 
-    /// Returns a ray of a light without extent and its density; the slopes of a point light or a
+    /// Returns a ray of a light without extent and its density. The slopes of a point light or a
     /// projector, or the positions of a beam, are uniform within one of several ranges.
     fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
@@ -247,8 +247,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; such
-        // a ray carries no light.
+        // Because of rounding, a ray can lie exactly on the edge of a range, where the density is
+        // zero. A ray on the edge of a range carries no light.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {
@@ -274,11 +274,11 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// Returns ranges for uniform emission: for each virtual plane across the first leg, the range
-/// within which light crosses the plane's window, and for all other planes together, the range
-/// within which light meets the first surface. The ranges bound slopes for a point light or a
-/// projector, and positions for a beam. The list is empty if any of these ranges is unknown or
-/// receives no light.
+/// Returns ranges for uniform emission. Each virtual plane across the first leg has the range
+/// within which light crosses the plane's window. All other planes together have the range within
+/// which light meets the first surface. The ranges bound slopes for a point light or a projector,
+/// and positions for a beam. The list is empty if any of these ranges is unknown or receives no
+/// light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {

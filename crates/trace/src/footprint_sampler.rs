@@ -134,8 +134,9 @@ mod tests {
     }
 
     /// Two laws hold. For any direction, the density over (x, y) integrates to 1, even if lines
-    /// meet the surface twice. The test also checks that points follow the density: the mean of a
-    /// function divided by the density, over sampled points, is the integral of the function.
+    /// meet the surface twice. The test also checks that sampled points follow the density. The
+    /// mean over these points of a function divided by the density must be the integral of the
+    /// function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {
@@ -194,9 +195,8 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // The mid-point rule has an error of about 1 %, because the density jumps at the
-            // outline of the surface, in 1 % of the cells, and has poles at lines that graze the
-            // surface.
+            // The mid-point rule has an error of about 1 %. The density jumps at the outline of the
+            // surface, in 1 % of the cells, and has poles at lines that graze the surface.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

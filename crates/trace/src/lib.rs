@@ -1,8 +1,8 @@
 //! Traces photons from a [`Scene`](etendue_scene::Scene) to crossings of its virtual planes.
 //!
-//! [`Tracer`] emits photons from the light, finds what each photon meets first and reports every
-//! virtual plane that the photon crosses before that. The tracer also keeps the ledger of flux.
-//! The crate does not depend on the spectra of windows or on theory.
+//! The [`Tracer`] emits photons from the light, finds the first obstacle that each photon meets,
+//! and reports every virtual plane that the photon crosses before this obstacle. The tracer also
+//! keeps the ledger of flux. The crate does not depend on the spectra of windows or on theory.
 //!
 //! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a distance
 //! along the central ray is a coordinate. Light that travels back along a leg is described in a

@@ -14,7 +14,7 @@ pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
 }
 
 /// Returns the ray through a point along a direction, or `None` if the direction does not go
-/// forward along D; the point and the direction are in the frame of the returned ray.
+/// forward along D. The point and the direction are in the frame of the returned ray.
 pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
     let [u, v] = [direction.x / direction.z, direction.y / direction.z];
     (direction.z > 0.0).then_some(TwoPlane {

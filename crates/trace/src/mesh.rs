@@ -1,8 +1,9 @@
 //! Intersects the rays of a leg with a mesh.
 //!
 //! The triangles stay in the frame at the light, with one hierarchy over all triangles, and rays
-//! are transformed to that frame. Each hit is decided in the frame of the leg, in which a
-//! direction is (u, v, 1) and two triangles that share an edge use the same arithmetic for it.
+//! are transformed to that frame. Each hit is decided in the frame of the leg, in which a direction
+//! is (u, v, 1). In this frame, two triangles that share an edge use the same arithmetic for the
+//! edge.
 
 use crate::line::{direction, start};
 use etendue_field::triangle_distance;
@@ -36,8 +37,8 @@ impl BlockerMesh {
     }
 
     /// Returns the first triangle that a ray meets beyond `from`, and the distance of this
-    /// triangle; among triangles at the same distance, returns the triangle with the lowest
-    /// number. Hits beyond `until` may be ignored.
+    /// triangle. Among triangles at the same distance, the triangle with the lowest number is
+    /// returned. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -54,8 +55,8 @@ impl BlockerMesh {
         first
     }
 
-    /// Returns the last triangle on the line of a ray before `until`; among triangles at the same
-    /// distance, returns the triangle with the lowest number.
+    /// Returns the last triangle on the line of a ray before `until`. Among triangles at the same
+    /// distance, the triangle with the lowest number is returned.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
@@ -256,7 +257,8 @@ mod tests {
             for i in 1..N - 1 {
                 for j in 1..N - 1 {
                     let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
-                    // Corners that four squares share, and points on the edge between them.
+                    // The tested points are corners that four squares share, and points on the edge
+                    // between two such corners.
                     let [p, _, end] = triangles[(2 * (i * N + j)) as usize];
                     for t in [0.0, 0.3, 0.5, 1.0] {
                         let ray = ray(&leg, DVec3::new(x, y, 0.0), p.lerp(end, t));

@@ -160,8 +160,8 @@ impl Obstacles {
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
-        // If a ray starts farther to the side than this bound, the hierarchy tests the ray from a
-        // nearer point.
+        // If a ray starts farther to the side than the bound `origins`, the hierarchy tests the ray
+        // from a nearer point.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),
@@ -239,7 +239,7 @@ impl Obstacles {
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// Returns the share of light on a ray that reaches a plane from the distance `from`; the
+    /// Returns the share of light on a ray that reaches a plane from the distance `from`. The
     /// search goes backwards from the plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,

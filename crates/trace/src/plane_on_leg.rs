@@ -57,9 +57,9 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 }
 
 impl PlaneOnLeg {
-    /// Returns the ray that has the coordinates `seen` at the virtual plane, and dA / dx dy at
-    /// the plane; the ray is given in the plane at the beginning of the leg, and is `None` if it
-    /// does not exist.
+    /// Returns the ray that has the coordinates `seen` at the virtual plane, and dA / dx dy at the
+    /// plane; `None` if there is no such ray. The ray is given in the plane at the beginning of the
+    /// leg.
     ///
     /// If the virtual plane follows a curved surface, light is counted per area of the surface
     /// (docs/theory.md, section 8); otherwise dA is dx dy.

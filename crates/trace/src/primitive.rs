@@ -6,8 +6,9 @@ use crate::mesh::BlockerMesh;
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
-/// The geometry of an obstacle, in the frame of a leg. Large data are stored behind pointers, so
-/// that flat shapes, which are by far the most frequent obstacles, stay in the processor's cache.
+/// The geometry of an obstacle, in the frame of a leg. Large data are stored behind pointers,
+/// because flat shapes are by far the most frequent obstacles and should stay in the processor's
+/// cache.
 #[derive(Clone, Debug)]
 pub(crate) enum Primitive {
     /// A flat shape across the central ray.
@@ -25,7 +26,7 @@ pub(crate) enum Primitive {
 impl Primitive {
     /// Returns the distance along the central ray at which a ray meets the primitive, and the
     /// number of the part (such as a triangle) that the ray meets. If there are several hits,
-    /// returns the first hit beyond `from`; hits of a mesh beyond `until` may be ignored.
+    /// returns the first hit beyond `from`. Hits of a mesh beyond `until` may be ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -44,8 +45,8 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. This function
-    /// is not inlined, so that loops over mostly flat shapes stay short.
+    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. The function is
+    /// not inlined, which keeps loops over mostly flat shapes short.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);

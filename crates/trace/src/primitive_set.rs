@@ -29,8 +29,8 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The largest number of primitives that are tested one after another, which is as fast as the
-/// start of a traversal.
+/// The largest number of primitives that are tested one after another without a hierarchy, because
+/// these tests are as fast as the start of a traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
 impl<T> TaggedPrimitive<T> {
@@ -107,8 +107,8 @@ impl<T: Clone> PrimitiveSet<T> {
         first.map(|(primitive, part)| (nearest, primitive.met(part)))
     }
 
-    /// Returns the last primitive on the line of a ray before `until`, and the distance of the
-    /// hit; the search goes backwards from `until`.
+    /// Returns the last primitive on the line of a ray before `until`, and the distance of the hit.
+    /// The search goes backwards from `until`.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut last = None;
         let mut farthest = f64::NEG_INFINITY;
@@ -139,7 +139,7 @@ impl<T: Clone> PrimitiveSet<T> {
         });
     }
 
-    /// Checks whether light on a ray meets a primitive between `from` and `distance`; if
+    /// Checks whether light on a ray meets a primitive between `from` and `distance`. If
     /// `inclusive`, a hit exactly at `distance` counts. The search goes backwards from `distance`
     /// and skips primitives that `ignored` accepts.
     pub(crate) fn is_occluded(

@@ -4,8 +4,8 @@ use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
 ///
-/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of a Hann profile to the
-/// tent stays in 0..1.14 and falls to zero at the edge, so the weights of rays are bounded.
+/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of a Hann profile to the tent
+/// stays between 0 and 1.14 and falls to zero at the edge, so the weights of rays are bounded.
 /// Profiles other than Hann do not vanish at their edge, and are approximated by a constant. For
 /// light that a surface receives, the density follows the cosine.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// Returns the density for slopes, up to `half`, of light that a surface receives. This
-    /// density is weighted by the cosine as in 2D (docs/theory.md (6)).
+    /// Returns the density for slopes, up to `half`, of light that a surface receives. The density
+    /// is weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -104,8 +104,8 @@ impl ProfileDensity {
         }
     }
 
-    /// Evaluates a function of this density for several numbers. The kind of density is fixed
-    /// inside each loop, so the compiler can vectorise the loops.
+    /// Evaluates a function of the density for several numbers. The kind of density is fixed inside
+    /// each loop, so the compiler can vectorise the loops.
     #[inline(always)]
     fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
         let of = |kind: ProposalKind| Self { kind, ..*self };

@@ -1,5 +1,5 @@
-//! Computes the regions from which light can reach the window of a virtual plane; emission and
-//! scattering are aimed at these regions.
+//! Computes the regions from which light can reach the window of a virtual plane. Emission and
+//! scattering are aimed at the computed regions.
 
 use crate::line::{direction, start};
 use crate::plane_on_leg::PlaneOnLeg;
@@ -47,7 +47,7 @@ pub(crate) fn reach(
     (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
 }
 
-/// Returns the corners of the region that light can leave, in the frame at the light; for a mesh,
+/// Returns the corners of the region that light can leave, in the frame at the light. For a mesh,
 /// returns the corners of the bounding box.
 pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
@@ -214,8 +214,9 @@ fn seen_of_patch(
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
     // A point of the patch at the distance r from the normal at the hit lies at most |k| r² from
-    // the tangent plane. Lines through the window meet a slab of this thickness within a box. The
-    // box is computed repeatedly; the first computation uses the box of the entire patch.
+    // the tangent plane. Within the slab of points at most |k| r² from the tangent plane, lines
+    // through the window stay inside a box. The box is computed repeatedly; the first computation
+    // uses the box of the entire patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);

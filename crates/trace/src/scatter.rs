@@ -120,7 +120,8 @@ fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
 }
 
 impl Scatterer {
-    /// Returns `None` if no virtual plane sees light of this leg.
+    /// Returns the scatterer at the beginning of a leg; `None` if no virtual plane sees light of
+    /// the leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let leaves = this.leaves?.object;

@@ -21,7 +21,7 @@ pub(crate) struct Sky {
 /// The distribution from which directions are drawn.
 #[derive(Clone, Debug)]
 enum Choice {
-    /// Lobes, selected by their flux.
+    /// Lobes, each selected with a probability in proportion to its flux.
     Lobes(Vec<SphericalGaussian>, DiscreteDistribution),
     Map(LatLongSampler),
 }

@@ -17,10 +17,10 @@ use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that
-/// it meets; gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and
-/// a Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the
-/// end of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
+/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that it
+/// meets. Gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and a
+/// Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the end
+/// of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
 /// continues from leg to leg. If a photon meets an obstacle other than the surface at the end of
 /// its leg, the photon ends.
 ///
@@ -104,9 +104,9 @@ impl Tracer {
     /// finds. The tracers of [`Self::new`] and of this function share no random numbers, and aim
     /// the emission in different ways.
     ///
-    /// This tracer emits light uniformly towards the entire first surface, and towards the
-    /// windows of virtual planes before this surface. It traces photons and aims scattered light
-    /// in the same way as the tracer of [`Self::new`].
+    /// This tracer emits light uniformly towards the entire first surface, and towards the windows
+    /// of virtual planes before this surface. Photons are traced and scattered light is aimed in
+    /// the same way as by the tracer of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -156,8 +156,8 @@ impl Tracer {
     }
 
     /// Traces a photon over a leg: finds the obstacle that the photon meets, reports the virtual
-    /// planes that the photon crosses before it, and computes the photon's start on the next leg.
-    /// Returns false if the photon ends on this leg.
+    /// planes before the obstacle, and computes the photon's start on the next leg. Returns false
+    /// if the photon ends on this leg.
     #[inline]
     fn follow(
         &self,
@@ -283,9 +283,9 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // If light has left an object and would meet the same object again, the light is lost,
-        // even if a blocker stops it first. If such light counted, a blocker beyond a virtual
-        // plane would add light at the plane.
+        // If light has left an object and would meet the same object again, the light is lost, even
+        // if a blocker stops it first. If the lost light counted, a blocker beyond a virtual plane
+        // would add light at the plane.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
@@ -299,7 +299,7 @@ impl FlightLeg {
                 continue;
             };
             // A virtual plane beside an object is at exactly the same distance as the object, so
-            // rounding errors cannot separate them.
+            // rounding errors cannot separate the plane from the object.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,

@@ -273,7 +273,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
 
 #[test]
 fn even_light_gives_a_wall_pi_times_its_radiance() {
-    // The radiance of this light is uniform to a millionth.
+    // The radiance of the light is uniform to a millionth.
     let even = "Environment(center: (0, 0, 0), map: Lobes([(from: (1, 2, -1), width: 1000, radiance: 1.5)]))";
     for [found, error] in irradiance(even) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
@@ -300,7 +300,7 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // The tolerance is four standard errors; the relative error of the mid-point rule is
+        // The tolerance is four standard errors. The relative error of the mid-point rule is
         // (step)²/24, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,

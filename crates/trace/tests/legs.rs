@@ -157,7 +157,7 @@ fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let [mean, error] = photons[2][0];
     assert!(error < 3e-3 * mean, "{mean} ± {error}");
-    // The mid-point rule over 8 × 8 points of the light is accurate to 1e-3; the remaining
+    // The mid-point rule over 8 × 8 points of the light is accurate to 1e-3. The remaining
     // difference is noise.
     assert!(
         (mean - sum).abs() < 4.0 * error + 1e-3 * sum,
@@ -240,7 +240,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
     }
 }
 
-/// A wall that lights a nearby floor from all around, so that light travels along and against the
+/// A wall that lights a nearby floor from all around; light therefore travels along and against the
 /// central ray.
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;

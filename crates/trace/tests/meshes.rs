@@ -115,13 +115,13 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
-        // This change adds the reverse of every triangle.
+        // The change of kind 6 adds the reverse of every triangle.
         6 => {
             let other = |[a, b, c]: &[usize; 3]| [*a, *c, *b];
             let other: Vec<_> = parts.triangles.iter().map(other).collect();
             parts.triangles.extend(other);
         }
-        // This change makes vertices nearly coincide, or nearly lie on a line.
+        // The changes of kinds 7 and 8 make vertices nearly coincide, or nearly lie on a line.
         7 => {
             let near = 10_f64.powf(draw.between(-40.0, -3.0));
             parts.vertices[a] = parts.vertices[b] + near * draw.point(1.0);

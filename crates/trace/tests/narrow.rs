@@ -15,7 +15,7 @@ const LIGHTS: [&str; 3] = [
         grating: (axis: X, frequency: 3, modulation: 0.8, phase: 0.5)))",
     "Beam(center: (0, 0, 0), irradiance: 2, image: (width: (0.5, 0.4)))",
 ];
-/// A blocker in the path of the light, a little beside the middle of the path.
+/// A blocker in the path of the light, a little to the side of the path's middle.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.1, 0, 0.4), shapes: [Disc(center: (0, 0), radius: 0.05)])"#;
 const BALL: &str = r#"Smooth(name: "s", center: (0, 0, 1), facing: (0.3, -0.5, -0.8),
@@ -25,7 +25,8 @@ const WALL: &str = r#"Rectangle(name: "s", center: (0, 0, 1), size: (2, 1.6),
 const STAR: &str = r#"Mesh(name: "s", center: (0, 0, 1),
     mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const SPHERE: &str = r#"Mesh(name: "m", center: (0.2, -0.1, 0.5), mesh: Star(radius: 0.08, relief: 0.3, lobes: 4, rings: 10), albedo: 0.8)"#;
-/// A mirror that light reaches after it leaves the wall, by mirror reflection or upwards.
+/// A mirror that light reaches from the wall; the light leaves the wall by mirror reflection or
+/// upwards.
 const MIRROR: &str = r#"Smooth(name: "mirror", center: (0.5, -0.8, 0), facing: (-0.4, 1, 0.2),
     form: Sphere(-0.1), aperture: 1.5, event: Mirror)"#;
 

@@ -115,8 +115,8 @@ fn leaving() {
     );
 }
 
-/// Some slopes of a window may point along a tilted wall, or at the wall's back: the part of the
-/// wall that the window sees is then unbounded.
+/// Some slopes of a window may point along a tilted wall or at the wall's back. The window then
+/// sees an unbounded part of the wall.
 #[test]
 fn leaving_along_the_wall() {
     let wall = r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0.93, 0, -0.36), form: Plane, aperture: 4.2, event: Reflects(brdf: (lobe: Lambertian)))"#;

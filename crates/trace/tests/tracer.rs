@@ -120,7 +120,7 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     ); // every photon carries the same: rounding
 }
 
-/// If blockers fill their plane, no light passes; without blockers, a virtual plane sees the same
+/// If blockers fill their plane, no light passes. Without blockers, a virtual plane sees the same
 /// photons on both sides of the blockers' plane.
 #[test]
 fn blockers_block() {

@@ -10,8 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Returns a scene with a square light away from the world's origin that shines obliquely; if
-/// `visits` names the curved glossy surface, the light shines on it.
+/// Returns a scene with a square light away from the world's origin that shines obliquely. If
+/// `visits` names the curved glossy surface, the light shines on that surface.
 fn scene(visits: &str, planes: &str) -> Scene {
     let text = format!(
         r#"(light: Rectangle(center: (0.3, -0.2, 0.1), size: (0.06, 0.04), radiance: 2),
@@ -105,7 +105,7 @@ fn planes_on_a_surface_have_one_flux() {
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
         assert!(d.dot(*p - center) < 0.0); // it arrives from outside
     }
-    // The other virtual planes also record each of these photons: on the same line, with the same
+    // The other virtual planes also record each tested photon, on the same line and with the same
     // power.
     for others in [&across, &tangent] {
         let mut found = 0;

@@ -6,7 +6,7 @@ use crate::svg::Area;
 use crate::text::width;
 use etendue_field::Side;
 
-/// Half of the minimum distance between two numbers.
+/// Half of the minimum distance between the numbers of two planes.
 const ASIDE: f64 = 9.0;
 /// The position of a segment's name.
 #[derive(Debug)]

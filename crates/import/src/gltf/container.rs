@@ -102,8 +102,8 @@ fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
         let path = path.as_str();
-        // Errors about minima and maxima are ignored because these values are not needed, and
-        // errors about extensions because extensions were checked above.
+        // Errors about minima and maxima are ignored because minima and maxima are not needed.
+        // Errors about extensions are ignored because extensions were already checked.
         let is_bound = path.ends_with(".min") || path.ends_with(".max");
         if error == Error::Unsupported || (error == Error::Missing && is_bound) {
             return;

@@ -63,8 +63,8 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // If all three numbers are equal, their value is used as it is, because rounding
-            // would change it in a computed luminance.
+            // The value of a grey pixel is used directly, because a luminance computed from three
+            // equal values would have a rounding error.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

@@ -126,7 +126,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Returns the triangles of a list, a strip or a fan; every second triangle of a strip is flipped.
+/// Returns the triangles of a list, a strip or a fan. Every second triangle of a strip is flipped.
 fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => listed.as_chunks().0.to_vec(),
@@ -145,8 +145,8 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// Returns the triangles, flipped and moved back by `gap`; corners that share a position still
-/// share one afterwards.
+/// Returns the triangles, flipped and moved back by `gap`. Corners at the same position are moved
+/// to the same new position.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();

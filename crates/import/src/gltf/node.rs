@@ -17,8 +17,8 @@ pub(super) struct PlacedNode<'a> {
 }
 
 impl<'a> GltfReader<'a> {
-    /// Adds the content of all nodes of the scene; the traversal is not recursive and visits each
-    /// node once.
+    /// Adds the content of all nodes of the scene. The traversal of the nodes is not recursive and
+    /// visits each node once.
     pub(super) fn nodes(&mut self) {
         let mut met = vec![false; self.root.nodes.len()];
         let mut open: Vec<(usize, DAffine3)> = Vec::new();
@@ -71,8 +71,8 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Adds a note on the nodes that were not visited; in a file without scenes, such nodes form
-    /// cycles.
+    /// Adds a note on the nodes that were not visited. In a file without scenes, the nodes that
+    /// were not visited form cycles.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {

@@ -36,7 +36,7 @@ impl<'a> GltfReader<'a> {
         }
         let own = || mesh.name.clone();
         let name = placed.node.name.clone().or_else(own).unwrap_or_default();
-        // The name is shortened because many nodes may use one mesh.
+        // The name is shortened because each of many nodes may repeat the name of one mesh.
         let name: String = name.chars().take(LONGEST).collect();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.primitive(placed, [number, i], primitive, &name);
@@ -111,8 +111,8 @@ impl<'a> GltfReader<'a> {
         });
     }
 
-    /// Adds the second of the two surfaces that represent a surface with emission on both sides;
-    /// each of them emits on its front.
+    /// Adds the second of the two surfaces that represent a surface with emission on both sides.
+    /// Each of the two surfaces emits on its front.
     fn add_back(
         &mut self,
         key: (usize, usize),

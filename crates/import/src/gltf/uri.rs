@@ -27,7 +27,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
         if !kind.ends_with(";base64") {
             return Err("is a data URI that is not in base64; allowed: base64".to_owned());
         }
-        // Four characters encode three bytes.
+        // Four characters of Base64 encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
             return Err("is a data URI of more bytes than an import may read".to_owned());
         }

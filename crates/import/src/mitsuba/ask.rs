@@ -7,7 +7,7 @@ use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the property with the given name; if several nested objects have this name, the
+    /// Returns the property with the given name. If several nested objects have the same name, the
     /// last of these objects counts, as in Mitsuba.
     pub(super) fn property(
         &self,
@@ -24,8 +24,8 @@ impl<'a> MitsubaReader<'a> {
         object.properties.iter().any(|p| p.name == name)
     }
 
-    /// Returns the value of a property, as converted by `read`, or `None` if it is missing, or if
-    /// a cause of refusal was reported.
+    /// Returns the value of a property, as converted by `read`, or `None` if the property is
+    /// missing, or if a cause of refusal was reported.
     fn ask<T>(
         &self,
         object: &'a MitsubaObject,
@@ -164,7 +164,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// Returns the only child object of a kind, if one exists; a second child of this kind is a
+    /// Returns the only child object of a kind, if one exists. A second child of the same kind is a
     /// cause of refusal.
     pub(super) fn child(
         &self,

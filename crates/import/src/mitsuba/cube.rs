@@ -3,8 +3,8 @@
 use crate::meshes::MeshParts;
 use glam::{DVec2, DVec3};
 
-/// The normal and corners of each side of the cube; bit k of a corner is set if coordinate k of
-/// the corner is 1.
+/// The normal and corners of each side of the cube. Bit k of a corner is set if coordinate k of the
+/// corner is 1.
 const SIDES: [([f64; 3], [u32; 4]); 6] = [
     ([0.0, -1.0, 0.0], [1, 5, 4, 0]),
     ([0.0, 1.0, 0.0], [3, 2, 6, 7]),

@@ -1,4 +1,4 @@
-//! Indices of refraction of materials that scenes name.
+//! Indices of refraction of the materials that scenes refer to by name.
 
 use super::object::{MitsubaObject, Value};
 use super::reader::MitsubaReader;

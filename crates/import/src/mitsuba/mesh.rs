@@ -62,7 +62,7 @@ impl<'a> MitsubaReader<'a> {
             }
         };
         // Mitsuba computes missing normals from the placed triangles, so a mirroring placement
-        // flips computed normals, but it transforms the normals of a file.
+        // flips computed normals. Normals from a file are transformed with the mesh.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,

@@ -51,7 +51,7 @@ pub(super) enum Value {
     /// Pairs of a wavelength, nm, and a value.
     Spectrum(Rc<[[f64; 2]]>),
     Transform(DAffine3),
-    /// The index of an object that is defined in this place.
+    /// The index of an object that is defined within the property.
     Object(usize),
     /// The id of an object that is defined elsewhere.
     Reference(String),
@@ -78,8 +78,8 @@ pub(super) enum ObjectKind {
 }
 
 impl ObjectKind {
-    /// Returns the kind of object that an element of this name defines; a spectrum with a type is
-    /// a texture.
+    /// Returns the kind of object that an element of this name defines. A spectrum with a type is a
+    /// texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
         Some(match name {
             "scene" => Self::Scene,

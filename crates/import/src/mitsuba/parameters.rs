@@ -17,8 +17,8 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether the caller has set the parameter; the file must use every parameter that the
-    /// caller has set.
+    /// Whether the caller has set the parameter. The file must use every parameter that the caller
+    /// has set.
     is_set: bool,
     is_used: bool,
 }
@@ -59,7 +59,7 @@ impl Parameters {
     }
 
     /// Returns the text after parameters are replaced by their values. `\$` stands for a dollar
-    /// sign; if the names of several parameters match, the longest name is used.
+    /// sign. If the names of several parameters match, the longest name is used.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
         let mut made = String::new();
         let mut rest = text;

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; it is needed because instances may repeat groups.
+/// Maximum number of shapes of a world; the limit is needed because instances may repeat groups.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts objects to a world.
@@ -30,8 +30,8 @@ pub(super) struct MitsubaReader<'a> {
     pub(super) materials: HashMap<usize, Option<usize>>,
     /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
-    /// The indices of two default materials, if they are in use: that of surfaces and that of
-    /// emitters.
+    /// The indices of the default material of surfaces and of the default material of emitters, if
+    /// these materials are in use.
     pub(super) defaults: [Option<usize>; 2],
 }
 
@@ -81,8 +81,8 @@ impl<'a> MitsubaReader<'a> {
         self.world
     }
 
-    /// Marks definitions at the top level, such as materials and textures, which are read where
-    /// they are used.
+    /// Marks definitions at the top level, such as materials and textures, as read, because the
+    /// definitions are converted where the scene uses them.
     fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
@@ -99,8 +99,8 @@ impl<'a> MitsubaReader<'a> {
     /// Refuses media, because a world has no volumetric scattering.
     fn refuse_media(&self) {
         for object in self.objects {
-            // A medium within another medium is not reported, because the outer medium already
-            // was.
+            // A medium within another medium is not reported, because the outer medium was already
+            // reported.
             let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
             if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));

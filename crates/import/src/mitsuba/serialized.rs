@@ -12,7 +12,7 @@ const HAS_NORMALS: u32 = 0x1;
 const HAS_UVS: u32 = 0x2;
 const HAS_COLORS: u32 = 0x8;
 const IS_DOUBLE: u32 = 0x2000;
-/// Maximum length of a mesh's name, which is skipped, bytes.
+/// Maximum length, in bytes, of a mesh's name, which the reader skips.
 const LONGEST_NAME: u64 = 1 << 16;
 /// Maximum ratio of unpacked to packed bytes: zlib reaches 1032 for zeros, and less than 20 for
 /// meshes.
@@ -127,7 +127,7 @@ impl<R: Read> UnpackedStream<R> {
         Err(format!("has a name of more than {LONGEST_NAME} bytes"))
     }
 
-    /// Reads the number of vertices or triangles, and checks that the file is long enough; each
+    /// Reads the number of vertices or triangles, and checks that the file is long enough. Each
     /// vertex or triangle takes more than a byte.
     fn count(&mut self) -> Result<u64, String> {
         let count = u64::from_le_bytes(self.some()?);

@@ -273,8 +273,8 @@ impl<'a> MitsubaReader<'a> {
     }
 }
 
-/// Returns a texture for use as a number and not as a colour; Mitsuba 3.9.1 then swaps the values
-/// of a checkerboard.
+/// Returns a texture whose values are used as numbers and not as colours. Mitsuba 3.9.1 swaps the
+/// two values of a checkerboard in such a texture.
 pub(super) fn as_number(texture: Texture) -> Texture {
     match texture {
         Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {

@@ -10,8 +10,8 @@ pub(super) type Attributes = Vec<(String, String)>;
 /// Maximum deviation of the length of an axis from 1, due to rounded components in a file.
 const UNIT: f64 = 1e-3;
 
-/// Maximum deviation of a transform from a rigid transform; deviations arise because transforms
-/// are products of rounded numbers.
+/// Maximum deviation of a transform from a rigid transform. Transforms deviate because they are
+/// products of rounded numbers.
 const RIGID: f64 = 1e-3;
 
 /// Returns the map of one element; `Err` describes a fault.

@@ -24,8 +24,8 @@ pub(super) fn underscored(name: &str) -> String {
     made
 }
 
-/// Applies changes other than of spelling, which concern the reflectance of diffuse surfaces and
-/// the scales of texture coordinates.
+/// Replaces properties that have another name or form in Mitsuba 3: the reflectance of diffuse
+/// surfaces, and the scales and offsets of texture coordinates.
 pub(super) fn upgrade(object: &mut MitsubaObject) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {

@@ -73,7 +73,7 @@ impl<'a> Tree<'a> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
         // The number of attributes is checked first, because the time of the XML parser grows with
-        // its square.
+        // the square of this number.
         if let Some(offset) = crowded(text) {
             let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);
@@ -158,7 +158,7 @@ impl<'a> Tree<'a> {
             let name = node.tag_name().name();
             match ObjectKind::of(name, find(&attributes, "type").is_some()) {
                 Some(kind) => {
-                    // The element is the root of an included file if it has no parent.
+                    // An element without a parent is the root of an included file.
                     let is_root = node.parent_element().is_none();
                     let version: &[&str] = if is_root { &["version"] } else { &[] };
                     allow(&attributes, &[&["type", "id", "name"], version].concat())?;
@@ -315,8 +315,8 @@ impl<'a> Tree<'a> {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
-                // An invalid value still defines the property, so that the property has only one
-                // cause of refusal.
+                // An invalid value still defines the property, so only one cause of refusal is
+                // added for the property.
                 let (value, fault) = match value {
                     Ok(value) => (value, None),
                     Err(fault) => (Value::Broken, Some(fault)),

@@ -48,7 +48,8 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A word with a hyphen that is not a known option is taken as a file name.
+                // A word that begins with a hyphen and is not a known option is taken as a file
+                // name.
                 break;
             };
             let (values, after) = arguments(after, *most, option);

@@ -66,7 +66,8 @@ pub(super) fn read(
     }
 }
 
-/// Returns a message that a statement is left out, with the number of its occurrences.
+/// Returns the message that a statement is left out, with the number of occurrences of the
+/// statement.
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
         1 => format!("{word} left out"),
@@ -123,7 +124,8 @@ impl MtlStatement<'_> {
                 }
                 entry.illum = whole.or(entry.illum);
             }
-            // The pictures of these statements would change normals or displace the surface.
+            // The pictures named by bump, normal and displacement statements would change normals
+            // or displace the surface.
             "bump" | "map_bump" | "norm" | "disp" => {
                 let message = format!(
                     "{} is not supported: normals are those of the shape",

@@ -68,7 +68,7 @@ impl<'a> ObjReader<'a> {
         }
     }
 
-    /// Reads a material library statement: one file with spaces in its name, or several.
+    /// Reads a material library statement: one file with spaces in its name, or several files.
     fn library(&mut self, line: usize, names: &str) {
         let folders = [self.folder.clone()];
         if self.files.find(&folders, names).is_ok() {
@@ -186,7 +186,8 @@ impl<'a> ObjReader<'a> {
     }
 }
 
-/// Returns an attribute of the vertices, or `None` if it is missing or zero at every vertex.
+/// Returns an attribute of the vertices, or `None` if the attribute is missing or zero at every
+/// vertex.
 fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
     let found: Vec<T> = order
         .iter()

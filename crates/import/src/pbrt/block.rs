@@ -8,7 +8,7 @@ use crate::report::{SourcePlace, quoted};
 const MAX_DEPTH: usize = 1 << 12;
 
 impl Builder<'_> {
-    /// Adds a cause for each unclosed block above a level.
+    /// Adds a cause for each unclosed block that is nested deeper than a level.
     pub(super) fn refuse_open(&mut self, level: usize) {
         while self.stack.len() > level {
             if let Some((state, kind, place)) = self.stack.pop() {

@@ -64,8 +64,8 @@ impl PbrtReader<'_> {
         let size = size?;
         let window = self.window(entity, size)?;
         let (rigid, scale) = placed?;
-        // X points to the right of the picture in pbrt and to the left in a world. The camera's
-        // map mirrors, because the coordinates in the file are left-handed.
+        // X points to the right of the picture in pbrt and to the left in a world. The camera's map
+        // mirrors coordinates, because the coordinates in the file are left-handed.
         let rigid = rigid * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         let (to_world, projection) = match is_flat {
             true => (
@@ -226,7 +226,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Checks the filter: a box of one pixel is exact.
+    /// Checks a box filter; a note states if its width is not one pixel.
     fn check_box(&self, entity: &Entity) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {

@@ -1,4 +1,4 @@
-//! Entities that directives define. When a parameter of an entity is read, it is marked as read.
+//! Entities that directives define. A parameter of an entity is marked when it is read.
 
 use super::parameter::{ParameterKind, ParameterValues, PbrtParameter};
 use crate::report::{Report, SourcePlace, quoted};

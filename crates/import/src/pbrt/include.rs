@@ -9,8 +9,8 @@ use std::io::Read;
 use std::path::Path;
 
 impl Builder<'_> {
-    /// Reads a file. `Include` reads a file as if the text of the file replaced the directive;
-    /// after `Import`, the graphics state is restored, and only the objects that the file defines
+    /// Reads a file. `Include` reads a file as if the text of the file replaced the directive.
+    /// After `Import`, the graphics state is restored, and only the objects that the file defines
     /// are kept.
     pub(super) fn include(
         &mut self,

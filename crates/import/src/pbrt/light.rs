@@ -39,8 +39,8 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
-    /// Returns the factor that gives a light its required power or illuminance; as in pbrt, values
-    /// of 0 or less are ignored.
+    /// Returns the factor that gives a light its required power or illuminance. As in pbrt, powers
+    /// and illuminances of 0 or less are ignored.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);

@@ -151,8 +151,8 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
-            // The note about the approximation covers these parameters, so they are marked as
-            // read.
+            // The parameters are marked as read, because the note about the approximation covers
+            // them.
             entity.has(name);
         }
         if albedo? > 0.0 {
@@ -279,8 +279,8 @@ fn both_sides(material: Material) -> Material {
     Material::TwoSided(Box::new([material.clone(), material]))
 }
 
-/// Whether a material depends on texture coordinates, because it varies or is anisotropic along u
-/// and v.
+/// Whether a material depends on texture coordinates, either because the material varies or because
+/// it is anisotropic along u and v.
 pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {

@@ -61,8 +61,8 @@ impl PbrtReader<'_> {
         made.map_err(|_| CauseGiven)
     }
 
-    /// Adds a cause for a file that cannot be used, and returns the error to be cached, so that
-    /// the cause is added once.
+    /// Adds a cause for a file that cannot be used, and returns an error to be cached; with the
+    /// cached error, the cause is added only once.
     fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
         self.unread(entity, name, &error);
         error
@@ -136,8 +136,8 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a
-    /// cause of refusal; a planar patch that is not a parallelogram gets a note, because texture
+    /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a cause
+    /// of refusal. A planar patch that is not a parallelogram gets a note, because texture
     /// coordinates inside the patch differ from pbrt's.
     fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
@@ -183,8 +183,8 @@ impl PbrtReader<'_> {
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
     }
 
-    /// Reads an attribute of the vertices; as in pbrt, it is left out if it has a wrong number of
-    /// values.
+    /// Reads an attribute of the vertices. As in pbrt, an attribute with a wrong number of values
+    /// is left out.
     fn beside<T>(
         &self,
         entity: &Entity,

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; it is needed because instances may repeat objects.
+/// Maximum number of shapes of a world; the limit is needed because instances may repeat objects.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts a scene to a world.
@@ -94,7 +94,7 @@ impl<'a> PbrtReader<'a> {
         }
     }
 
-    /// Whether the given message is new, that is, was not given before.
+    /// Whether a message was not given before.
     pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));

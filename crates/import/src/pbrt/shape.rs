@@ -133,9 +133,9 @@ impl PbrtReader<'_> {
     /// Returns whether the front of a shape in pbrt is opposite to the front of the shape's
     /// geometry in a world.
     ///
-    /// pbrt computes normals of meshes after placement, so a mirroring placement keeps the front
-    /// of meshes, but flips the normals of other shapes. If a mirrored shape emits, pbrt shows
-    /// the light on one side and emits it from the other; the emitting side is used here.
+    /// pbrt computes normals of meshes after placement, so a mirroring placement keeps the front of
+    /// meshes, but flips the normals of other shapes. If a mirrored shape emits, pbrt shows the
+    /// light on one side and emits it from the other. The import uses the side that emits.
     fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));

@@ -10,7 +10,7 @@ use crate::range::in_range;
 use crate::report::quoted;
 use crate::spectrum::{Role, rgb};
 
-/// Planck's second constant, nm K.
+/// The second radiation constant of Planck's law, in nm K.
 const PLANCK: f64 = 1.438_776_877e7;
 
 /// The temperature of the CIE's illuminant A, K.
@@ -27,7 +27,7 @@ enum PbrtSpectrum {
 }
 
 impl PbrtReader<'_> {
-    /// Returns the number for a colour or spectrum, or `None` if it is missing.
+    /// Returns the number for a colour or spectrum, or `None` if the parameter is missing.
     pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
             return Ok(None);
@@ -128,7 +128,7 @@ impl PbrtReader<'_> {
         Ok(Some(found))
     }
 
-    /// Returns a spectrum that pbrt knows by name, or reads it from a file of pairs.
+    /// Returns a spectrum that pbrt knows by name, or reads a spectrum from a file of pairs.
     fn named_spectrum(&self, name: &str) -> Result<PbrtSpectrum, String> {
         if named::index(name).is_some() || named::is_illuminant(name) {
             return Ok(PbrtSpectrum::Named(name.to_owned()));

@@ -26,7 +26,7 @@ pub(super) enum Ask {
 }
 
 impl PbrtReader<'_> {
-    /// Returns the texture of a parameter, or a constant if it is missing.
+    /// Returns the texture of a parameter, or a constant if the parameter is missing.
     pub(super) fn texture_or(
         &mut self,
         entity: &Entity,

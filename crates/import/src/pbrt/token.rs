@@ -170,8 +170,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// Parses a finite number; `Err` describes a fault. The function does not check the range of
-/// integers.
+/// Parses a finite number; `Err` describes a fault. Does not check whether integers are in range.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

@@ -1,5 +1,5 @@
-//! Transforms in pbrt's notation. Coordinates pass through the transforms of a file in reverse
-//! order, the last one first.
+//! Transforms in pbrt's notation. The transforms of a file are applied to coordinates in reverse
+//! order, beginning with the last transform.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
@@ -21,7 +21,7 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
 }
 
 /// Returns the map to camera coordinates with Z forward, Y up and X to the right, which are
-/// left-handed, as all of pbrt's coordinates.
+/// left-handed like all coordinates of pbrt.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
     let along = (at - eye).try_normalize().ok_or("no viewing direction")?;
@@ -40,7 +40,7 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// Returns a map without its scale, and the scale, or `None` if it shears or scales axes
+/// Returns a map without its scale, and the scale, or `None` if the map shears or scales axes
 /// unequally.
 pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
     let scale = libm::cbrt(map.matrix3.determinant().abs());

@@ -6,7 +6,8 @@ use zune_bmp::BmpDecoder;
 use zune_core::bytestream::ZCursor;
 use zune_core::options::DecoderOptions;
 
-/// Reads a picture. Transparency is ignored, because sources of BMP files rarely fill it.
+/// Reads a picture. Transparency is ignored, because programs that write BMP files rarely set the
+/// transparency of pixels.
 pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     let damaged = |error: zune_bmp::BmpDecoderErrors| format!("is damaged ({error:?})");
     let mut decoder = BmpDecoder::new_with_options(ZCursor::new(bytes), DecoderOptions::default());

@@ -16,7 +16,7 @@ use etendue_world::World;
 pub(crate) const BASE: &str =
     r#","textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,PICTURE"}]"#;
 
-/// Returns the text of a file with these nodes and other members.
+/// Returns the text of a glTF file with the given nodes and other members.
 pub(crate) fn with(nodes: &str, more: &str) -> String {
     format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],{more}}}"#)
 }
@@ -43,7 +43,7 @@ fn picture() -> Vec<u8> {
     bytes
 }
 
-/// Returns a file with a triangle as mesh 0, of one material.
+/// Returns a file whose mesh 0 is a triangle of one material.
 pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     let material = if material.is_empty() { "{}" } else { material };
     let data = STANDARD.encode(buffer());

@@ -68,7 +68,8 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// Returns the material of a sphere or, if it has two equal sides, that of one side.
+/// Returns the material of a sphere or, if the material has two equal sides, the material of one
+/// side.
 pub(crate) fn material(declared: &str) -> Material {
     let mut world = world(&format!("{declared}\nShape \"sphere\""));
     match world.materials.remove(world.shapes[0].material) {

@@ -28,8 +28,8 @@ pub struct DetailedMesh {
 impl DetailedMesh {
     /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, but
     /// with normals and texture coordinates. Normals are `vn` in OBJ files, and nx, ny and nz in
-    /// PLY files. Texture coordinates are `vt` in OBJ files; in PLY files they are u and v, s and
-    /// t, or `texture_u` and `texture_v`.
+    /// PLY files. Texture coordinates are `vt` in OBJ files. In PLY files, texture coordinates are
+    /// u and v, s and t, or `texture_u` and `texture_v`.
     ///
     /// # Errors
     /// The first fault found.

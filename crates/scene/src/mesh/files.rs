@@ -7,21 +7,22 @@ use etendue_scenefile::Fault;
 use std::path::Path;
 
 impl Mesh {
-    /// Reads the bytes of an OBJ or a PLY file. The extension of `file`, in any case, determines
-    /// the format.
+    /// Reads the bytes of an OBJ or a PLY file. The extension of `file`, in upper or lower case,
+    /// determines the format.
     ///
     /// In OBJ files, the `v` and `f` lines of all objects and groups form one mesh. Normals,
-    /// texture coordinates, colors, weights, materials, points and lines are ignored, and
-    /// free-form surfaces are refused. PLY files may be ASCII or binary in either byte order, with
-    /// coordinates and lists of any type. The readers ignore other elements and properties of PLY
-    /// files. If a face has more than three corners, it becomes a fan of triangles about its
-    /// first corner, which is correct for convex faces; a face has at most 4,096 corners.
-    /// Triangles of zero area are dropped, unless no other triangles remain.
+    /// texture coordinates, colors, weights, materials, points and lines are ignored, and free-form
+    /// surfaces are refused. PLY files may be ASCII or binary in either byte order, with
+    /// coordinates and lists of any type. The readers ignore all elements and properties of PLY
+    /// files except vertices with their coordinates and faces with their corners. A face of more
+    /// than three corners becomes a fan of triangles about its first corner, which is correct for
+    /// convex faces. A face has at most 4,096 corners. Triangles of zero area are dropped, unless
+    /// no other triangles remain.
     ///
     /// # Errors
-    /// The first fault found: its position in the file, the faulty value and the values
-    /// that are allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as
-    /// these formats do; lines and corners are always counted from 1.
+    /// The first fault found: its position in the file, the faulty value and the values that are
+    /// allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as these formats
+    /// do. Lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
             let mesh = ply::detailed::read(bytes, false)?;

@@ -48,7 +48,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Returns the statements of an OBJ file, each with the number of its first line; comments are
+/// Returns the statements of an OBJ file, each with the number of its first line. Comments are
 /// removed, and continued lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
@@ -72,7 +72,7 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Returns the points of the `v` lines; at least one is required, and values after the three
+/// Returns the points of the `v` lines. At least one point is required, and values after the three
 /// coordinates (weight, color) are ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
@@ -107,8 +107,9 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Returns the triangles of the `f` lines; at least one is required. `index` resolves a corner
-/// from its word and the numbers of `v`, `vt` and `vn` lines above the corner's line.
+/// Returns the triangles of the `f` lines; at least one is required. `index` returns the vertex of
+/// a corner, given the corner's word and the numbers of `v`, `vt` and `vn` lines above the corner's
+/// line.
 fn triangles(
     bytes: &[u8],
     mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,
@@ -148,7 +149,7 @@ fn triangles(
 /// The text of a faulty corner, and a description of the values that are allowed.
 type CornerFault = (String, String);
 
-/// Returns the vertex index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: indices count
+/// Returns the vertex index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. Indices count
 /// from 1, and negative indices count backwards from the last of the `before` vertices above the
 /// line.
 fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {

@@ -6,9 +6,9 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 impl Mesh {
-    /// Returns a smooth closed surface about the origin, star-shaped and with lobes about the z
-    /// axis: r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus
-    /// its sectoral harmonic.
+    /// Returns a smooth closed star-shaped surface about the origin with lobes about the z axis,
+    /// which is a sphere plus a sectoral harmonic. The radius of the surface is r(θ, φ) = `radius`
+    /// · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`.
     ///
     /// The angle θ steps through `rings` bands, and the angle φ steps through 2 `rings` segments.
     /// Each pole is one vertex and no vertex is doubled at φ = 0, so the surface is watertight.
@@ -38,8 +38,8 @@ impl Mesh {
         };
         let segments = 2 * rings;
         let step = PI / f64::from(rings);
-        // sin π is not exactly zero in f64, so the poles are set explicitly; they have a relief
-        // only for l = 0.
+        // sin π is not exactly zero in f64, so the poles are set explicitly. The poles have a
+        // relief only for l = 0.
         let pole = point(0.0, 0.0).z;
         let mut vertices = vec![DVec3::new(0.0, 0.0, pole)];
         for ring in 1..rings {

@@ -60,7 +60,7 @@ impl<'a> Iterator for LineWords<'a> {
     }
 }
 
-/// Returns the number that a word represents; the number is decimal with an optional exponent,
+/// Returns the number that a word represents. The number is decimal with an optional exponent,
 /// infinite, or NaN.
 pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()

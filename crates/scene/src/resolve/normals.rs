@@ -5,25 +5,26 @@ use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The smallest allowed cosine between the normal of a vertex and the normals of the triangles
-/// around it; the angle is 89.4°.
+/// The smallest allowed cosine, that of 89.4°, between the normal of a vertex and the normals of
+/// the triangles around it.
 ///
 /// An interpolated normal is a weighted mean of the normals of three vertices, with weights from 0
-/// to 1. The component of each vertex normal along the normal of the triangle is at least this
-/// cosine, and so is the component of their mean: the mean cannot vanish or point to the other
-/// side. The error of each weight is at most 4e-4 (`triangles.rs`), so at least eight tenths of
-/// the component along the triangle's normal remain.
+/// to 1. The component of each vertex normal along the normal of the triangle is at least the
+/// smallest allowed cosine. The component of the mean is therefore also at least this cosine, so
+/// the mean cannot vanish or point to the other side of the triangle. The error of each weight is
+/// at most 4e-4 (`triangles.rs`), so at least eight tenths of the component along the triangle's
+/// normal remain.
 ///
-/// The same limit applies to a ratio at each vertex: the length of the sum of the area-weighted
-/// normals of the triangles around it, divided by the sum of the lengths of these normals. This
-/// ratio is the area-weighted mean of the cosines, so if the ratio is below the limit, the cosine
-/// of at least one triangle is below the limit too. The test of the ratio therefore refuses no
-/// mesh that would pass the test of the cosines.
+/// The same limit applies to a ratio at each vertex. The ratio is the length of the sum of the
+/// area-weighted normals of the triangles around the vertex, divided by the sum of the lengths of
+/// these normals. This ratio is the area-weighted mean of the cosines, so if the ratio is below the
+/// limit, the cosine of at least one triangle is below the limit too. A mesh that passes the test
+/// of the cosines therefore also passes the test of the ratio.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
     /// Returns the normal of each vertex, the area-weighted mean of the normals of the triangles
-    /// around it; the normal is zero if the vertex has no triangle.
+    /// around it. The normal of a vertex without triangles is zero.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {

@@ -186,14 +186,13 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame of the light that leaves a hit along the direction `d`. This frame is the
-/// frame behind a mirror, which has the axes −X and Y after reflection, rotated by the smallest
-/// angle until its D points along `d`. For light that goes straight back at normal incidence, the
-/// frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in
-/// the plane of incidence, the frame is the frame of docs/conventions.md.
+/// Returns the frame of the light that leaves a hit along the direction `d`. The arriving frame is
+/// reflected at the surface with X reversed, and is then rotated by the smallest angle that turns D
+/// to `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D) (Durand
+/// et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of incidence, the
+/// frame is the frame of docs/conventions.md.
 ///
-/// Transmitted light keeps the frame in which it arrived, rotated by the smallest angle until D
-/// points along `d`.
+/// For transmitted light, the arriving frame is rotated by the smallest angle that turns D to `d`.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
     let n = hit.normal;
     if through {
@@ -235,8 +234,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// Returns the event of a smooth surface at a hit that ends a leg, the frame of the surface
-    /// as a lens, and the surface's normal at the hit on the side that the surface faces.
+    /// Returns the event of a smooth surface at the end of a leg, the frame of the surface as a
+    /// lens, and the normal at the hit on the side that the surface faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,

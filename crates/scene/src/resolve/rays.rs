@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// Returns the rays of a file; `front` and `up` are the directions of the file's Z and Y axes
+    /// Returns the rays of a file. `front` and `up` are the directions of the file's Z and Y axes
     /// in the world, and `light` is the frame at the light.
     pub(super) fn rays(
         &mut self,

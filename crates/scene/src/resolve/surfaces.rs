@@ -65,9 +65,8 @@ impl Resolver<'_> {
         frame
     }
 
-    /// Checks that a distance is in front of the light; an infinite distance is reported as a
-    /// fault of the object's center. Without a valid path no distance is known, so nothing is
-    /// checked.
+    /// Checks that a distance is in front of the light. An infinite distance is reported as a fault
+    /// of the object's center. Without a valid path no distance is known, so nothing is checked.
     pub(super) fn ahead(&mut self, of: &str, distance: f64) {
         if distance <= 0.0 && !self.faults.astray {
             let allowed = "a place in front of the light, along path.direction";

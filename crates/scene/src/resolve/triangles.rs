@@ -8,18 +8,18 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The ratio of a triangle's height to the largest coordinate of the scene; at smaller ratios, a
+/// The ratio of a triangle's height to the largest coordinate of the scene. At smaller ratios, a
 /// triangle cannot be distinguished from a line.
 ///
-/// Rounding changes a coordinate in the frame of a leg by up to 4e-16 of the largest coordinate.
-/// If a triangle has this height, rounding tilts its normal by 4e-4 radians and changes the
-/// barycentric coordinates of a point by as much; below this height, rounding dominates.
+/// Rounding changes a coordinate in the frame of a leg by up to 4e-16 of the largest coordinate. At
+/// a ratio of 1e-12, rounding tilts the normal of a triangle by 4e-4 radians and changes the
+/// barycentric coordinates of a point by as much. At smaller ratios, rounding dominates.
 const THIN: f64 = 1e-12;
 /// The smallest allowed height of a triangle in metres: the smallest size in a scene times the
-/// smallest scale. Products of six such lengths are within the range of f64.
+/// smallest scale. Products of six lengths of 1e-18 m are within the range of f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// The maximum share of a mesh's area for which thin triangles are dropped; the light that these
-/// triangles would meet is far below the noise.
+/// The maximum share of a mesh's area for which thin triangles are dropped. The light that the
+/// dropped triangles would meet is far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The placement of a mesh in the scene, with the information to report its faults.
 pub(super) struct MeshPlacement<'a> {

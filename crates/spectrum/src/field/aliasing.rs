@@ -7,21 +7,20 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 /// The difference between a 4D spectrum and the alias-free slices of the same photons, at the
 /// frequencies that both have.
 ///
-/// All values are relative norms: ‖·‖ over the shared frequencies, divided by the norm of the
-/// slices.
+/// All values are norms over the shared frequencies, divided by the norm of the slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aliasing {
     /// Number of frequencies compared; only one frequency of each conjugate pair counts.
     pub compared: usize,
-    /// The difference. The relative difference between spectrum and slices; it includes the error
-    /// of the slices, which is below 2·10⁻⁷ Σw at each frequency.
+    /// The difference. The relative difference between spectrum and slices, including the error of
+    /// the slices, which is below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
     /// The expected difference due to aliasing, if the spectrum beyond Nyquist is as strong as in
     /// the outermost quarter below Nyquist. The expected difference is not a bound: it is correct
     /// for white noise, too large if the spectrum falls off, and too small if the spectrum rises
     /// again.
     pub expected: f64,
-    /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above
+    /// The bound of [`FieldSpectrum::alias_bound`], which holds for any photons, and is far above
     /// the difference for most photons.
     pub bound: f64,
 }
@@ -38,12 +37,13 @@ impl FieldSpectrum {
     /// Compares the 4D spectrum with the slices of the same photons, at all shared frequencies
     /// below `share` of Nyquist.
     ///
-    /// Frequencies with Ωy = Ωv = 0 are shared with the slice at azimuth 0, and frequencies with
-    /// Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the number of azimuths is even;
-    /// if the spacing of the slices is finer than the natural spacing, only every n-th frequency
-    /// is shared. Returns `None` if no frequency is shared or if there is no light.
+    /// The spectrum shares frequencies with Ωy = Ωv = 0 with the slice at azimuth 0. The spectrum
+    /// shares frequencies with Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the
+    /// number of azimuths is even. If the spacing of the slices is finer than the natural spacing,
+    /// only every n-th frequency is shared. Returns `None` if no frequency is shared or if there is
+    /// no light.
     ///
-    /// At the shared frequencies, only the two axes along the line have aliasing; at other
+    /// At the shared frequencies, only the two axes along the line have aliasing. At other
     /// frequencies, all four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 /// The bins of a full radial spectrum: rings in |Ωxy| times rings in |Ωuv|, over the frequencies of a 4D grid.
 ///
-/// The width Δ of the rings is the natural spacing 1/(2·half-width); if the spacings of x and y
-/// (or u and v) differ, Δ is the larger spacing. The edges are 0, Δ/2, 3Δ/2, …: the first ring
-/// contains only zero, and ring j is centred at jΔ. The last edge is the largest edge that does
-/// not exceed the lower of the two Nyquist frequencies, so every ring is complete and contains no
-/// frequency at Nyquist.
+/// The width Δ of the rings is the natural spacing 1/(2·half-width). If the spacings of x and y (or
+/// u and v) differ, Δ is the larger spacing. The edges are 0, Δ/2, 3Δ/2, …: the first ring contains
+/// only zero, and ring j is centred at jΔ. The last edge is the largest edge that does not exceed
+/// the lower of the two Nyquist frequencies, so every ring is complete and contains no frequency at
+/// Nyquist.
 #[derive(Clone, Debug)]
 pub struct RadialBins {
     grid: FieldGrid,
@@ -32,8 +32,8 @@ struct Angular {
     /// Indices of Ωu and Ωv in the spectrum.
     index: [usize; 2],
     ring: usize,
-    /// Number of frequencies that this frequency represents; if Ωv > 0, the conjugate frequency
-    /// counts too.
+    /// Weight of the frequency in sums: 2 if Ωv > 0, because the conjugate frequency counts too,
+    /// otherwise 1.
     weight: u64,
 }
 
@@ -145,8 +145,8 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// Returns |F|² of a prediction as a full radial spectrum: in each bin of [`RadialBins`], [|Ωxy|,
-/// |Ωuv|], the mean over the frequencies that a measurement on `grid` has in this bin.
+/// Returns |F|² of a prediction as a full radial spectrum, [|Ωxy|, |Ωuv|]. The value of each bin of
+/// [`RadialBins`] is the mean over the frequencies that a measurement on `grid` has in the bin.
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv), and is called only for Ωv ≥ 0.
 #[must_use]

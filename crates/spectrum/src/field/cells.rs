@@ -90,8 +90,8 @@ impl FieldTransform {
 /// A sum of weighted rays on a 4D grid.
 ///
 /// The caller multiplies each ray by the window and by its weight in radiance space. Each cell
-/// contains Σ w · share in f64, where `share` is the part of a ray that falls on the cell; rays
-/// are added in order.
+/// contains Σ w · share in f64, where `share` is the part of a ray that falls on the cell. Rays are
+/// added in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCells {
     grid: FieldGrid,

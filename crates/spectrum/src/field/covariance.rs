@@ -15,10 +15,10 @@ const COUNT: usize = 11;
 /// The moments ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
 /// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals
-/// ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of these
-/// two ratios exists: P falls as Ω⁻² along the normal of the edge, and the sum grows with the
-/// band. Each result therefore belongs to a band, and only results over the same band can be
-/// compared.
+/// the ratio ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of
+/// these two ratios exists, because P falls as Ω⁻² along the normal of the edge, and the sum grows
+/// with the band. Each result therefore belongs to a band, and only results over the same band can
+/// be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor that all moments share.
@@ -80,7 +80,7 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of a power that is even in Ω; `power` is called with indices of a
+    /// Returns the moments of a power that is even in Ω. `power` is called with indices of a
     /// transform, and only for frequencies along v from zero on.
     ///
     /// The power is summed for each Ωx, and these sums are added in order, so the result is
@@ -119,7 +119,8 @@ impl Moments {
     /// Returns the indices and the frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
-        // Apart from rounding errors, the largest frequency may be a multiple of the spacing.
+        // The tolerance covers rounding errors if the largest frequency is a multiple of the
+        // spacing.
         let most = self.band[axis] * (1.0 + 1e-9);
         let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
         let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);
@@ -135,8 +136,8 @@ fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
     }
 }
 
-/// The contribution of a group of batches to the moments of the spectrum: Re(G_r conj(G − G_r)),
-/// as in [`GroupPower`](super::cross::GroupPower).
+/// The contribution Re(G_r conj(G − G_r)) of a group of batches to the moments of the spectrum, as
+/// in [`GroupPower`](super::cross::GroupPower).
 #[derive(Clone, Debug)]
 pub(crate) struct GroupMoments {
     share: f64,
@@ -231,9 +232,10 @@ impl FieldCovariance {
     }
 
     /// Returns the factor by which each variance grows if half of the band is extended to the
-    /// entire band: 1 if the band contains the spectrum, about 2 if the field has an edge, and
-    /// more if replicas lie between half of the band and its end. The spectrum of a field with an
-    /// edge has no second moment. Returns `None` if the power is not above the noise.
+    /// entire band. The factor is 1 if half of the band contains the spectrum, and about 2 if the
+    /// field has an edge. The factor is larger if replicas lie beyond half of the band. The
+    /// spectrum of a field with an edge has no second moment. Returns `None` if the power is not
+    /// above the noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

@@ -19,8 +19,8 @@ pub struct FullRadial {
     pub nu_edges: Vec<f64>,
     /// Number of frequencies in each bin, including conjugates.
     pub counts: Array2<u64>,
-    /// The power without the noise of the photons; it is unbiased except for aliasing, and noise
-    /// can make it negative.
+    /// The power without the noise of the photons. The estimate of the power is unbiased except for
+    /// aliasing, and noise can make the estimate negative.
     pub power: Array2<f64>,
     /// The power that the photons' noise adds to the mean spectrum; `power` does not include it.
     pub shot_noise: Array2<f64>,
@@ -32,14 +32,14 @@ pub struct FullRadial {
 /// The power of a spectrum in each bin, from products of the independent groups that add up to
 /// the spectrum (docs/theory.md (13)).
 ///
-/// Group r contains the share a_r of the batches and contributes G_r to the spectrum, so that G =
-/// Σ G_r. E G_r = a_r F, so
+/// Group r contains the share a_r of the batches and contributes G_r to the spectrum G = Σ G_r. The
+/// expectation of G_r is a_r F, and an unbiased estimate of |F|² is
 ///
 /// U = Σ_(r≠s) Re(G_r conj G_s)/(1 − Σ a²)
 ///
-/// is an unbiased estimate of |F|². Each group is processed once, after G is known: the result is
-/// row_r = Re(G_r conj(G − G_r)), and the sum of row_r over all groups is the numerator T. If
-/// group r is left out, the estimate is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
+/// Each group is processed once, after G is known. The result is row_r = Re(G_r conj(G − G_r)), and
+/// the sum of row_r over all groups is T, the numerator of U. If group r is left out, the estimate
+/// is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
 pub(crate) struct GroupPower {
     /// The share a_r.
     pub(crate) share: f64,

@@ -29,8 +29,9 @@ pub struct FieldOptions {
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
     /// Whether the covariance of the spectrum is computed too, over the frequencies of the plane.
-    /// If it is, the grid extends to 1.5 times these frequencies, and the alias at the highest of
-    /// these frequencies is an eighth of the spectrum at twice the highest frequency.
+    /// If the covariance is computed, the grid extends to 1.5 times the largest frequencies of the
+    /// plane. The alias at the largest frequency is then an eighth of the spectrum at twice this
+    /// frequency.
     pub covariance: bool,
 }
 
@@ -65,8 +66,8 @@ impl FieldOptions {
     }
 
     /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: for the
-    /// field, for its spectrum, and for the grid of each group that is kept or being measured.
-    /// The caller should compare it with the available memory before measuring.
+    /// field, for its spectrum, and for the grid of each group that is kept or being measured. The
+    /// caller should compare this number with the available memory before the measurement.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);
@@ -86,7 +87,7 @@ pub struct FieldMeasurement {
     pub grid: FieldGrid,
     /// Number of photons that crossed the plane.
     pub tally: PlaneTally,
-    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres; the field is
+    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres. The field is
     /// smoothed by the spline of the assignment. The unit of the field is the unit of L W, W m⁻²
     /// sr⁻¹.
     pub field: Array4<f64>,
@@ -103,10 +104,10 @@ pub struct FieldMeasurement {
 /// The contribution of a group of batches to the spectrum of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldGroup {
-    /// The number of batches in this group, divided by the number of all batches.
+    /// The number of batches in the group, divided by the number of all batches.
     pub share: f64,
-    /// The contribution of the group to the spectrum; its expectation is `share` times that of
-    /// the spectrum.
+    /// The contribution of the group to the spectrum. The expectation of the contribution is
+    /// `share` times that of the spectrum.
     pub spectrum: FieldSpectrum,
 }
 
@@ -119,7 +120,7 @@ pub struct FieldGroup {
 /// are summed in order, so the result is bitwise identical on any number of threads.
 ///
 /// One call measures one plane, because of the memory of its grids: see [`FieldOptions::bytes`].
-/// `progress` is called with the number of photons as they are traced; each photon counts twice
+/// `progress` is called with the number of photons as they are traced. Each photon counts twice
 /// unless the grids of groups are kept.
 ///
 /// # Errors

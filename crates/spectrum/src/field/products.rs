@@ -6,7 +6,7 @@ use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
 impl RadialBins {
-    /// Returns the mean of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j]; the bins
+    /// Returns the mean of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j]. The bins
     /// are in the row-major order of [|Ωxy|, |Ωuv|].
     ///
     /// All pairs of spectra are computed together, so that each spectrum is read only once. Each

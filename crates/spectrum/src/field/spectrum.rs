@@ -16,8 +16,8 @@ pub struct FieldSpectrum {
     pub grid: FieldGrid,
     /// The method that assigned rays to the cells of the grid.
     pub assignment: Assignment,
-    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`]; the
-    /// field is real, so frequencies along v run only from zero to Nyquist.
+    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`]. The field
+    /// is real, so frequencies along v run only from zero to Nyquist.
     pub values: Array4<Complex>,
 }
 
@@ -59,11 +59,11 @@ impl FieldSpectrum {
     }
 
     /// Returns a bound on the difference between [`at`](Self::at) and the exact sum over the same
-    /// rays, if no weight is negative: Σw (Π(1 + ε_d) − 1), where ε_d is the largest alias of a
-    /// ray along axis d.
+    /// rays, if no weight is negative. The bound is Σw (Π(1 + ε_d) − 1), where ε_d is the largest
+    /// alias of a ray along axis d.
     ///
-    /// The bound is rigorous for any field: with assignments of order 1 and 2, it is reached if
-    /// all light is in one ray at the worst position. The bound grows as the frequency to the
+    /// The bound is rigorous for any field. With assignments of order 1 and 2, the bound is reached
+    /// if all light is in one ray at the worst position. The bound grows as the frequency to the
     /// power p, where p is the order of the spline, so it is almost useless near Nyquist.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {

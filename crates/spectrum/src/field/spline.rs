@@ -1,9 +1,9 @@
 //! Computes B-splines: the shares of cells, the splines' transforms, and the aliasing due to
 //! sampling on a grid.
 //!
-//! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order
-//! p with the transform sinc^p. By Poisson's summation formula, the transform of the shares at f
-//! cycles per cell, |f| ≤ ½, divided by sinc^p(f), is
+//! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order p
+//! with the transform sinc^p. Poisson's summation formula gives the transform of the shares at f
+//! cycles per cell, |f| ≤ ½, divided by sinc^p(f):
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
@@ -19,7 +19,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
 }
 
 /// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
-/// axis, with the ray's share in each cell; the shares add up to 1.
+/// axis, with the ray's share in each cell. The shares add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -27,7 +27,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     reason = "the index is whole and from 0 to n, because a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
-    // For even P, this is the cell below t; for odd P, it is the cell nearest to t.
+    // For even P, `cell` is the cell below t; for odd P, `cell` is the cell nearest to t.
     let cell = (t + (P % 2) as f64 * 0.5).floor();
     let d = t - cell;
     let shares: [f64; 3] = match P {
@@ -158,7 +158,7 @@ mod tests {
                     largest <= worst + 1e-14,
                     "{assignment:?} {f}: {largest} {worst}"
                 ); // rounding
-                // Positions of the ray are sampled in steps of 1/1000 of a cell; for order 3, |ε|
+                // Positions of the ray are sampled in steps of 1/1000 of a cell. For order 3, |ε|
                 // stays below the sum of moduli.
                 let tsc = assignment == Assignment::Tsc;
                 let least = if tsc { 0.8 } else { 0.99 };

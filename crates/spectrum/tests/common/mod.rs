@@ -94,7 +94,7 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
     }
 }
 
-/// A source of photons that cross every plane at random positions and slopes; a tenth of these
+/// A source of photons that cross every plane at random positions and slopes. A tenth of the
 /// photons are outside the window.
 pub struct Shower {
     pub seed: u64,

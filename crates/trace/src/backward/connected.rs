@@ -29,7 +29,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// Returns the ray from a light without extent to `point`; `point` is in the frame at the light,
+/// Returns the ray from a light without extent to `point`. `point` is in the frame at the light,
 /// and the ray is given in the plane of the light. Also returns the irradiance that the light
 /// causes at `point`, on an area perpendicular to the ray, divided by the value of the ray per du
 /// dv or dx dy.
@@ -45,7 +45,7 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let [u, v] = [x / point.z, y / point.z];
     let (x, y) = (0.0, 0.0);
     let ray = TwoPlane { x, y, u, v };
-    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value of the ray already
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²). The value of the ray already
     // includes one factor √(1 + u² + v²).
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();

@@ -6,8 +6,8 @@ use etendue_field::Side;
 /// The point along a leg at which the radiance of a ray is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    /// A virtual plane. If light has left a surface and would meet the same surface again beyond
-    /// the plane, this light does not count.
+    /// A virtual plane. Light that has left a surface and would meet the same surface again beyond
+    /// the plane does not count.
     Plane(f64, Side),
     /// A surface that ends the ray.
     Surface(f64),

@@ -58,8 +58,8 @@ pub(super) enum Scattering {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// Reflection, refraction or a lens; the frame of the lens is given in the frame of the
-    /// light's heading along the leg.
+    /// Reflection, refraction or a lens. The frame of the lens is given in the frame of the light's
+    /// heading along the leg.
     Turned { lens: Frame, event: Specular },
 }
 

@@ -109,8 +109,8 @@ impl Backward {
                 [(x - x0) / distance, (y - y0) / distance]
             }
             TracedLight::Sky(sky) if sampler.to_light => {
-                // Half of the rays draw their slopes in proportion to the environment's radiance;
-                // directions that do not go forward are discarded.
+                // Half of the rays draw their slopes in proportion to the environment's radiance.
+                // Directions that do not go forward are discarded.
                 let drawn = if r[2] < 0.5 {
                     sky.slopes(words(1))
                 } else {
@@ -141,7 +141,7 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives at the end point of a ray; `block` selects the random
+    /// Returns the radiance that arrives at the end point of a ray. `block` selects the random
     /// numbers of the next surface on the way back to the light.
     #[expect(
         clippy::too_many_lines,
@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // This normal is on the side of the surface to which the light travels.
+                // The normal is on the side of the surface to which the light travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -227,8 +227,8 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives in a direction at a point of the surface that ends a
-    /// leg; the direction and the point are in the frame at the light.
+    /// Returns the radiance that arrives in a direction at a point of the surface that ends a leg.
+    /// The direction and the point are in the frame at the light.
     fn along(
         &self,
         leg: usize,
@@ -339,7 +339,7 @@ impl Backward {
         if leaves.is_some_and(nearer) {
             return 0.0;
         }
-        // cos θ cos θ' dA / r².
+        // The irradiance is the radiance times cos θ cos θ' dA / r².
         let solid = radiance_per_flux * area / way.length_squared().powi(2);
         let incoming = IncomingRay { leg, heading, ray };
         solid * self.arriving(&incoming, end, block + 1, words)
@@ -364,8 +364,8 @@ impl Backward {
 }
 
 /// Returns the ratio of the radiance after a deflection to the radiance before it, for light that
-/// arrives along `came` and leaves along `along`. This ratio is (n'/n)² at an interface; at an
-/// ideal lens, the ratio conserves flux in two-plane coordinates.
+/// arrives along `came` and leaves along `along`. The ratio of radiances is (n'/n)² at an
+/// interface. At an ideal lens, the ratio of radiances conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
@@ -388,9 +388,9 @@ fn radiance_factor(
 
 impl Backward {
     /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
-    /// drawn by the lobe of the BRDF; on the first leg, it is drawn with equal probability by the
-    /// lobe or towards a point of the light. The estimate divides by the density of this mixture
-    /// of strategies (the balance heuristic of Veach and Guibas 1995 for one sample).
+    /// drawn by the lobe of the BRDF. On the first leg, half of the directions are drawn by the
+    /// lobe, and half towards a point of the light. The estimate divides by the density of this
+    /// mixture (the balance heuristic of Veach and Guibas 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,

@@ -13,7 +13,7 @@ pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     values.map(|(weight, of)| weight * value(of, wi, wo)).sum()
 }
 
-/// Returns a direction drawn by one of the BRDFs as in [`sample`]; the first random number also
+/// Returns a direction drawn by one of the BRDFs as in [`sample`]. The first random number also
 /// selects the BRDF.
 #[inline]
 pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -78,8 +78,8 @@ mod tests {
     /// divided by the density and ∫ f, in standard errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
-        // The functions are integrated over the hemisphere; two of them are larger on one side of
-        // the normal, so they detect lobes that lean to one side.
+        // The functions are integrated over the hemisphere. Two of the functions are larger on one
+        // side of the normal, so they detect lobes that lean to one side.
         let functions: [(Weighting, f64); 3] = [
             (|v| v.z.powi(2), 2.0 * PI / 3.0),
             (|v| v.z * (1.0 + v.x), PI),

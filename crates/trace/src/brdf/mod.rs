@@ -1,8 +1,8 @@
 //! Evaluates and samples the BRDFs of scenes, with the lobes of `etendue_scatter`: light comes
 //! from the direction wi and goes to the direction wo.
 //!
-//! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`]
-//! defines the lobes.
+//! Directions are unit vectors away from the surface, in a frame with the normal along Z. The type
+//! [`Brdf`] defines the lobes.
 
 mod mixture;
 

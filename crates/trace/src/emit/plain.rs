@@ -56,9 +56,9 @@ impl Plain {
     }
 
     /// Returns the density of [`Self::sample`]: with respect to du dv for a point light or a
-    /// projector, to dx dy for a beam, and to dx dy du dv for an area light. For rays of a file
-    /// the density is 1, because the probability of each ray is its share of the flux, so that
-    /// each drawn ray represents the total flux.
+    /// projector, to dx dy for a beam, and to dx dy du dv for an area light. For rays of a file the
+    /// density is 1: the probability of each ray is its share of the flux, and each drawn ray
+    /// represents the total flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();

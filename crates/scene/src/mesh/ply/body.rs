@@ -49,7 +49,7 @@ impl<'a> Body<'a> {
         Self { data }
     }
 
-    /// Calls `each` with each row of an element; a row has a list of values for each property.
+    /// Calls `each` with each row of an element. Each row has a list of values for each property.
     pub(super) fn rows(
         &mut self,
         element: &PlyElement,
@@ -173,7 +173,8 @@ impl PlyRow<'_> {
     }
 }
 
-/// Returns the value of a PLY number; f64 represents the values of all eight PLY types exactly.
+/// Returns the value of a PLY number. The type f64 represents the values of all eight PLY types
+/// exactly.
 fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     let mut little = [0; 8];
     little[..raw.len()].copy_from_slice(raw);

@@ -49,7 +49,7 @@ const FORMATS: &str =
     "format ascii 1.0, format binary_little_endian 1.0, format binary_big_endian 1.0";
 const ELEMENT: &str = "element NAME COUNT, a name of at most 100 bytes";
 const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double; a name of at most 100 bytes";
-/// The maximum length of a name in bytes; it is limited because messages repeat names.
+/// The maximum length of a name in bytes; the length is limited because messages repeat names.
 const LONGEST_NAME: usize = 100;
 /// The largest number of PLY elements that a message lists.
 const MOST_LISTED: usize = 4;
