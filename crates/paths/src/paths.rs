@@ -22,6 +22,15 @@ pub struct Paths {
     pub(crate) hides_sources: bool,
 }
 
+/// How a path finds lights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LightSearch {
+    /// By directions sampled from the lights, and by directions sampled from the BSDF.
+    Both,
+    /// Only by directions sampled from the BSDF.
+    Bsdf,
+}
+
 /// From the surface with this number on, a path continues only with a probability that its
 /// throughput determines (Russian roulette).
 pub(crate) const ROULETTE: u32 = 6;
@@ -53,12 +62,15 @@ impl Paths {
         ray: Ray,
         seen: [f64; 2],
         before: u32,
+        search: LightSearch,
         numbers: &mut PathNumbers<'_>,
     ) -> f64 {
         let hit = self.geometry.first(&ray, seen);
         let mut sum = self.shown(&ray, hit.as_ref(), before);
         if let Some(hit) = hit {
-            self.scattered(ray, hit, before, numbers, &mut |_, light| sum += light);
+            self.scattered((ray, hit), before, search, numbers, &mut |_, light| {
+                sum += light;
+            });
         }
         sum
     }
@@ -78,9 +90,9 @@ impl Paths {
     /// number of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
-        mut ray: Ray,
-        mut hit: Hit,
+        (mut ray, mut hit): (Ray, Hit),
         before: u32,
+        search: LightSearch,
         numbers: &mut PathNumbers<'_>,
         found: &mut dyn FnMut(DVec3, f64),
     ) {
@@ -89,7 +101,7 @@ impl Paths {
         for met in before..self.depth {
             let scatter = self.scatter(&hit);
             let wo = hit.frame.transpose() * -ray.along;
-            if !scatter.is_smooth() {
+            if search == LightSearch::Both && !scatter.is_smooth() {
                 let (wi, light) = self.looked_for(&hit, scatter, wo, numbers.draw());
                 found(first.unwrap_or(wi), weight * light);
             }
@@ -108,10 +120,8 @@ impl Paths {
             ray = onward(&hit, &bounce);
             let next = self.geometry.first(&ray, [0.0, f64::INFINITY]);
             let from = *first.get_or_insert(bounce.wi);
-            found(
-                from,
-                weight * self.emitted(&ray, next.as_ref(), bounce.density),
-            );
+            let density = bounce.density.filter(|_| search == LightSearch::Both);
+            found(from, weight * self.emitted(&ray, next.as_ref(), density));
             let Some(next) = next else {
                 break;
             };
@@ -122,6 +132,12 @@ impl Paths {
     /// Returns the material at the hit.
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
+    }
+
+    /// Whether directions sampled from BSDFs find all lights. They never find points, spots and
+    /// directional lights.
+    pub(crate) fn bsdf_finds_lights(&self) -> bool {
+        self.lights.are_extended()
     }
 
     /// Whether the world has a light of distant radiance from all directions.

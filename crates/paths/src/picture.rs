@@ -1,7 +1,7 @@
 //! Pictures, with the variance of each pixel.
 
 use crate::numbers::PathNumbers;
-use crate::paths::Paths;
+use crate::paths::{LightSearch, Paths};
 use crate::space::Ray;
 use etendue_sampling::disc;
 use etendue_world::Camera;
@@ -78,6 +78,6 @@ impl Paths {
             from: look.from,
             along: look.along,
         };
-        self.radiance(ray, look.seen, 0, numbers)
+        self.radiance(ray, look.seen, 0, LightSearch::Both, numbers)
     }
 }

@@ -2,7 +2,7 @@
 //! Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
-use crate::paths::Paths;
+use crate::paths::{LightSearch, Paths};
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
 use etendue_transform::Net;
@@ -154,13 +154,20 @@ impl Paths {
     ) -> [f64; 2] {
         let scatter = self.scatter(&seen.hit);
         let mut parts = [0.0; 2];
-        self.scattered(seen.ray, seen.hit, before, numbers, &mut |wi, light| {
-            if light > 0.0 {
-                let base = scatter.base_share(seen.hit.uv, wi, seen.wo());
-                parts[0] += light * base;
-                parts[1] += light * (1.0 - base);
-            }
-        });
+        let start = (seen.ray, seen.hit);
+        self.scattered(
+            start,
+            before,
+            LightSearch::Both,
+            numbers,
+            &mut |wi, light| {
+                if light > 0.0 {
+                    let base = scatter.base_share(seen.hit.uv, wi, seen.wo());
+                    parts[0] += light * base;
+                    parts[1] += light * (1.0 - base);
+                }
+            },
+        );
         parts
     }
 

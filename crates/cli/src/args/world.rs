@@ -251,8 +251,8 @@ pub(crate) struct RenderArgs {
 
 Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
 direction. Measures the light field at the camera, and the light fields that leave and reach each surface, \
-in two ways: by rays traced back and by photons from the lights. The verdict compares the two. Photons \
-cannot connect through a mirror or to a sky; planes that need such photons stay undecided.
+in two ways: by rays traced back and by photons from the lights. The verdict compares the two. Where photons \
+are too few or miss light, the verdict compares the rays with rays that never sample a light.
 Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures \
 of `run`.
 Exit codes are those of run.

@@ -87,6 +87,19 @@ impl LightSampler {
         Some((light, place.fract()))
     }
 
+    /// Whether all lights are surfaces or skies.
+    pub(crate) fn are_extended(&self) -> bool {
+        let is_extended = |light: &SampledLight| {
+            matches!(
+                light,
+                SampledLight::ShiningShape(_)
+                    | SampledLight::ShiningSphere(_)
+                    | SampledLight::Sky(_)
+            )
+        };
+        self.lights.iter().all(is_extended)
+    }
+
     /// Returns the emission of a shape that a ray along `along` hits, and the density with which
     /// [`Self::sample`] draws this direction.
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {

@@ -2,6 +2,7 @@
 
 use super::{Budget, Probe};
 use crate::numbers::{JOINT, PathNumbers};
+use crate::paths::LightSearch;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_transform::Net;
 use etendue_transform::random::Stream;
@@ -14,6 +15,7 @@ pub struct BackwardProbe<'a> {
     budget: Budget,
     /// The plane to trace; `None` for all.
     only: Option<usize>,
+    search: LightSearch,
 }
 
 /// Number of rays between two progress reports.
@@ -27,6 +29,7 @@ impl<'a> BackwardProbe<'a> {
             probe,
             budget,
             only: None,
+            search: LightSearch::Both,
         }
     }
 
@@ -37,6 +40,15 @@ impl<'a> BackwardProbe<'a> {
             only: Some(index),
             ..self
         }
+    }
+
+    /// Finds lights only by directions sampled from BSDFs: a second estimate of the same light, with
+    /// more noise. Returns `None` if the world has lights that such rays never find.
+    #[must_use]
+    pub fn by_bsdf(self) -> Option<Self> {
+        let search = LightSearch::Bsdf;
+        let is_possible = self.probe.paths.bsdf_finds_lights();
+        is_possible.then_some(Self { search, ..self })
     }
 
     /// Traces the ray with this number through a plane; a point of a net gives its first random
@@ -56,7 +68,13 @@ impl<'a> BackwardProbe<'a> {
         let ray = TwoPlane { x, y, u, v };
         let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
-        let radiance = paths.radiance(line, [0.0, f64::INFINITY], before, &mut numbers);
+        let radiance = paths.radiance(
+            line,
+            [0.0, f64::INFINITY],
+            before,
+            self.search,
+            &mut numbers,
+        );
         // The last factor is the volume of the window; the division by the number of rays is done
         // by their mean.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();

@@ -1,6 +1,6 @@
 //! Legs of the central ray of a probe, and lines in the coordinates of its planes.
 
-use crate::space::{Ray, SceneGeometry};
+use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_field::{Frame, TwoPlane};
 use glam::DVec3;
 
@@ -11,6 +11,8 @@ pub(super) struct SurfaceLeg {
     pub(super) frame: Frame,
     /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
+    /// Half-width along x and y of the window at the end of the leg.
+    pub(super) position: f64,
     /// The maximum distance from the plane at the end of the leg within which a line may hit the
     /// shape there.
     pub(super) reach: f64,
@@ -22,7 +24,7 @@ impl SurfaceLeg {
     /// Returns the largest distance between the central ray and a line of the window, at a given
     /// distance before the end of the leg.
     pub(super) fn wide(&self, distance: f64) -> f64 {
-        0.25 * self.reach + self.slope * distance
+        self.position + self.slope * distance
     }
 
     /// Returns the line with the coordinates `seen` in a plane of this leg. The line starts at the
@@ -37,21 +39,35 @@ impl SurfaceLeg {
 
     /// Returns the line through a point along the direction of light.
     pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
-        let end = &self.frame;
-        let left = (end.origin - point).dot(end.d) / along.dot(end.d);
-        let at_end = point + left * along;
-        let start = self.shape.and_then(|shape| {
-            let ray = Ray {
-                from: at_end - self.reach * along,
-                along,
-            };
-            let hit = geometry.meets(shape, &ray, [0.0, 2.0 * self.reach])?;
-            Some(hit.position)
-        });
+        let start = self.start(geometry, point, along);
         Ray {
-            from: start.unwrap_or(at_end),
+            from: start.map_or_else(|| self.at_end(point, along), |hit| hit.position),
             along: -along,
         }
+    }
+
+    /// Returns the point at which the line through a point meets the surface at the end of the
+    /// leg: the point that is nearest to the plane at the end.
+    pub(super) fn start(
+        &self,
+        geometry: &SceneGeometry,
+        point: DVec3,
+        along: DVec3,
+    ) -> Option<Hit> {
+        let shape = self.shape?;
+        let from = self.at_end(point, along);
+        let meets =
+            |along: DVec3, reach: f64| geometry.meets(shape, &Ray { from, along }, [0.0, reach]);
+        let ahead = meets(along, self.reach);
+        let nearest = ahead.as_ref().map_or(self.reach, |hit| hit.distance);
+        meets(-along, nearest).or(ahead)
+    }
+
+    /// Returns the point of a line in the plane at the end of the leg.
+    fn at_end(&self, point: DVec3, along: DVec3) -> DVec3 {
+        let end = &self.frame;
+        let left = (end.origin - point).dot(end.d) / along.dot(end.d);
+        point + left * along
     }
 }
 

@@ -5,13 +5,16 @@ mod backward;
 mod lines;
 mod photons;
 mod stop;
+mod windows;
 
 pub use backward::BackwardProbe;
 pub use photons::PhotonProbe;
 pub use stop::Stop;
 use stop::across;
 
+use crate::lights::EmissionTarget;
 use crate::paths::Paths;
+use crate::scatter::Reflects;
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
 };
@@ -45,9 +48,15 @@ pub struct Probe<'a> {
     /// light that arrives along the mirror direction.
     pub planes: Vec<VirtualPlane>,
     legs: Vec<SurfaceLeg>,
+    /// Further surfaces along the ray, up to the first that is not a mirror; also the surface that
+    /// the lobe of the last surface sees.
+    beyond: Vec<Stop>,
     /// The slope difference between adjacent pixels.
     pub pixel_slope: f64,
 }
+
+/// Maximum number of mirrors that are followed after the last surface of a question, plus one.
+const MIRRORS: usize = 4;
 
 /// Maximum slope of a window.
 const WIDEST: f64 = 1.0;
@@ -75,8 +84,12 @@ impl<'a> Probe<'a> {
         let look = camera.look(middle, [0.0; 2]);
         let pixel_slope = 2.0 * half_width / camera.size[0] as f64;
         let half = 0.5 * question.across * pixel_slope;
-        let stops = stop::followed(paths, &look, question.surfaces, half);
-        let first = stops.first()?;
+        let mut stops = stop::followed(paths, &look, question.surfaces + MIRRORS, half);
+        let beyond = stops.split_off(question.surfaces.min(stops.len()));
+        let first = stops.first()?.clone();
+        let beyond = stop::visible(stops.last()?, beyond);
+        let asked = stops.len();
+        let all = [&stops[..], &beyond].concat();
         let right = camera.to_world.transform_vector3(-DVec3::X);
         let x = across(first.normal, first.leaving).unwrap_or(right);
         let mut probe = Self {
@@ -84,38 +97,43 @@ impl<'a> Probe<'a> {
             planes: Vec::new(),
             legs: Vec::new(),
             pixel_slope,
-            stops: stops.clone(),
+            stops,
+            beyond,
         };
         let eye = Frame::new(look.from, first.leaving, x)?;
-        probe.add_leg(eye, None, [half * first.distance, half]);
-        let whole: f64 = stops.iter().map(|stop| stop.distance).sum();
+        probe.add_leg(eye, None, [half * first.distance, half], 0.0);
+        let whole: f64 = probe.stops.iter().map(|stop| stop.distance).sum();
         let mut left = whole;
         probe.add_plane("camera", left, 0, [half * first.distance, half], question);
         let (mut travelled, mut spread) = (0.0, half);
-        for (i, stop) in stops.iter().enumerate() {
+        for (i, stop) in all.iter().enumerate() {
+            // Legs beyond the last plane are for photons that mirrors send to the windows.
+            if i >= asked && [&all[i - 1], stop].map(|of| of.reflects) != [Reflects::Mirror; 2] {
+                break;
+            }
             let number = i + 1;
             left -= stop.distance;
             travelled += stop.distance;
             let wide = half * travelled;
-            probe.add_plane(
-                &format!("leaving_{number}"),
-                left,
-                i,
-                [wide, spread.min(WIDEST)],
-                question,
-            );
+            let widths = [wide, spread.min(WIDEST)];
+            if i < asked {
+                probe.add_plane(&format!("leaving_{number}"), left, i, widths, question);
+            }
             spread *= stop.spreading(travelled);
             let axis = probe.legs[i].frame.x;
             let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
             let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
-            probe.add_leg(frame, Some(stop.shape), [wide, spread.min(WIDEST)]);
-            probe.add_plane(
-                &format!("arriving_{number}"),
-                left,
-                i + 1,
-                [wide, spread.min(WIDEST)],
-                question,
-            );
+            let widths = [wide, spread.min(WIDEST)];
+            // The window at the next surface sees the most of this one.
+            let seen = all
+                .get(number)
+                .map_or(wide, |next| wide + (half + widths[1]) * next.distance);
+            let reach = 2.0 * seen / stop.cosine().max(0.05);
+            probe.add_leg(frame, Some(stop.shape), widths, reach);
+            if i < asked {
+                let name = format!("arriving_{number}");
+                probe.add_plane(&name, left, i + 1, widths, question);
+            }
         }
         Some(probe)
     }
@@ -151,12 +169,33 @@ impl<'a> Probe<'a> {
         Some(self)
     }
 
+    /// Returns the regions of surfaces that the windows see, also in mirrors.
+    fn targets(&self) -> Vec<EmissionTarget> {
+        let stops = self.stops.iter().chain(&self.beyond);
+        let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
+            center: stop.position,
+            // The sphere covers the corners of the window, also on an inclined surface.
+            radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
+        };
+        // Photons aimed at a region as large as the scene would reach the windows less often.
+        let largest = 0.5 * self.paths.geometry.radius;
+        let targets = stops.zip(&self.legs).map(target);
+        targets.filter(|target| target.radius < largest).collect()
+    }
+
     /// Adds a leg, given by the frame at its end, along which light travels towards the camera.
-    fn add_leg(&mut self, frame: Frame, shape: Option<usize>, [wide, slope]: [f64; 2]) {
+    fn add_leg(
+        &mut self,
+        frame: Frame,
+        shape: Option<usize>,
+        [position, slope]: [f64; 2],
+        reach: f64,
+    ) {
         self.legs.push(SurfaceLeg {
             frame,
             shape,
-            reach: 4.0 * wide,
+            position,
+            reach,
             slope,
         });
     }

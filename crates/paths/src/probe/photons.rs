@@ -1,56 +1,52 @@
 //! Photons of a probe.
 
-use super::lines::SurfaceLeg;
-use super::lines::seen_by;
-use super::{Budget, Probe, Stop};
+use super::windows::WindowConnector;
+use super::{Budget, Probe};
 use crate::lights::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use crate::numbers::PathNumbers;
 use crate::paths::ROULETTE;
 use crate::space::{Hit, Ray};
-use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane};
+use etendue_field::{Crossing, Ledger, PhotonSource};
 use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
 /// These photons leave the lights. Wherever a photon hits or leaves a surface, a direction through
-/// the windows is drawn for it. Photons cannot find light that a mirror or smooth glass sends into
-/// a window, or the sky itself; [`PhotonProbe::misses`] reports where this matters.
+/// the windows is drawn for it, also by reflection in the smooth surfaces on the central ray. Light
+/// of the sky is drawn in the same directions. Photons cannot find light that other smooth surfaces
+/// send into a window; [`PhotonProbe::misses`] reports where this matters.
 #[derive(Debug)]
 pub struct PhotonProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
     /// The regions of each surface that the windows see.
     targets: Vec<EmissionTarget>,
+    windows: WindowConnector<'a>,
 }
 
 /// Number of photons between two progress reports.
 const BLOCK: u64 = 4096;
-/// Number of lines through a window that are traced to find out what is seen through it.
-const LINES: u64 = 4096;
 
 /// A surface point that light leaves, with its directional intensity.
-struct LightSource<'s> {
-    position: DVec3,
+pub(super) struct LightSource<'s> {
+    pub(super) position: DVec3,
     /// Flux per solid angle along a direction, W sr⁻¹.
-    intensity: &'s dyn Fn(DVec3) -> f64,
+    pub(super) intensity: &'s dyn Fn(DVec3) -> f64,
+    /// Density per solid angle with which photons continue along a direction and are recorded.
+    pub(super) density: &'s dyn Fn(DVec3) -> f64,
     /// Number of surfaces met so far, this one included.
-    met: u32,
+    pub(super) met: u32,
 }
 
 impl<'a> PhotonProbe<'a> {
     /// Creates the photons of a probe.
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
-        let targets = probe.stops.iter().zip(&probe.legs);
-        let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
-            center: stop.position,
-            // The sphere covers the corners of the window, also on an inclined surface.
-            radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
-        };
         Self {
             probe,
             budget,
-            targets: targets.map(target).collect(),
+            targets: probe.targets(),
+            windows: WindowConnector::new(probe, budget.seed),
         }
     }
 
@@ -58,30 +54,7 @@ impl<'a> PhotonProbe<'a> {
     /// window.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
-        let Probe {
-            paths,
-            legs,
-            planes,
-            ..
-        } = self.probe;
-        let plane = &planes[plane];
-        let half = [plane.window.x, plane.window.u].map(|profile| profile.half_width());
-        (0..LINES).find_map(|number| {
-            let mut numbers = PathNumbers::new(self.budget.seed, number);
-            let [x, y, u, v] = numbers.draw().map(|drawn: f64| 2.0 * drawn - 1.0);
-            let seen = TwoPlane {
-                x: half[0] * x,
-                y: half[0] * y,
-                u: half[1] * u,
-                v: half[1] * v,
-            };
-            let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &seen);
-            match paths.geometry.first(&line, [0.0, f64::INFINITY]) {
-                None if paths.has_sky() => Some("the sky"),
-                Some(hit) if paths.scatter(&hit).has_mirror() => Some("a smooth surface"),
-                _ => None,
-            }
-        })
+        self.windows.misses(plane)
     }
 
     #[expect(
@@ -91,6 +64,7 @@ impl<'a> PhotonProbe<'a> {
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;
         let mut numbers = PathNumbers::new(self.budget.seed, number);
+        self.windows.connect_sky(&mut numbers, record);
         let emitted = paths
             .lights
             .emit(&paths.geometry, numbers.draw(), &self.targets);
@@ -109,10 +83,11 @@ impl<'a> PhotonProbe<'a> {
         }) = flash
         {
             let intensity = |along: DVec3| shine * along.dot(normal).max(0.0);
-            self.pass(
+            self.windows.connect(
                 &LightSource {
                     position,
                     intensity: &intensity,
+                    density: &|_| 0.0,
                     met: 0,
                 },
                 &mut numbers,
@@ -135,20 +110,31 @@ impl<'a> PhotonProbe<'a> {
                 flux * scatter.value(hit.uv, wi, wo) * tilt(&hit, ray.along, along)
             };
             if !scatter.is_smooth() {
-                self.pass(
+                self.windows.connect(
                     &LightSource {
                         position: hit.position,
                         intensity: &intensity,
+                        density: &|along| self.onward_density(&hit, ray.along, along),
                         met,
                     },
                     &mut numbers,
                     record,
                 );
             }
-            let Some((along, share)) = self.onward(&hit, ray.along, &mut numbers) else {
+            let Some(Onward {
+                along,
+                share,
+                density,
+            }) = self.onward(&hit, ray.along, &mut numbers)
+            else {
                 return;
             };
             flux *= share;
+            if let Some(density) = density {
+                let source = (hit.position, met);
+                let photon = (along, flux, density);
+                self.windows.continued(source, photon, &mut numbers, record);
+            }
             let [survives] = numbers.draw();
             let share = (flux / first).min(0.95);
             if met >= ROULETTE {
@@ -164,15 +150,9 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Returns the direction in which a photon continues from a hit, and the share of its flux.
-    /// Half of the photons follow the material; the other half are aimed at the regions that the
-    /// windows see.
-    fn onward(
-        &self,
-        hit: &Hit,
-        arriving: DVec3,
-        numbers: &mut PathNumbers<'_>,
-    ) -> Option<(DVec3, f64)> {
+    /// Returns how a photon continues from a hit; `None` if it is absorbed. Half of the photons
+    /// follow the material; the other half are aimed at what the windows see.
+    fn onward(&self, hit: &Hit, arriving: DVec3, numbers: &mut PathNumbers<'_>) -> Option<Onward> {
         let scatter = self.probe.paths.scatter(hit);
         let wi = hit.frame.transpose() * -arriving;
         let [a, b, pick] = numbers.draw();
@@ -190,77 +170,43 @@ impl<'a> PhotonProbe<'a> {
                     // indices, which applies to radiance and not to power. Only photons that are
                     // not aimed come here.
                     let half = if scatter.is_smooth() { 1.0 } else { 2.0 };
-                    let share = half * bounce.weight * scatter.squared_index(wi, bounce.wi);
-                    return Some((along, share));
+                    return Some(Onward {
+                        along,
+                        share: half * bounce.weight * scatter.squared_index(wi, bounce.wi),
+                        density: None,
+                    });
                 }
                 along
             }
         };
+        let density = self.onward_density(hit, arriving, along);
         let wo = hit.frame.transpose() * along;
-        let plain = scatter.density(hit.uv, wo, wi);
-        let density = mixed(plain, &self.targets, |target| {
-            target.density(hit.position, along)
-        });
         let share = scatter.value(hit.uv, wi, wo) * tilt(hit, arriving, along) / density;
-        (share > 0.0).then_some((along, share))
+        (share > 0.0).then_some(Onward {
+            along,
+            share,
+            density: Some(density),
+        })
     }
 
-    /// Draws a direction from a point through the windows of each leg, and records it if nothing
-    /// occludes it.
-    fn pass(
-        &self,
-        source: &LightSource<'_>,
-        numbers: &mut PathNumbers<'_>,
-        record: &mut dyn FnMut(usize, Crossing),
-    ) {
-        let Probe {
-            paths,
-            legs,
-            planes,
-            ..
-        } = self.probe;
-        for (number, leg) in legs.iter().enumerate() {
-            let drawn: [f64; 2] = numbers.draw();
-            let before = u32::try_from(number).unwrap_or(u32::MAX);
-            let is_hidden = paths.hides_sources && source.met + before == 0;
-            if is_hidden || source.met.saturating_add(before) > paths.depth {
-                continue;
-            }
-            let [u, v] = drawn.map(|drawn| (2.0 * drawn - 1.0) * leg.slope);
-            let secant_squared = 1.0 + u * u + v * v;
-            let along = leg.frame.vector_to_world(DVec3::new(u, v, 1.0)).normalize();
-            let of_leg = planes
-                .iter()
-                .enumerate()
-                .filter(|(_, plane)| plane.leg == number);
-            let seen = of_leg.filter_map(|(i, plane)| {
-                let ray = seen_by(&plane.frame, source.position, along);
-                plane.window.contains(&ray).then_some((i, ray))
-            });
-            let seen: Vec<(usize, TwoPlane)> = seen.collect();
-            if seen.is_empty() {
-                continue;
-            }
-            let intensity = (source.intensity)(along);
-            if intensity <= 0.0 || !self.is_seen(number, source.position, along) {
-                continue;
-            }
-            // Slopes are drawn uniformly; dω = du dv / (1 + u² + v²)^(3/2).
-            let weight = intensity * 4.0 * leg.slope * leg.slope * secant_squared.sqrt();
-            for (i, ray) in seen {
-                record(i, Crossing { ray, weight });
-            }
-        }
+    /// Returns the density per solid angle of the direction of photons that continue from a hit,
+    /// without delta components.
+    fn onward_density(&self, hit: &Hit, arriving: DVec3, along: DVec3) -> f64 {
+        let [wi, wo] = [-arriving, along].map(|of| hit.frame.transpose() * of);
+        let plain = self.probe.paths.scatter(hit).density(hit.uv, wo, wi);
+        mixed(plain, &self.targets, |target| {
+            target.density(hit.position, along)
+        })
     }
+}
 
-    /// Whether the line through a point, traced back from the end of a leg, hits that point first.
-    fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
-        let Probe { paths, legs, .. } = self.probe;
-        let line = legs[leg].through(&paths.geometry, position, along);
-        // If the line begins at the point itself, light leaves on the other side of the surface.
-        let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
-        is_before && paths.geometry.is_clear(line.from, position)
-    }
+/// The continuation of a photon from a surface.
+struct Onward {
+    along: DVec3,
+    /// The share of the flux that the photon keeps.
+    share: f64,
+    /// The density of the direction per solid angle; `None` after a mirror or smooth interface.
+    density: Option<f64>,
 }
 
 /// Returns the factor on the BSDF times the cosine to the shading normal that gives flux, for

@@ -89,6 +89,18 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     stops
 }
 
+/// Returns the surfaces beyond a last one that windows see in mirrors, up to the first that is not
+/// a mirror.
+pub(super) fn visible(last: &Stop, beyond: Vec<Stop>) -> Vec<Stop> {
+    let mut is_shown = last.reflects == Reflects::Mirror;
+    let shown = beyond.into_iter().take_while(|stop| {
+        let this = is_shown;
+        is_shown = this && stop.reflects == Reflects::Mirror;
+        this
+    });
+    shown.collect()
+}
+
 /// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 

@@ -12,19 +12,38 @@ pub(super) struct Found {
     /// The bandwidths of the light less its mean.
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
+    pub(super) judge: Judge,
     /// Why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
     /// The covariance of the plane's spectrum, if requested.
     pub(super) covariance: Option<FoundCovariance>,
 }
 
-/// Returns the verdict on a plane: undecided if photons do not find all light, and pass if neither
-/// rays nor photons find light.
+/// What the backward rays are compared with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Judge {
+    /// Photons from the lights.
+    Photons,
+    /// Backward rays that find lights only by directions sampled from BSDFs.
+    BsdfRays,
+}
+
+impl Judge {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Photons => "photons",
+            Self::BsdfRays => "BSDF rays",
+        }
+    }
+}
+
+/// Returns the verdict on a plane: undecided if the judge does not find all light, and pass if
+/// neither rays nor the judge find light.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {
-        Some(_) => Verdict::Undecided,
-        None if found.is_dark() => Verdict::Pass,
-        None => found.comparison.report.verdict,
+        Some(_) if found.judge == Judge::Photons => Verdict::Undecided,
+        _ if found.is_dark() => Verdict::Pass,
+        _ => found.comparison.report.verdict,
     }
 }
 

@@ -1,11 +1,11 @@
 //! Probes the light field behind a pixel.
 
 use super::covariance;
-use super::found::{Found, verdict};
+use super::found::{Found, Judge, verdict};
 use super::picture::PictureBandwidth;
 use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
 use super::words::{lines, of_plane, of_stop};
-use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
+use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
@@ -16,6 +16,12 @@ use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
+
+/// Number of rays that find lights only by directions sampled from BSDFs, as a multiple of the
+/// number of backward rays, because their noise is larger.
+const BSDF_RAYS: u64 = 4;
+/// Difference of the seed of these rays from that of the backward rays.
+const BSDF_SEED: u64 = 1 << 63;
 
 /// The result of probing a pixel.
 #[derive(Debug)]
@@ -87,7 +93,7 @@ fn written(
     made_from["rays"] = tree_of!(scene.request.rays);
     for (plane, (found, photons)) in probe.planes.iter().zip(found) {
         arrays::write(&mut results, made_from.clone(), &found.comparison)?;
-        let source = (note, ["backward rays", "photons"]);
+        let source = (note, ["backward rays", found.judge.word()]);
         pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
     }
     let each = found.iter().map(|(found, _)| verdict(found));
@@ -116,60 +122,105 @@ fn files_of(name: &str) -> impl Iterator<Item = String> + use<'_> {
     files.map(move |file| format!("{name}/{file}"))
 }
 
-/// Compares backward rays and photons at all planes.
+/// The measurements of a probe, and the test that compares them.
+struct Comparisons<'a> {
+    probe: &'a Probe<'a>,
+    backward: Measurement,
+    test: Test,
+}
+
+impl Comparisons<'_> {
+    /// Compares backward rays with another measurement of the same light at a plane.
+    fn at_plane(
+        &self,
+        i: usize,
+        other: &Measurement,
+    ) -> Result<(PlaneComparison, Prediction), Failure> {
+        let prediction = Prediction::measured(other, i).map_err(Failure::cannot_run)?;
+        let comparison =
+            compare(&self.backward, i, &prediction, &self.test).map_err(Failure::cannot_run)?;
+        Ok((comparison, prediction))
+    }
+
+    /// Returns the results at a plane with their comparison.
+    fn found(
+        &self,
+        i: usize,
+        comparison: PlaneComparison,
+        misses: Option<&'static str>,
+    ) -> Result<Found, Failure> {
+        let VirtualPlane { window, grid, .. } = &self.probe.planes[i];
+        let mean = WindowedMean::new(window, grid);
+        let batches = self.backward.at_plane(i).map(|batch| &batch.slices);
+        let varying = mean.removed_from_all(batches);
+        let azimuths = 0..grid.azimuths;
+        let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
+        Ok(Found {
+            comparison,
+            nu: power.bandwidth(bandwidth_nu),
+            rho: power.bandwidth(bandwidth_rho),
+            judge: Judge::Photons,
+            misses,
+            covariance: None,
+        })
+    }
+}
+
+/// Compares backward rays and photons at all planes. Where this does not decide, compares backward
+/// rays with rays that find lights only by directions sampled from BSDFs.
 fn measured(
     request: &ProbeRequest,
     probe: &Probe<'_>,
     reporter: &dyn Reporter,
 ) -> Result<Vec<(Found, Prediction)>, Failure> {
-    let each = |count: u64| count.div_ceil(u64::from(BATCHES));
-    let budget = |each| Budget {
-        each,
-        seed: request.seed,
+    let budget = |count: u64, seed| Budget {
+        each: count.div_ceil(u64::from(BATCHES)),
+        seed,
     };
-    let rays = BackwardProbe::new(probe, budget(each(request.rays)));
-    let photons = PhotonProbe::new(
-        probe,
-        Budget {
-            seed: !request.seed,
-            ..budget(each(request.photons))
-        },
-    );
+    let rays = BackwardProbe::new(probe, budget(request.rays, request.seed));
+    let photons = PhotonProbe::new(probe, budget(request.photons, !request.seed));
     let trace = |source: &dyn PhotonSource, count| -> Measurement {
         let bar = reporter.begin(Work::Photons(count));
         let found = measure(source, &probe.planes, 0..BATCHES, &|done| bar.advance(done));
         drop(bar);
         found
     };
-    let backward = trace(&rays, request.rays);
+    let comparisons = Comparisons {
+        probe,
+        backward: trace(&rays, request.rays),
+        test: Test {
+            // Each plane has up to two tests.
+            level: sidak(ALPHA, 2 * probe.planes.len()),
+            resolution: RESOLUTION,
+            seed: request.seed,
+        },
+    };
     let forward = trace(&photons, request.photons);
-    let test = Test {
-        level: sidak(ALPHA, probe.planes.len()),
-        resolution: RESOLUTION,
-        seed: request.seed,
-    };
-    let plane = |i: usize| {
-        let prediction = Prediction::measured(&forward, i).map_err(Failure::cannot_run)?;
-        let comparison = compare(&backward, i, &prediction, &test).map_err(Failure::cannot_run)?;
-        let VirtualPlane { window, grid, .. } = &probe.planes[i];
-        let mean = WindowedMean::new(window, grid);
-        let batches = backward.at_plane(i).map(|batch| &batch.slices);
-        let varying = mean.removed_from_all(batches);
-        let azimuths = 0..grid.azimuths;
-        let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
-        let found = Found {
-            comparison,
-            nu: power.bandwidth(bandwidth_nu),
-            rho: power.bandwidth(bandwidth_rho),
-            misses: photons.misses(i),
-            covariance: None,
+    let mut planes = Vec::new();
+    for i in 0..probe.planes.len() {
+        let (comparison, prediction) = comparisons.at_plane(i, &forward)?;
+        let found = comparisons.found(i, comparison, photons.misses(i))?;
+        planes.push((found, prediction));
+    }
+    let open = (0..planes.len()).filter(|i| verdict(&planes[*i].0) == Verdict::Undecided);
+    for i in open.collect::<Vec<usize>>() {
+        let seed = request.seed.wrapping_add(BSDF_SEED);
+        let rays = BackwardProbe::new(probe, budget(BSDF_RAYS * request.rays, seed)).at_plane(i);
+        let Some(rays) = rays.by_bsdf() else {
+            break;
         };
-        Ok((found, prediction))
-    };
-    let planes: Result<Vec<_>, Failure> = (0..probe.planes.len()).map(plane).collect();
-    let mut planes = planes?;
+        let found = trace(&rays, BSDF_RAYS * request.rays);
+        let (comparison, prediction) = comparisons.at_plane(i, &found)?;
+        let (plane, old) = &mut planes[i];
+        let noise = |of: &PlaneComparison| of.report.noise_limit.unwrap_or(f64::INFINITY);
+        if plane.misses.is_some() || noise(&comparison) < noise(&plane.comparison) {
+            plane.comparison = comparison;
+            plane.judge = Judge::BsdfRays;
+            *old = prediction;
+        }
+    }
     if request.covariance {
-        let all = covariance::measured(probe, budget(each(request.rays)), reporter)?;
+        let all = covariance::measured(probe, budget(request.rays, request.seed), reporter)?;
         for ((found, _), covariance) in planes.iter_mut().zip(all) {
             found.covariance = Some(covariance);
         }

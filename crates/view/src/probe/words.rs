@@ -1,6 +1,6 @@
 //! The result of a probe, in words and in JSON.
 
-use super::found::{Found, verdict};
+use super::found::{Found, Judge, verdict};
 use super::picture::PictureBandwidth;
 use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
@@ -61,6 +61,7 @@ pub(super) fn of_plane(found: &Found) -> Value {
     let mut tree = tree_of!({
         "report": found.comparison.report,
         "verdict": verdict(found),
+        "judge": found.judge.word(),
         "photons_miss": found.misses,
         "variation_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
         "variation_95_azimuth": { "nu": azimuth(&found.nu), "rho": azimuth(&found.rho) },
@@ -184,10 +185,15 @@ fn planes(found: &[&Found]) -> Vec<String> {
             report.p_value.map_or("–".to_owned(), |p| format!("{p:.5}")),
             shown(&found.nu),
             shown(&found.rho),
-            match found.misses {
-                Some(what) => format!("undecided: photons do not find light from {what}"),
-                None if found.is_dark() => "dark".to_owned(),
-                None => format!("{:?}", report.verdict).to_lowercase(),
+            match (found.judge, found.misses) {
+                (Judge::Photons, Some(what)) => {
+                    format!("undecided: photons do not find light from {what}")
+                }
+                _ if found.is_dark() => "dark".to_owned(),
+                (Judge::Photons, None) => format!("{:?}", report.verdict).to_lowercase(),
+                (Judge::BsdfRays, _) => {
+                    format!("{:?}, by BSDF rays", report.verdict).to_lowercase()
+                }
             },
         ]
     });
