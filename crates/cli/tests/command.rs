@@ -162,7 +162,7 @@ fn a_failing_chain_is_told_and_drawn() {
     // The share of the radiance that remains is cos² 37.24°.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
-    assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
+    assert!(picture.contains("chain fails: 36.6") && picture.contains("off the chain"));
     assert!(page.contains("chain off by (computed)") && page.contains("gives the central ray"));
     let (told, picture, _) = run("corrected", &["--set", "as_printed=false"]);
     assert!(!told.contains("the first-order chain"), "{told}");
@@ -338,13 +338,13 @@ fn bad_input_is_refused_with_a_message() {
             "plane before the light",
             text.replace("at: Emission", "at: Distance(-1)"),
             2,
-            &["planes[0].at", "0 to 2"],
+            &["planes[0].at", "0 m to the last surface at 2 m"],
         ),
         (
             "plane off the path",
             text.replace("at: Emission", "at: Distance(4.5)"),
             2,
-            &["planes[0].at", "0 to 2"],
+            &["planes[0].at", "0 m to the last surface at 2 m"],
         ),
         (
             "overlapping blockers",

@@ -150,7 +150,7 @@ fn a_changed_index_is_refused() {
         (
             p,
             |t| t["planes"][0]["class"] = json!("reference"),
-            &["class of light"],
+            &["the class of plane light"],
         ),
     ];
     for (name, change, parts) in cases {

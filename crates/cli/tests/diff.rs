@@ -110,7 +110,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a grid",
         4,
-        &["its frequencies ρ differ: 13 up to 6 and 15 up to 7"],
+        &["the frequencies ρ differ: 13 up to 6 and 15 up to 7"],
     );
 }
 
@@ -196,7 +196,10 @@ fn damaged_folders_are_refused_by_name() {
         &index[..index.len() / 2],
     ] {
         fs::write(&summary, broken).unwrap();
-        refuses(path, &["b/summary.json: it is not a summary of a run"]);
+        refuses(
+            path,
+            &["b/summary.json: the file is not a summary of a run"],
+        );
     }
     let text = String::from_utf8(index.clone()).unwrap();
     fs::write(&summary, text.replace("\"seed\": 2", "\"seed\": 3")).unwrap();

@@ -201,7 +201,7 @@ fn darkness_has_a_reason() {
     let closed = [
         (
             both.as_str(),
-            "half-planes of other and edge block all paths",
+            "the half-planes of other and edge block all paths of light",
         ),
         (lid, "lid blocks all paths"),
     ];
@@ -272,7 +272,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
         )
     };
     let narrow = of(&built(0.03));
-    let dark = "half-planes of edge block all paths";
+    let dark = "the half-planes of edge block all paths of light";
     assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
     let wide = of(&built(0.4));
     assert_eq!((wide.class(), wide.dark), (Class::FirstOrder, None));

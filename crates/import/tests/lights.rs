@@ -23,7 +23,7 @@ fn points_have_a_place() {
     assert_close(&place(moved), &[4.0, 0.0, 0.0], 0.0);
     assert_close(&place(named), &[1.0, 2.0, 3.0], 0.0);
     let both = format!("<emitter type=\"point\">{moved}{named}</emitter>");
-    assert!(causes(&both)[0].contains("position together with to_world"));
+    assert!(causes(&both)[0].contains("position is given together with to_world"));
 }
 
 #[test]

@@ -188,9 +188,9 @@ fn what_is_left_out_is_told_with_its_line() {
     );
     let notes: Vec<String> = read.notes.iter().map(ToString::to_string).collect();
     for expected in [
-        "a.mtl:2:1: `Ka` left out, 2 times",
-        "a.mtl:3:1: `decal` left out",
-        "a.obj:12:1: l left out, 2 times",
+        "a.mtl:2:1: `Ka` is left out, 2 times",
+        "a.mtl:3:1: `decal` is left out",
+        "a.obj:12:1: l is left out, 2 times",
     ] {
         assert!(
             notes.iter().any(|note| note == expected),

@@ -71,7 +71,10 @@ fn all_faults_are_found_with_their_places() {
     assert!(found[1].contains("directive `Gizmo` is not known"));
     assert!(found[7].contains("AttributeBegin without AttributeEnd"));
     let early = unsettled("Shape \"sphere\"");
-    assert!(early[0].contains("Shape before WorldBegin"), "{early:?}");
+    assert!(
+        early[0].contains("Shape stands before WorldBegin"),
+        "{early:?}"
+    );
     assert!(causes("Film \"rgb\"")[0].contains("Film after WorldBegin"));
     let medium = causes(
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"",

@@ -180,7 +180,7 @@ fn unsound_meshes_are_refused() {
     for (inside, what) in [
         (
             "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
-            "index 3 of 3",
+            "an index is 3, but there are only 3 vertices",
         ),
         (
             "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1]",

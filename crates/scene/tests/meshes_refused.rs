@@ -189,7 +189,7 @@ fn coarse_smooth_meshes_are_warned_of() {
     };
     let coarse = warned(2);
     assert!(
-        coarse.len() == 1 && coarse[0].starts_with("mesh: too coarse"),
+        coarse.len() == 1 && coarse[0].starts_with("mesh: the mesh is too coarse"),
         "{coarse:?}"
     );
     assert_eq!(warned(32), Vec::<String>::new());

@@ -18,7 +18,7 @@ impl GltfReader<'_> {
         let Some(of) = transmission else {
             if extensions.is_some_and(|of| of.volume.is_some()) {
                 let path = format!("{}.extensions.KHR_materials_volume", draft.path);
-                self.note(&path, "left out: the material transmits no light");
+                self.note(&path, "is left out: the material transmits no light");
             }
             return Some(opaque);
         };
@@ -26,7 +26,7 @@ impl GltfReader<'_> {
         let field = format!("{path}.transmissionFactor");
         let share = self.within(&field, of.transmission_factor.0, [0.0, 1.0])?;
         if of.transmission_texture.is_some() {
-            self.note(&format!("{path}.transmissionTexture"), "left out");
+            self.note(&format!("{path}.transmissionTexture"), "is left out");
         }
         if share <= 0.0 {
             return Some(opaque);
@@ -87,7 +87,7 @@ impl GltfReader<'_> {
             );
         }
         if volume.thickness_factor.0 > 0.0 && volume.thickness_texture.is_some() {
-            self.note(&path, "thicknessTexture left out");
+            self.note(&path, "thicknessTexture is left out");
         }
         volume.thickness_factor.0 > 0.0
     }

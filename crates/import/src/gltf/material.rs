@@ -153,19 +153,19 @@ impl<'a> GltfReader<'a> {
             self.cause(&format!("{path}.normalTexture"), message);
         }
         if source.occlusion_texture.is_some() {
-            let message = "left out: paths of light determine the occlusion";
+            let message = "is left out: paths of light determine the occlusion";
             self.note(&format!("{path}.occlusionTexture"), message);
         }
         let Some(extensions) = &source.extensions else {
             return;
         };
         if extensions.unlit.is_some() {
-            let message = "left out: the surface reflects light like any other surface";
+            let message = "is left out: the surface reflects light like any other surface";
             self.note(&format!("{path}.extensions.KHR_materials_unlit"), message);
         }
         for name in extensions.others.keys() {
             let name = quoted(name);
-            self.note(&format!("{path}.extensions"), format!("{name} left out"));
+            self.note(&format!("{path}.extensions"), format!("{name} is left out"));
         }
     }
 }

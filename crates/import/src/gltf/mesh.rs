@@ -90,7 +90,7 @@ impl GltfReader<'_> {
         spent.map_err(|error| self.cause(path, error)).ok()?;
         parts.drop_empty();
         if parts.corners.is_empty() {
-            self.note(path, "has no triangle with an area above 0: left out");
+            self.note(path, "has no triangle with an area above 0 and is left out");
             return None;
         }
         let mended = parts.mend_normals();
@@ -112,16 +112,16 @@ impl GltfReader<'_> {
         if primitive.targets.is_some() {
             self.note(
                 &format!("{path}.targets"),
-                "left out: the mesh keeps its base shape",
+                "is left out: the mesh keeps its base shape",
             );
         }
         if attribute(primitive, Semantic::Colors(0)).is_some() {
-            self.note(&format!("{path}.attributes.COLOR_0"), "left out");
+            self.note(&format!("{path}.attributes.COLOR_0"), "is left out");
         }
         let others = primitive.extensions.iter().flat_map(|of| of.others.keys());
         for name in others {
             let name = crate::report::quoted(name);
-            self.note(&format!("{path}.extensions"), format!("{name} left out"));
+            self.note(&format!("{path}.extensions"), format!("{name} is left out"));
         }
     }
 }

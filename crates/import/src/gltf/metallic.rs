@@ -161,7 +161,7 @@ impl GltfReader<'_> {
             self.within(&format!("{path}.specularColorFactor"), value, [0.0, 1.0])?;
         }
         if of.specular_texture.is_some() || of.specular_color_texture.is_some() {
-            self.note(&path, "pictures left out");
+            self.note(&path, "pictures are left out");
         }
         let specular = factor * self.color.of(color.map(f64::from));
         let is_plain = specular <= 0.0 || (specular - 1.0).abs() < 1e-9;

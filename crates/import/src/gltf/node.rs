@@ -100,7 +100,7 @@ impl<'a> GltfReader<'a> {
         if node.skin.is_some() {
             self.note(
                 &format!("{path}.skin"),
-                "left out: the mesh keeps its bind pose",
+                "is left out: the mesh keeps its bind pose",
             );
         }
         if let Some(mesh) = node.mesh {
@@ -116,7 +116,7 @@ impl<'a> GltfReader<'a> {
         for name in extensions.iter().flat_map(|of| of.others.keys()) {
             self.note(
                 &format!("{path}.extensions"),
-                format!("{} left out", quoted(name)),
+                format!("{} is left out", quoted(name)),
             );
         }
     }

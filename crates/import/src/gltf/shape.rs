@@ -93,7 +93,7 @@ impl<'a> GltfReader<'a> {
             mode,
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
         ) {
-            self.note(path, format!("{mode:?} left out; allowed: triangles"));
+            self.note(path, format!("{mode:?} is left out; allowed: triangles"));
             return None;
         }
         let parts = self.parts(primitive, path, surface.set)?;

@@ -70,7 +70,7 @@ pub(super) fn read(
 /// statement.
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
-        1 => format!("{word} left out"),
+        1 => format!("{word} is left out"),
         _ => format!("{word} is left out, {count} times"),
     }
 }
@@ -159,7 +159,7 @@ impl MtlStatement<'_> {
         let Some(after) = self.rest.strip_prefix("-halo") else {
             return self.number(0.0, 1.0);
         };
-        self.report.note(&self.place, "-halo left out");
+        self.report.note(&self.place, "-halo is left out");
         let inner = MtlStatement {
             rest: after.trim(),
             place: self.place.clone(),

@@ -114,9 +114,10 @@ impl<'a> ObjReader<'a> {
             return self.report.cause(&place, message);
         }
         let Some(mesh) = parts.finish() else {
-            return self
-                .report
-                .note(&place, "has no triangle with an area above 0: left out");
+            return self.report.note(
+                &place,
+                "has no triangle with an area above 0 and is left out",
+            );
         };
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),

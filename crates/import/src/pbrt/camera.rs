@@ -160,8 +160,9 @@ impl PbrtReader<'_> {
         let iso = film.map_or(Ok(100.0), |film| film.float_or(self.report, "iso", 100.0))?;
         let ratio = (close - open) * iso / 100.0;
         if (ratio - 1.0).abs() > 1e-9 {
-            let message =
-                format!("pbrt multiplies the radiance by {ratio} for the exposure: left out");
+            let message = format!(
+                "pbrt multiplies the radiance by {ratio} for the exposure; this factor is left out"
+            );
             self.report.note(&entity.place, message);
         }
         Ok(())

@@ -27,17 +27,6 @@ pub struct PhotonProbe<'a> {
 /// Number of photons between two progress reports.
 const BLOCK: u64 = 4096;
 
-/// A surface point that light leaves, with its directional intensity.
-pub(super) struct LightSource<'s> {
-    pub(super) position: DVec3,
-    /// Flux per solid angle along a direction, W sr⁻¹.
-    pub(super) intensity: &'s dyn Fn(DVec3) -> f64,
-    /// Density per solid angle with which photons continue along a direction and are recorded.
-    pub(super) density: &'s dyn Fn(DVec3) -> f64,
-    /// Number of surfaces met so far, this one included.
-    pub(super) met: u32,
-}
-
 impl<'a> PhotonProbe<'a> {
     /// Creates the photons of a probe.
     #[must_use]

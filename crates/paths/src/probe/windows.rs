@@ -2,7 +2,6 @@
 
 use super::Probe;
 use super::lines::seen_by;
-use super::photons::LightSource;
 use crate::numbers::PathNumbers;
 use crate::space::{Hit, Ray};
 use etendue_field::{Crossing, Frame, TwoPlane, VirtualPlane};
@@ -82,6 +81,17 @@ impl LineRegion {
         self.position = self.position.max(larger(seen.x, seen.y));
         self.slope = self.slope.max(larger(seen.u, seen.v));
     }
+}
+
+/// A surface point that light leaves, with its directional intensity.
+pub(super) struct LightSource<'s> {
+    pub(super) position: DVec3,
+    /// Flux per solid angle along a direction, W sr⁻¹.
+    pub(super) intensity: &'s dyn Fn(DVec3) -> f64,
+    /// Density per solid angle with which photons continue along a direction and are recorded.
+    pub(super) density: &'s dyn Fn(DVec3) -> f64,
+    /// Number of surfaces met so far, this one included.
+    pub(super) met: u32,
 }
 
 /// The windows of a probe, to which photons are connected.

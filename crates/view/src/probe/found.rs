@@ -12,7 +12,7 @@ pub(super) struct Found {
     /// The bandwidths of the light less its mean.
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
-    pub(super) judge: Judge,
+    pub(super) judge: SecondEstimate,
     /// Why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
     /// The covariance of the plane's spectrum, if requested.
@@ -21,14 +21,14 @@ pub(super) struct Found {
 
 /// What the backward rays are compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Judge {
+pub(super) enum SecondEstimate {
     /// Photons from the lights.
     Photons,
     /// Backward rays that find lights only by directions sampled from BSDFs.
     BsdfRays,
 }
 
-impl Judge {
+impl SecondEstimate {
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Photons => "photons",
@@ -41,7 +41,7 @@ impl Judge {
 /// neither rays nor the judge find light.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {
-        Some(_) if found.judge == Judge::Photons => Verdict::Undecided,
+        Some(_) if found.judge == SecondEstimate::Photons => Verdict::Undecided,
         _ if found.is_dark() => Verdict::Pass,
         _ => found.comparison.report.verdict,
     }

@@ -1,7 +1,7 @@
 //! Probes the light field behind a pixel.
 
 use super::covariance;
-use super::found::{Found, Judge, verdict};
+use super::found::{Found, SecondEstimate, verdict};
 use super::picture::PictureBandwidth;
 use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
 use super::words::{lines, of_plane, of_stop};
@@ -159,7 +159,7 @@ impl Comparisons<'_> {
             comparison,
             nu: power.bandwidth(bandwidth_nu),
             rho: power.bandwidth(bandwidth_rho),
-            judge: Judge::Photons,
+            judge: SecondEstimate::Photons,
             misses,
             covariance: None,
         })
@@ -215,7 +215,7 @@ fn measured(
         let noise = |of: &PlaneComparison| of.report.noise_limit.unwrap_or(f64::INFINITY);
         if plane.misses.is_some() || noise(&comparison) < noise(&plane.comparison) {
             plane.comparison = comparison;
-            plane.judge = Judge::BsdfRays;
+            plane.judge = SecondEstimate::BsdfRays;
             *old = prediction;
         }
     }

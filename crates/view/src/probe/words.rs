@@ -1,6 +1,6 @@
 //! The result of a probe, in words and in JSON.
 
-use super::found::{Found, Judge, verdict};
+use super::found::{Found, SecondEstimate, verdict};
 use super::picture::PictureBandwidth;
 use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
@@ -186,12 +186,12 @@ fn planes(found: &[&Found]) -> Vec<String> {
             shown(&found.nu),
             shown(&found.rho),
             match (found.judge, found.misses) {
-                (Judge::Photons, Some(what)) => {
+                (SecondEstimate::Photons, Some(what)) => {
                     format!("undecided: photons do not find light from {what}")
                 }
                 _ if found.is_dark() => "dark".to_owned(),
-                (Judge::Photons, None) => format!("{:?}", report.verdict).to_lowercase(),
-                (Judge::BsdfRays, _) => {
+                (SecondEstimate::Photons, None) => format!("{:?}", report.verdict).to_lowercase(),
+                (SecondEstimate::BsdfRays, _) => {
                     format!("{:?}, by BSDF rays", report.verdict).to_lowercase()
                 }
             },
