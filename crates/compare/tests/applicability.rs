@@ -203,7 +203,7 @@ fn darkness_has_a_reason() {
             both.as_str(),
             "the half-planes of other and edge block all paths of light",
         ),
-        (lid, "lid blocks all paths"),
+        (lid, "lid blocks all paths of light"),
     ];
     for (surface, class) in &surfaces {
         for light in [LIGHT, PROJECTOR] {

@@ -274,9 +274,9 @@ fn what_is_left_out_is_told_with_its_path() {
     let material = r#"{"occlusionTexture":{"index":0},"extensions":{"KHR_materials_unlit":{},"KHR_materials_sheen":{}}}"#;
     let found = notes(&mesh(r#"{"mesh":0}"#, material, BASE));
     for expected in [
-        "a.gltf: materials[0].occlusionTexture: left out",
-        "a.gltf: materials[0].extensions.KHR_materials_unlit: left out",
-        "a.gltf: materials[0].extensions: `KHR_materials_sheen` left out",
+        "a.gltf: materials[0].occlusionTexture: is left out",
+        "a.gltf: materials[0].extensions.KHR_materials_unlit: is left out",
+        "a.gltf: materials[0].extensions: `KHR_materials_sheen` is left out",
     ] {
         assert!(
             found.iter().any(|note| note.starts_with(expected)),

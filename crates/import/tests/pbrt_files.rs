@@ -75,7 +75,7 @@ fn all_faults_are_found_with_their_places() {
         early[0].contains("Shape stands before WorldBegin"),
         "{early:?}"
     );
-    assert!(causes("Film \"rgb\"")[0].contains("Film after WorldBegin"));
+    assert!(causes("Film \"rgb\"")[0].contains("Film stands after WorldBegin"));
     let medium = causes(
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"",
     );

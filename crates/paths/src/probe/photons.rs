@@ -1,6 +1,6 @@
 //! Photons of a probe.
 
-use super::windows::WindowConnector;
+use super::windows::{LightSource, WindowConnector};
 use super::{Budget, Probe};
 use crate::lights::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use crate::numbers::PathNumbers;
