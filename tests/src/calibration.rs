@@ -157,9 +157,9 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
     // The binomial standard deviation of the fraction of p-values below 0.1 at one plane. All
-    // planes of a seed have the same photons, so the fraction of small p-values over all planes
-    // varies less than the fraction at one plane, but more than the fraction over as many
-    // independent planes. The fraction of p-values below 0.1 may deviate by two of these standard
+    // planes of a seed have the same photons, so their p-values are correlated. Therefore the
+    // average over the planes removes some of this deviation, but less than for independent
+    // planes. The fraction of p-values below 0.1 may deviate by two of these standard
     // deviations over all planes, and by three at a single plane.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);

@@ -116,12 +116,12 @@ fn holds(node: &Value) -> String {
     let each = many.map_or(node, |many| &many[0]);
     let count = many.map_or(String::new(), |many| format!("{} numbers: ", many.len()));
     match (each["x-range"].as_str(), type_of(node)) {
-        (Some(range), _) => format!(" Value in the brackets: {count}{range}."),
+        (Some(range), _) => format!(" The value in parentheses: {count}{range}."),
         (None, Some(name)) => format!(
-            " Value in the brackets: a list of [{name}](#{}).",
+            " The value in parentheses: a list of [{name}](#{}).",
             name.to_lowercase()
         ),
-        (None, None) => " Value in the brackets: a text in quotes.".to_owned(),
+        (None, None) => " The value in parentheses: a text in quotes.".to_owned(),
     }
 }
 

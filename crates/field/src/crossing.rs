@@ -97,8 +97,8 @@ pub trait PhotonSource: Sync {
         progress: &dyn Fn(u64),
     ) -> Ledger;
 
-    /// Returns the number of parts of a batch that several threads may emit separately; at least
-    /// one, and a function of the scene alone.
+    /// Returns into how many parts a batch is divided, so that several threads can emit them. The
+    /// number is at least one and depends only on the scene.
     fn parts(&self, _batch: u32) -> u32 {
         1
     }

@@ -74,7 +74,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     }
     let plate = taken.plate(&Plate {
         title: "Directions in 3D, by longitude and latitude",
-        note: "Light of a projector on a saddle turned by 45°: a mirror, and rough copper seen 6.9° beside the plane of incidence. *Along* means position and longitude or slope; *across* means the other position, and latitude or slope.",
+        note: "Light of a projector on a saddle turned by 45°: a mirror, and rough copper seen 6.9° beside the plane of incidence. *Along*: the first position, and the longitude or first slope; *across*: the second position, and the latitude or second slope.",
         heads: lettered(&[
             "mirror\nnormals",
             "mirror\noutgoing",

@@ -158,7 +158,7 @@ mod tests {
     use super::*;
     use crate::random::unit;
 
-    /// Number of coordinates of two joint blocks and one further block.
+    /// Total number of coordinates of two blocks that share a net and one block with its own net.
     const ALL: usize = 3 * WIDTH;
 
     fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {

@@ -290,8 +290,8 @@ fn saves() -> impl TypedValueParser<Value = Save> {
 /// The values of the option `--expect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
-    /// The photons must agree with the exact predictions, and must show that the map of a
-    /// first-order chain is wrong.
+    /// The photons must agree with exact predictions, and disagree with at least one first-order
+    /// prediction because its chain of operators is wrong.
     Disagreement,
 }
 

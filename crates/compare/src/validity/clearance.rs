@@ -230,8 +230,8 @@ fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     )
 }
 
-/// Returns how far a ray passes from a patch between two distances. The ray may meet the quadric
-/// outside the patch or outside the piece, or miss the quadric.
+/// Returns the distance between a patch and the piece of a ray between two of its points. The ray
+/// may meet the quadric outside the patch or outside the piece, or miss the quadric.
 fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let CheckRay { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {

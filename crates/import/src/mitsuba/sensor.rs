@@ -49,7 +49,8 @@ impl<'a> MitsubaReader<'a> {
         let (to_world, projection, clip) = match object.plugin.as_str() {
             "orthographic" => {
                 let (to_world, stretch) = self.orthographic(object)?;
-                // A scale moves the origins of Mitsuba's rays, but does not change their lengths.
+                // A scaling moves the origins of Mitsuba's rays, but does not change the distance
+                // from the near to the far clipping plane.
                 let [near, far] = clip?;
                 let clip = [near * stretch, near * stretch + far - near];
                 (to_world, Projection::Orthographic, clip)

@@ -25,8 +25,8 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// The smallest |k·d|, where d is the longest possible edge along a direction, at which sums over
-/// corners are used. A quotient for two directions at this limit amplifies rounding errors by
+/// Sums over corners are used if |k·d| is at least this value, where d is the longest possible edge
+/// along a direction. A quotient for two directions at this limit amplifies rounding errors by
 /// 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves that are processed together; it is small enough for the quotients of these

@@ -166,8 +166,8 @@ fn planes(found: &[&Found]) -> Vec<String> {
         "plane",
         "noise alone",
         "p",
-        "varies below ν [cycles/slope]",
-        "varies below ρ [cycles/m]",
+        "bandwidth ν [cycles/slope]",
+        "bandwidth ρ [cycles/m]",
         "verdict",
     ];
     let shown = |of: &Option<Widest<Uncertain>>| {

@@ -51,7 +51,8 @@ fn a_gaussian_field_has_what_is_traced() {
 }
 
 /// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u).
-/// The field is evaluated by following a ray back through travel and windows, without matrices.
+/// To evaluate the field, the test follows a ray back through free space and windows, without
+/// matrices.
 #[test]
 fn the_definition_gives_what_is_traced() {
     let [d, e] = [0.7, 0.4];
