@@ -12,7 +12,7 @@ use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
 use crate::density::{scaled, to_power};
 use crate::guide::{LightGuide, SampleGuide};
-use crate::method::{AdaptiveRun, POWER, by_error, sums, values};
+use crate::method::{AdaptiveRun, POWER, Stage, by_error, sums, values};
 use crate::metric::Metric;
 use crate::objects::ObjectSums;
 use crate::reconstruct::ShadedSample;
@@ -55,7 +55,8 @@ impl AdaptiveRun<'_> {
     fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let visible = self.visible;
         let samples = values(pilot);
-        let mut guide = LightGuide::new(visible, &self.shader);
+        (self.stage)(Stage::Guide, visible.places.len());
+        let mut guide = LightGuide::new(visible, &self.shader, self.progress);
         let guides: Vec<SampleGuide> = samples.iter().map(|at| guide.at(visible, at)).collect();
         let of_guide = samples.iter().zip(&guides).map(|(sample, guide)| {
             let value = guide.value;

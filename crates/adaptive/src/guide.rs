@@ -54,9 +54,13 @@ pub(crate) struct SampleGuide {
 }
 
 impl LightGuide {
-    /// Traces a path from each point.
-    pub(crate) fn new(visible: &Visible, shader: &Shader<'_>) -> Self {
-        let rough = direct(visible, shader);
+    /// Traces a path from each point; `progress` receives the number of finished points.
+    pub(crate) fn new(
+        visible: &Visible,
+        shader: &Shader<'_>,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Self {
+        let rough = direct(visible, shader, progress);
         let soft = SOFT.smoothed(visible, &rough);
         let slow = SLOW.smoothed(visible, &soft);
         let smooth = detailed(visible, &soft, &slow);
@@ -145,7 +149,7 @@ impl LightGuide {
 }
 
 /// Computes direct light by one path from each point.
-fn direct(visible: &Visible, shader: &Shader<'_>) -> PlaceValues {
+fn direct(visible: &Visible, shader: &Shader<'_>, progress: &(dyn Fn(u64) + Sync)) -> PlaceValues {
     let tiles = visible.size[0].div_ceil(TILE);
     let of = |index: usize| {
         let [column, row] = visible.pixel(index);
@@ -160,7 +164,12 @@ fn direct(visible: &Visible, shader: &Shader<'_>) -> PlaceValues {
         ))
     };
     let all = (0..visible.places.len()).into_par_iter();
-    all.map(|index| of(index).unwrap_or_default()).collect()
+    all.map(|index| {
+        let light = of(index).unwrap_or_default();
+        progress(1);
+        light
+    })
+    .collect()
 }
 
 /// Returns the number of a pixel in a tile, in the order of Morton 1966: each quarter of the tile, and each

@@ -63,6 +63,8 @@ pub enum Stage {
     Blockers,
     /// Evaluating the criteria.
     Criterion,
+    /// Computing the direct light at all visible points, which guides the reconstruction.
+    Guide,
     /// Choosing the points to shade.
     Samples,
     /// Shading the points.
@@ -154,8 +156,8 @@ pub(crate) struct AdaptiveRun<'a> {
     pub(crate) visible: &'a Visible,
     pub(crate) shader: Shader<'a>,
     pub(crate) plan: &'a SamplePlan,
-    stage: &'a dyn Fn(Stage, usize),
-    progress: &'a (dyn Fn(u64) + Sync),
+    pub(crate) stage: &'a dyn Fn(Stage, usize),
+    pub(crate) progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
     /// The guide of the reconstruction, if the method uses one.
     pub(crate) guide: Option<LightGuide>,

@@ -186,6 +186,7 @@ fn what_is_asked_must_be_there() {
         ("render room.xml --camera side", "allowed: front"),
         ("render room.xml --size 0x5", "two whole numbers"),
         ("render room.xml --samples 1", "--samples"),
+        ("render room.xml --shading-samples 1537", "at most 1536"),
     ] {
         let message = refused(path, line);
         assert!(message.contains(part), "{line}: {message}");

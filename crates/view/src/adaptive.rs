@@ -17,6 +17,10 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+/// Maximum number of shading samples per pixel. The time to place the samples grows with the
+/// square of their number per pixel.
+const MAX_EACH: usize = 4;
+
 /// The files that are written in addition to the files of a reference picture.
 pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
@@ -37,10 +41,7 @@ pub(crate) fn render(
             "the camera has a lens, but rendering from few shading samples assumes a pinhole; allowed: {allowed}"
         )));
     }
-    let pixels = camera.size[0] * camera.size[1];
-    let samples = request
-        .shading_samples
-        .map_or(pixels.div_ceil(20), |n| n as usize);
+    let samples = shading_samples(request, camera)?;
     let plan = SamplePlan {
         method,
         samples,
@@ -80,6 +81,24 @@ pub(crate) fn render(
     ))
 }
 
+/// Returns the number of shading samples, if it is low enough to place the samples.
+fn shading_samples(request: &PictureRequest, camera: &Camera) -> Result<usize, Failure> {
+    let pixels = camera.size[0] * camera.size[1];
+    let Some(samples) = request.shading_samples else {
+        return Ok(pixels.div_ceil(20));
+    };
+    let samples = samples as usize;
+    let most = MAX_EACH * pixels;
+    if samples > most {
+        let arguments = request.source.arguments;
+        return Err(Failure::bad_input(format!(
+            "{}; allowed: at most {most}, {MAX_EACH} for each of the {pixels} pixels; the method \"reference\" renders with more",
+            arguments.with("shading_samples", samples)
+        )));
+    }
+    Ok(samples)
+}
+
 /// Advances a progress bar by the given number of steps.
 fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
     let bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
@@ -112,6 +131,7 @@ impl<'a> StageWatch<'a> {
             Stage::Visibility => "visibility",
             Stage::Blockers => "blockers",
             Stage::Criterion => "criterion",
+            Stage::Guide => "guide",
             Stage::Samples => "samples",
             Stage::Shading => "shading",
             Stage::Reconstruction => "reconstruction",

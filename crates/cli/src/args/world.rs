@@ -212,8 +212,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
-    /// Shading samples in the whole picture, for all methods except reference [default: one for each
-    /// 20 pixels]
+    /// Shading samples in the whole picture, at most 4 per pixel, for all methods except reference
+    /// [default: one for each 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
 
