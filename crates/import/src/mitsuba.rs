@@ -18,6 +18,7 @@ mod metals;
 mod nested;
 mod object;
 mod parameters;
+mod principled;
 mod property;
 mod property_names;
 mod reader;

@@ -1,6 +1,6 @@
 //! Materials.
 
-use crate::common::world;
+use crate::common::{assert_close, causes, world};
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 
@@ -42,5 +42,60 @@ fn checkerboards_are_turned_where_they_are_numbers() {
     for (texture, expected) in [(reflectance, 0.1), (alpha, 0.3), (opacity, 0.3)] {
         // The value of the texture is the number in the file, without conversion.
         assert!((first(texture) - expected).abs() < 1e-12, "{texture:?}");
+    }
+}
+
+/// Returns the file of a sphere of this material.
+fn principled(inside: &str) -> String {
+    format!("<shape type=\"sphere\"><bsdf type=\"principled\">{inside}</bsdf></shape>")
+}
+
+#[test]
+fn principled_is_a_metal_and_a_base() {
+    let of = |inside: &str| match world(&principled(inside)).materials.remove(0) {
+        Material::Principled(of) => of,
+        other => panic!("{other:?}"),
+    };
+    let plain = of("<float name=\"sheen_tint\" value=\"0.5\"/>");
+    let values = [
+        &plain.color,
+        &plain.metallic,
+        &plain.roughness,
+        &plain.anisotropic,
+    ]
+    .map(first);
+    assert_close(&values, &[0.5, 0.0, 0.5, 0.0], 1e-12);
+    // 0.08 specular is the reflectance at normal incidence, ((n − 1)/(n + 1))².
+    assert_close(&[plain.index], &[1.5], 1e-12);
+    let given = of("<float name=\"eta\" value=\"1.8\"/><float name=\"metallic\" value=\"1\"/>");
+    assert_close(&[given.index, first(&given.metallic)], &[1.8, 1.0], 1e-12);
+}
+
+#[test]
+fn principled_without_its_other_lobes_is_refused_by_name() {
+    for (inside, what) in [
+        (
+            "<float name=\"clearcoat\" value=\"0.3\"/>",
+            "clearcoat of principled is 0.3; allowed: 0",
+        ),
+        (
+            "<float name=\"spec_trans\" value=\"1\"/>",
+            "spec_trans of principled is 1; allowed: 0",
+        ),
+        (
+            "<float name=\"roughness\" value=\"1.5\"/>",
+            "roughness goes up to 1.5; allowed: 0 to 1",
+        ),
+        (
+            "<float name=\"eta\" value=\"0.9\"/>",
+            "eta is 0.9; allowed: 1 or more",
+        ),
+        (
+            "<float name=\"eta\" value=\"1.5\"/><float name=\"specular\" value=\"0.5\"/>",
+            "specular is given together with eta",
+        ),
+    ] {
+        let found = causes(&principled(inside));
+        assert!(found.len() == 1 && found[0].contains(what), "{found:?}");
     }
 }

@@ -9,7 +9,7 @@
 use etendue_paths::{Paths, Picture};
 use etendue_world::{
     Camera, Conductor, Dielectric, Geometry, Light, Material, MicrofacetDistribution, Plastic,
-    Projection, Roughness, Shape, Texture, Triangles, World,
+    Principled, Projection, Roughness, Shape, Texture, Triangles, World,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
@@ -111,6 +111,13 @@ fn cases() -> Vec<Case> {
         specular: constant(0.6),
         exponent: constant(20.0),
     };
+    let principled = Material::Principled(Principled {
+        color: constant(0.6),
+        metallic: constant(0.4),
+        roughness: constant(0.5),
+        anisotropic: constant(0.7),
+        index: 1.5,
+    });
     let lossless = [
         ("glass", Medium(1.5), glass(1.5, false, None)),
         ("bubble", Medium(1.0 / 1.5), glass(1.0 / 1.5, false, None)),
@@ -158,6 +165,7 @@ fn cases() -> Vec<Case> {
         ),
         ("rough plastic", Nothing, two_sided(plastic(ggx(0.2), true))),
         ("phong", Nothing, two_sided(phong)),
+        ("principled", Nothing, two_sided(principled)),
     ];
     let case = |is_lossless| {
         move |(name, behind, material)| Case {

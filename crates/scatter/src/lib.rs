@@ -17,6 +17,7 @@ pub mod lambertian;
 mod microfacet;
 mod phong;
 mod plastic;
+mod principled;
 
 pub use bsdf::{Bsdf, BsdfSample};
 pub use conductor::{Conductor, mirror};
@@ -25,6 +26,7 @@ pub use fresnel::reflectance;
 pub use microfacet::Microfacets;
 pub use phong::{ModifiedPhong, Phong};
 pub use plastic::{Coat, Plastic};
+pub use principled::Principled;
 
 #[cfg(test)]
 mod tests;

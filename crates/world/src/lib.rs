@@ -14,7 +14,7 @@ mod texture;
 pub use camera::{Camera, Lens, Look, Projection};
 pub use etendue_field::MicrofacetDistribution;
 pub use light::{EmittedRadiance, Falloff, Light, SkyMap};
-pub use material::{Conductor, Dielectric, Material, Plastic, Roughness};
+pub use material::{Conductor, Dielectric, Material, Plastic, Principled, Roughness};
 pub use shape::{Geometry, Shape, Triangles};
 pub use texture::{Bitmap, Filter, Texture, Wrap};
 

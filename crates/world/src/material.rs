@@ -20,6 +20,8 @@ pub enum Material {
     Dielectric(Dielectric),
     /// A diffuse base below a dielectric coat, on the front.
     Plastic(Plastic),
+    /// A mixture of a metal and a diffuse base below a dielectric interface, on the front.
+    Principled(Principled),
     /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, with α the angle to the mirror direction (Lafortune and Willems 1994).
     Phong {
         /// kd.
@@ -90,6 +92,23 @@ pub struct Plastic {
     pub is_nonlinear: bool,
     /// Roughness of the coat, which does not affect the base; `None` for a smooth coat.
     pub roughness: Option<Roughness>,
+}
+
+/// A mixture of a metal and a diffuse base below a dielectric interface (Burley 2012, *Physically
+/// Based Shading at Disney*). GGX microfacets have α = roughness² / q along u and roughness² q along
+/// v, with q = √(1 − 0.9 anisotropic).
+#[derive(Clone, Debug)]
+pub struct Principled {
+    /// Albedo of the base, and reflectance of the metal at normal incidence.
+    pub color: Texture,
+    /// The share of the metal, 0 to 1.
+    pub metallic: Texture,
+    /// The roughness, 0 to 1.
+    pub roughness: Texture,
+    /// The anisotropy, 0 to 1.
+    pub anisotropic: Texture,
+    /// Index of refraction of the interface relative to the outside, at least 1.
+    pub index: f64,
 }
 
 /// The distribution of microfacet normals.

@@ -18,7 +18,7 @@ const MAX_DEPTH: usize = 8;
 const MAX_MATERIALS: usize = 1 << 20;
 
 /// Plugins supported as materials.
-const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
+const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, principled, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
     /// Returns the index of a material, or `None` if a cause of refusal was reported.
@@ -83,6 +83,7 @@ impl<'a> MitsubaReader<'a> {
             "roughdielectric" => self.dielectric(object, true, false),
             "plastic" => self.plastic(object, false),
             "roughplastic" => self.plastic(object, true),
+            "principled" => self.principled(object),
             "phong" => self.phong(object),
             "twosided" => self.two_sided(object, depth),
             "mask" => self.mask(object, depth),

@@ -10,11 +10,12 @@ mod reflects;
 
 use etendue_field::Lobe;
 pub(crate) use etendue_scatter::BsdfSample;
-use etendue_scatter::{Bsdf, lambertian, mirror};
+use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture};
 use glam::{DVec2, DVec3};
 use place::{
-    Coated, conductor, facets, factor, fresnel, phong, rough_dielectric, share, smooth_dielectric,
+    Coated, conductor, facets, factor, fresnel, phong, principled, rough_dielectric, share,
+    smooth_dielectric,
 };
 pub use reflects::Reflects;
 
@@ -25,6 +26,7 @@ pub(crate) enum Scatter {
     Conductor(world::Conductor),
     Dielectric(world::Dielectric),
     Plastic(Box<Coated>),
+    Principled(Box<world::Principled>),
     Phong([Texture; 3]),
     TwoSided(Box<[Self; 2]>),
     Mask(Texture, Box<Self>),
@@ -39,6 +41,7 @@ impl From<&Material> for Scatter {
             Material::Conductor(conductor) => Self::Conductor(conductor.clone()),
             Material::Dielectric(dielectric) => Self::Dielectric(dielectric.clone()),
             Material::Plastic(plastic) => Self::Plastic(Box::new(Coated::new(plastic))),
+            Material::Principled(principled) => Self::Principled(Box::new(principled.clone())),
             Material::Phong {
                 diffuse,
                 specular,
@@ -76,6 +79,7 @@ impl Scatter {
                 of.reflectance.value(uv) * rough.value(wi, wo) * wi.z
             }),
             Self::Plastic(of) => of.at(uv).value(wi, wo) * wi.z,
+            Self::Principled(of) => principled(of, uv).value(wi, wo) * wi.z,
             Self::Phong(of) => phong(of, uv).value(wi, wo) * wi.z,
         }
     }
@@ -103,6 +107,7 @@ impl Scatter {
                 facets(of.roughness.as_ref(), uv).map_or(0.0, |facets| facets.density(wi, wo))
             }
             Self::Plastic(of) => of.at(uv).density(wi, wo),
+            Self::Principled(of) => principled(of, uv).density(wi, wo),
             Self::Phong(of) => phong(of, uv).density(wi, wo),
         }
     }
@@ -163,6 +168,7 @@ impl Scatter {
                 })
             }
             Self::Plastic(of) => of.at(uv).sample(wo, random),
+            Self::Principled(of) => principled(of, uv).sample(wo, random),
             Self::Phong(of) => phong(of, uv).sample(wo, random),
         }
     }
@@ -235,6 +241,13 @@ impl Scatter {
             Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
                 Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
             }),
+            Self::Principled(of) => {
+                let Microfacets {
+                    distribution,
+                    alpha: [a, b],
+                } = principled(of, uv).facets;
+                Reflects::Lobe(distribution.lobe((a * b).sqrt()))
+            }
             Self::Phong([_, _, exponent]) => Reflects::Lobe(Lobe::Phong {
                 exponent: exponent.value(uv),
             }),
@@ -253,6 +266,7 @@ impl Scatter {
             Self::Conductor(of) => [of.reflectance.value(uv), 0.0],
             Self::Plastic(of) => [of.at(uv).base_albedo(), of.specular.value(uv)],
             Self::Phong([diffuse, specular, _]) => [diffuse.value(uv), specular.value(uv)],
+            Self::Principled(of) => [principled(of, uv).base(), 1.0],
             _ => [1.0, 0.0],
         }
     }
@@ -265,6 +279,10 @@ impl Scatter {
                 side.base_share(uv, turned(wi), turned(wo))
             }
             Self::Plastic(of) => of.base_share(uv, wi, wo),
+            Self::Principled(of) => {
+                let at = principled(of, uv);
+                share(at.base_value(wi, wo), at.value(wi, wo))
+            }
             Self::Phong(of) => {
                 let phong = phong(of, uv);
                 share(phong.diffuse * lambertian::VALUE, phong.value(wi, wo))
@@ -290,7 +308,7 @@ impl Scatter {
             Self::Dielectric(of) => of.is_thin || of.roughness.is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().all(Self::is_smooth),
             Self::Mask(_, of) => of.is_smooth(),
-            Self::Diffuse(_) | Self::Plastic(_) | Self::Phong(_) => false,
+            Self::Diffuse(_) | Self::Plastic(_) | Self::Principled(_) | Self::Phong(_) => false,
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Materials at a surface point, as BSDFs of `etendue_scatter`.
 
-use etendue_field::Fresnel;
+use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_scatter::{
-    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric,
+    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, Principled, RoughDielectric,
     SmoothDielectric,
 };
 use etendue_world::{self as world, Roughness, Texture};
@@ -77,6 +77,24 @@ pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
         of.reflectance.value(uv)
     } else {
         of.transmittance.value(uv)
+    }
+}
+
+/// Returns a metal and a base at a point.
+pub(super) fn principled(of: &world::Principled, uv: DVec2) -> Principled {
+    let roughness = of.roughness.value(uv);
+    let squared = roughness * roughness;
+    let aspect = (1.0 - 0.9 * of.anisotropic.value(uv)).sqrt();
+    Principled {
+        facets: Microfacets {
+            distribution: MicrofacetDistribution::Ggx,
+            // Mitsuba has the same minimum.
+            alpha: [squared / aspect, squared * aspect].map(|alpha| alpha.max(1e-3)),
+        },
+        index: of.index,
+        color: of.color.value(uv),
+        metallic: of.metallic.value(uv),
+        roughness,
     }
 }
 

@@ -4,7 +4,7 @@
 use super::*;
 use etendue_transform::random::{Stream, unit, words};
 use etendue_world::MicrofacetDistribution::{self, Beckmann, Ggx};
-use etendue_world::{Conductor, Dielectric, Plastic};
+use etendue_world::{Conductor, Dielectric, Plastic, Principled};
 use std::f64::consts::PI;
 
 fn constant(value: f64) -> Texture {
@@ -72,6 +72,16 @@ fn materials() -> Vec<(&'static str, Material)> {
                 specular: constant(0.5),
                 exponent: constant(20.0),
             },
+        ),
+        (
+            "principled",
+            Material::Principled(Principled {
+                color: constant(0.6),
+                metallic: constant(0.3),
+                roughness: constant(0.5),
+                anisotropic: constant(0.8),
+                index: 1.5,
+            }),
         ),
         (
             "two sides",

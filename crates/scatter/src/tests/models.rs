@@ -1,7 +1,8 @@
 //! All models of the crate, with narrow and wide lobes, for tests.
 
 use crate::{
-    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric, lambertian,
+    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, Principled, RoughDielectric,
+    lambertian,
 };
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_sampling::chi_square::{ChiSquare, SphereCells};
@@ -156,6 +157,18 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
     model(name, 4.0, plastic)
 }
 
+pub(super) fn principled(color: f64, metallic: f64, roughness: f64) -> Model {
+    let mixture = Principled {
+        facets: ggx([roughness * roughness; 2]),
+        index: 1.5,
+        color,
+        metallic,
+        roughness,
+    };
+    // The facets sample at least a tenth of the directions.
+    model(format!("{mixture:?}"), 10.0, mixture)
+}
+
 pub(super) fn beckmann(alpha: [f64; 2]) -> Microfacets {
     Microfacets {
         distribution: MicrofacetDistribution::Beckmann,
@@ -184,6 +197,9 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
+    let shares = [[0.7, 0.0, 0.4], [0.5, 0.5, 0.7], [0.9, 1.0, 0.3]];
+    models
+        .extend(shares.map(|[color, metallic, roughness]| principled(color, metallic, roughness)));
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
     for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {

@@ -1,0 +1,85 @@
+//! Mitsuba's `principled` material without transmission.
+
+use super::object::MitsubaObject;
+use super::reader::MitsubaReader;
+use super::texture::as_number;
+use crate::range::MAX_SHARE;
+use crate::spectrum::Role;
+use etendue_world::{Material, Principled, Texture};
+
+/// Parameters of lobes that a world does not have. These parameters must be zero.
+const MISSING: [&str; 5] = ["spec_trans", "spec_tint", "sheen", "clearcoat", "flatness"];
+/// Parameters without effect where the missing lobes are zero.
+const IDLE: [&str; 2] = ["sheen_tint", "clearcoat_gloss"];
+
+impl<'a> MitsubaReader<'a> {
+    pub(super) fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
+        for name in IDLE {
+            let _ = self.property(object, name);
+        }
+        let missing = MISSING.map(|name| self.is_zero(object, name));
+        let index = self.principled_index(object);
+        let color = self.reflectance(object, "base_color", 0.5);
+        let metallic = self.parameter(object, "metallic", 0.0);
+        let roughness = self.parameter(object, "roughness", 0.5);
+        let anisotropic = self.parameter(object, "anisotropic", 0.0);
+        let of = Principled {
+            color: color?,
+            metallic: metallic?,
+            roughness: roughness?,
+            anisotropic: anisotropic?,
+            index: index?,
+        };
+        let is_supported = missing.into_iter().all(|found| found == Some(true));
+        is_supported.then_some(Material::Principled(of))
+    }
+
+    /// Reads a parameter from 0 to 1.
+    fn parameter(
+        &mut self,
+        object: &'a MitsubaObject,
+        name: &str,
+        default: f64,
+    ) -> Option<Texture> {
+        let texture = self.texture_or(object, name, Role::Number, default)?;
+        let texture = self.not_negative(object, name, texture)?;
+        if texture.largest() <= MAX_SHARE {
+            return Some(as_number(texture));
+        }
+        let message = format!("{name} goes up to {}; allowed: 0 to 1", texture.largest());
+        self.report.cause(self.place_of(object, name), message);
+        None
+    }
+
+    /// Checks that a parameter is zero everywhere; any other value is a cause of refusal.
+    fn is_zero(&mut self, object: &'a MitsubaObject, name: &str) -> Option<bool> {
+        let largest = self.parameter(object, name, 0.0)?.largest();
+        if largest > 0.0 {
+            let message = format!("{name} of principled is {largest}; allowed: 0");
+            self.report.cause(self.place_of(object, name), message);
+        }
+        Some(largest <= 0.0)
+    }
+
+    /// Returns the index of refraction, which is given itself or by the reflectance at normal
+    /// incidence, 0.08 `specular`.
+    fn principled_index(&mut self, object: &'a MitsubaObject) -> Option<f64> {
+        let has_specular = self.has(object, "specular");
+        if !self.has(object, "eta") {
+            let specular = match has_specular {
+                true => {
+                    self.number_within(object, "specular", "0 to 1", |v| (0.0..=1.0).contains(&v))?
+                }
+                false => 0.5,
+            };
+            return Some(2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0);
+        }
+        if has_specular {
+            let message = "specular is given together with eta; allowed: one of them";
+            self.report
+                .cause(self.place_of(object, "specular"), message);
+            return None;
+        }
+        self.number_within(object, "eta", "1 or more", |v| v >= 1.0)
+    }
+}
