@@ -25,7 +25,7 @@ use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A scene file as written. Lengths in metres; slopes are tangents of angles.
+/// A scene file as written. Lengths are in metres; slopes are tangents of angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Scene", deny_unknown_fields)]
 pub struct SceneFile {
@@ -225,7 +225,7 @@ pub enum HalfName {
     Above,
 }
 
-/// The central ray: it leaves the light's centre and travels from surface to surface, each of which
+/// The central ray. It leaves the light's centre and travels from surface to surface; each surface
 /// sends it towards the centre of the next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Path", deny_unknown_fields)]
@@ -276,19 +276,19 @@ pub struct PlaneFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Emission, Distance(…), Before(…) or After(…)", r#"Before("floor")"#))]
 pub enum Place {
-    /// At the light, for light as it leaves.
+    /// At the light; records the light that leaves.
     Emission,
-    /// In the plane of these blockers or this surface, before light meets them.
+    /// In the plane of these blockers or this surface; records the light that arrives there.
     Before(String),
-    /// In the plane of these blockers, after light has passed them; or in the plane of this surface,
-    /// as light leaves it.
+    /// In the plane of these blockers or this surface; records the light that has passed the
+    /// blockers or leaves the surface.
     After(String),
     /// At this distance from the light, along the path.
     Distance(#[schemars(transform = depends("0 to the end of the path"))] f64),
 }
 
-/// The window: a profile for each coordinate; by default, y has the
-/// profile of x, and v has that of u.
+/// The window, with a profile for each coordinate. By default, y has the
+/// profile of x, and v has the profile of u.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Window", deny_unknown_fields)]
 #[schemars(transform = told("a window", "(x: Hann(0.5), u: Hann(0.5))"))]
@@ -300,10 +300,10 @@ pub struct WindowFile {
     #[serde(default)]
     #[schemars(transform = profile_of_place)]
     pub y: Option<Profile>,
-    /// Profile along u, as a slope.
+    /// Profile along the slope u.
     #[schemars(transform = profile_of_slope)]
     pub u: Profile,
-    /// Profile along v.
+    /// Profile along the slope v.
     #[serde(default)]
     #[schemars(transform = profile_of_slope)]
     pub v: Option<Profile>,
@@ -356,10 +356,10 @@ pub struct RunFile {
     #[serde(deserialize_with = "count")]
     #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors are estimated from the spread between batches"))]
     pub batches: u32,
-    /// Share of correct scenes that the verdict may reject, for all planes together.
+    /// Probability that the verdict rejects a correct scene, for all planes together.
     #[schemars(transform = told("a share of correct scenes that may fail", "0.01"), transform = within(1e-6, 0.5))]
     pub alpha: f64,
-    /// Noise, as a share of the spectrum, above which a plane does not pass.
+    /// Largest noise, as a share of the spectrum, with which a plane passes.
     #[schemars(transform = told("a share of the spectrum", "0.1"), transform = within(1e-4, 1.0))]
     pub resolution: f64,
     /// How photons leave the light.
@@ -423,10 +423,10 @@ impl Visitor<'_> for Count {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Aimed or Plain", "Aimed"))]
 pub enum Emission {
-    /// Aimed at the windows of the planes: a mixture with one proposal for each window.
+    /// Photons are aimed at the windows of the planes, by one distribution for each window.
     Aimed,
-    /// In proportion to the light's emission: uniform over the area, and with the density of the
-    /// cosine over directions.
+    /// Photons leave as the light emits: uniformly over the area, and in proportion to the cosine
+    /// over directions.
     Plain,
 }
 
@@ -434,8 +434,8 @@ pub enum Emission {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Net or Random", "Net"))]
 pub enum Sampling {
-    /// Scrambled Sobol' nets, one for each batch: less noise, with the largest gain for batches of
-    /// 2ᵐ photons.
+    /// Scrambled Sobol' nets, one for each batch. They reduce noise, and most for batches of 2ᵐ
+    /// photons.
     Net,
     /// Independent random numbers.
     Random,

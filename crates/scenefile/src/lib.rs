@@ -1,8 +1,8 @@
 //! Reads and checks scene files as they are written: in RON or JSON, described by a schema, and
 //! checked field by field.
 //!
-//! The types of [`SceneFile`] state the description, the notation and the range of each field,
-//! each of them once. The schema, the hints in messages and the checks of all numbers are derived
+//! The types of [`SceneFile`] are the only place that states the description, the notation and the
+//! range of each field. The schema, the hints in messages and the checks of all numbers are derived
 //! from these types. The crate `etendue-scene`, which resolves a file to a scene, checks whether
 //! the values are consistent with each other.
 

@@ -25,7 +25,7 @@ impl SceneFile {
         serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
 
-    /// Returns the scene file with several fields set one after the other, each as by
+    /// Returns the scene file after several fields have been set, one after the other, by
     /// [`Self::with`].
     ///
     /// # Errors

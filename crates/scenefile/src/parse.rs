@@ -94,8 +94,8 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     }
 }
 
-/// Returns the error in terms of the names of variants and fields, and whether the error concerns
-/// the entire value.
+/// Describes an error that concerns the name of a variant or a field, and returns whether it
+/// concerns the entire value. Returns `None` for other errors.
 fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     Some(match code {
         Error::NoSuchEnumVariant {

@@ -112,8 +112,7 @@ struct OpenBracket<'a> {
     named: bool,
     index: usize,
     key: Option<&'a str>,
-    /// The value that began after the last comma, as the number of steps of the path that lead to
-    /// it.
+    /// The number of steps of the path that lead to the value that began after the last comma.
     value: Option<Option<usize>>,
 }
 
@@ -246,8 +245,8 @@ fn string(text: &str) -> Option<usize> {
     Some(end.map_or(text.len(), |end| open + end + 1 + fence.len()))
 }
 
-/// Returns the number of bytes before the next bracket, comma, colon, quote, blank or comment; at
-/// least one character if there is one.
+/// Returns the number of bytes before the next bracket, comma, colon, quote, blank or comment. If
+/// the text is not empty, at least its first character is counted.
 pub(crate) fn word(text: &str) -> usize {
     let ends = |c: char| c.is_whitespace() || "()[]{},:\"/".contains(c);
     let first = text.chars().next().map_or(0, char::len_utf8);

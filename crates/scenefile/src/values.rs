@@ -32,7 +32,7 @@ impl SceneFile {
     }
 }
 
-/// A traversal of a scene file together with its schema, in the form of a serialiser.
+/// A serialiser that visits the values of a scene file together with its schema.
 struct ValueWalk<'a> {
     faults: &'a mut Vec<Fault>,
     path: &'a mut String,

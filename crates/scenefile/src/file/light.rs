@@ -111,7 +111,7 @@ pub enum LightFile {
         /// Radiance by direction.
         map: EnvironmentFile,
     },
-    /// The rays of a file, at their intersections with the plane through the centre that is
+    /// The rays of a file. They start where they cross the plane through the centre that is
     /// perpendicular to `path.direction`; rays that go backwards are omitted.
     Rays {
         /// Position of the file's origin and start of the central ray, in world coordinates.
@@ -130,8 +130,8 @@ pub enum LightFile {
         #[serde(default)]
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: Option<[f64; 3]>,
-        /// Flux of all rays of the file, in W. By default, the flux stated in the file, which must be
-        /// in W, or in lm if the file states the total flux in both W and lm.
+        /// Flux of all rays of the file, in W. By default, the flux that the file states. This flux
+        /// must be in W, or in lm if the file states the total flux in both W and lm.
         #[serde(default)]
         #[schemars(transform = told("a flux in watts", "0.5"))]
         flux: Option<f64>,

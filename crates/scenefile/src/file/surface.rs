@@ -65,8 +65,8 @@ pub enum SurfaceFile {
         #[schemars(transform = sides)]
         size: [f64; 2],
         /// Normal of the rectangle, of any length; by default, opposite to `path.direction`. One pair
-        /// of edges is along the part of the path's X axis that is orthogonal to the normal (of the Y
-        /// axis, if X is along the normal); the other pair is orthogonal to the first.
+        /// of edges is along the part of the path's X axis that is orthogonal to the normal; if X
+        /// is along the normal, the Y axis is used. The other pair is orthogonal to the first.
         #[serde(default)]
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: Option<[f64; 3]>,
@@ -228,8 +228,8 @@ pub struct BrdfFile {
     /// Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
-    /// Factor that depends on the angle of incidence: values at equal steps from the normal to 90
-    /// degrees, interpolated linearly; 1 by default.
+    /// Factor that depends on the angle of incidence. Its values, at equal steps from the normal to
+    /// 90 degrees, are interpolated linearly; 1 by default.
     #[serde(default)]
     #[schemars(transform = factors_by_angle)]
     pub incoming: Option<Vec<f64>>,
