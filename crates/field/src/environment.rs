@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 /// Light from infinity: radiance that depends on direction alone.
 ///
-/// Environments shine forward: a ray of a leg goes along (u, v, 1). Therefore only directions from
-/// the hemisphere in which the central ray begins carry light, whatever the map contains. The light
-/// begins in the plane across the central ray's start, and nothing behind that plane occludes it.
+/// Environments shine forward, because a ray in two-plane coordinates has the direction (u, v, 1).
+/// Light that would travel against the central ray is left out, even if the map contains it. The
+/// light begins in the plane that is perpendicular to the central ray at the ray's start. Nothing
+/// behind this plane occludes the light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
     /// The axes of the map, in the coordinates of the frame at the light: Y is up, D is to the front, and X = Y × D.
@@ -41,16 +42,17 @@ pub struct SphericalGaussian {
     pub width: f64,
 }
 
-/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of
-/// pixels, periodic in longitude. Between the centres of the first or the last row and the poles,
-/// radiance is constant along the meridian.
+/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹. Radiance is bilinear between the
+/// centres of pixels and periodic in longitude. Between the centres of the first or the last row
+/// and the poles, radiance is constant along the meridian.
 ///
 /// The axes are those of `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude π/2.
-/// Longitude is 0 in the middle, to the front (Z), and grows to the left; π/2 is along X. So the
-/// map is seen from inside. A pixel is an area, as in other renderers. The centre of column i of w
-/// is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π (½ − (j +
-/// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
-/// centre of row j at latitude π (½ − j/(h − 1)).
+/// The middle of the map is at longitude 0, which is the front (Z). Longitude grows to the left,
+/// and π/2 is along X, so the map shows the sphere of directions from inside. A pixel is an area,
+/// as in other renderers. In a map of w columns and h rows, the centre of column i is at longitude
+/// π (1 − (2 i + 1)/w), and the centre of row j is at latitude π (½ − (j + ½)/h). In Mitsuba 3, the
+/// centres of the first and the last row are at the poles instead, and the centre of row j is at
+/// latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
@@ -119,7 +121,7 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns the map of a picture that has the centres of its first and its last row at the
+    /// Returns the map of a picture in which the centres of the first and the last row are at the
     /// poles.
     #[must_use]
     pub fn from_pole_to_pole(radiance: Raster) -> Self {
@@ -130,8 +132,8 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns a map of at least one pixel, with `radiance` at the direction of each pixel's
-    /// centre.
+    /// Returns a map of at least one pixel. The value of each pixel is `radiance` at the direction
+    /// of the pixel's centre.
     #[must_use]
     pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
         let (width, height) = (width.max(1), height.max(1));
@@ -196,8 +198,8 @@ fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3
 mod tests {
     use super::*;
 
-    /// Tests the axes of `OpenEXR`: up at the top, +X (longitude π/2) a quarter from the left, +Z
-    /// in the middle.
+    /// Tests the axes of `OpenEXR`: up is at the top, +X (longitude π/2) is a quarter of the width
+    /// from the left, and +Z is in the middle.
     #[test]
     fn the_map_is_seen_from_within() {
         let map = LatLong::from_fn(8, 4, |_| 1.0);

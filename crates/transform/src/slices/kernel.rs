@@ -7,15 +7,16 @@ use std::f64::consts::{PI, TAU};
 /// Number of cells of the fine grid that a point is spread over, along each axis.
 pub(crate) const WIDTH: usize = 8;
 
-/// Half the width: the kernel is even, so four taps give all eight.
+/// Half of the width. The kernel is even, so four taps determine all eight taps.
 const HALF: usize = WIDTH / 2;
 
-/// Cells of a period for each frequency step from zero to the largest: an upsampling of 2.5.
+/// Number of cells of a period for each frequency step from zero to the largest frequency. Five
+/// cells are an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// The parameter β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling.
-/// The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point; at an upsampling of
-/// 2 it would be 4·10⁻⁷.
+/// The parameter β of the kernel. At this upsampling, 2.35 per cell of width is the best of the
+/// values 2.30, 2.35, …. The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point;
+/// at an upsampling of 2 it would be 4·10⁻⁷.
 const BETA: f64 = 2.35 * WIDTH as f64;
 
 /// Number of coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
@@ -31,8 +32,9 @@ const TERMS: usize = 4;
 /// peak. The spectrum is divided by the transform of these polynomials, so only their roughness
 /// matters: a higher degree, or the kernel itself, gives the same error to two digits.
 ///
-/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products
-/// and sums are rounded separately, never fused, so every SIMD level gives bitwise the same result.
+/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps determine all eight taps.
+/// Products and sums are rounded separately and never fused, so every SIMD level gives bitwise the
+/// same result.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Coefficients of t⁰, t², t⁴… of taps 0 to 3.
@@ -92,14 +94,15 @@ impl Kernel {
     /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
     /// cycles per cell.
     ///
-    /// The result is the transform of the polynomials that are used for spreading. A Gauss–Legendre
-    /// rule on each cell computes it, exactly for |ξ| ≤ 1/2 apart from rounding errors.
+    /// The result is the transform of the polynomials that are used for spreading. It is computed
+    /// by a Gauss–Legendre rule on each cell. For |ξ| ≤ 1/2, the rule is exact apart from rounding
+    /// errors.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
             let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
             for tap in 0..HALF {
-                // Taps 4 to 7 mirror taps 3 to 0, which gives twice the cosine.
+                // Taps 4 to 7 mirror taps 3 to 0, so each pair of taps contributes twice a cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);
                 sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
             }
@@ -172,7 +175,7 @@ mod tests {
                 worst = worst.max((tap - exact(j, f)).abs());
             }
             for (j, tap) in each[0][..HALF].iter().enumerate() {
-                // The formula has the same sums, with a zero added first.
+                // The formula computes the same sums, but starts from zero.
                 assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
             let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));
