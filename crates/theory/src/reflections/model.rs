@@ -1,5 +1,5 @@
-//! Implements the model of several surfaces in sequence and a plane behind them: its parameters and
-//! its prediction.
+//! Implements the model of several surfaces in sequence and a plane behind them. The model has
+//! parameters and a prediction.
 
 use super::{Interaction, PathSurface, ReflectionSystem, predict};
 use crate::model::{Model, Observed, Over, ShiftedModels};

@@ -1,5 +1,5 @@
-//! Implements the model of a surface with a BRDF and a plane behind it: its parameters and its
-//! prediction.
+//! Implements the model of a surface with a BRDF and a plane behind it. The model has parameters
+//! and a prediction.
 
 use super::{ScatteringSystem, chain, predict, with_rays};
 use crate::model::{Model, Observed, Over, ShiftedModels};

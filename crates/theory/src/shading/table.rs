@@ -5,9 +5,9 @@ use etendue_field::AngleTable;
 use std::f64::consts::FRAC_PI_2;
 
 /// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
-/// in cycles per radian. This is the transform of the factor f(θi) or h(θo) of a separable BRDF
-/// (Durand et al. 2005, section 4.3), where g is the cosine if the factor includes it. The
-/// transform is real and even.
+/// in cycles per radian. The product is the factor f(θi) or h(θo) of a separable BRDF (Durand et
+/// al. 2005, section 4.3). If the factor includes the cosine, g is the cosine. The transform is
+/// real and even.
 ///
 /// The transform is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth
 /// g.
