@@ -102,8 +102,8 @@ pub enum Lobe {
 }
 
 impl Lobe {
-    /// Checks whether the lobe is centred on the mirror direction; otherwise it is centred on the
-    /// normal.
+    /// Checks whether the lobe is centred on the mirror direction. If it is not, it is centred on
+    /// the normal.
     #[must_use]
     pub fn is_about_mirror(&self) -> bool {
         !matches!(self, Self::Lambertian)

@@ -14,7 +14,8 @@ use std::sync::Arc;
 /// behind this plane occludes the light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
-    /// The axes of the map, in the coordinates of the frame at the light: Y is up, D is to the front, and X = Y × D.
+    /// The axes of the map, in the coordinates of the frame at the light. Y points up, D points to
+    /// the front, and X = Y × D.
     pub frame: Frame,
     /// The radiance in each direction.
     pub map: EnvironmentMap,
@@ -46,13 +47,13 @@ pub struct SphericalGaussian {
 /// centres of pixels and periodic in longitude. Between the centres of the first or the last row
 /// and the poles, radiance is constant along the meridian.
 ///
-/// The axes are those of `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude π/2.
-/// The middle of the map is at longitude 0, which is the front (Z). Longitude grows to the left,
-/// and π/2 is along X, so the map shows the sphere of directions from inside. A pixel is an area,
-/// as in other renderers. In a map of w columns and h rows, the centre of column i is at longitude
-/// π (1 − (2 i + 1)/w), and the centre of row j is at latitude π (½ − (j + ½)/h). In Mitsuba 3, the
-/// centres of the first and the last row are at the poles instead, and the centre of row j is at
-/// latitude π (½ − j/(h − 1)).
+/// The axes are the same as in `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude
+/// π/2. The middle of the map is at longitude 0, which is the front (Z). Longitude grows to the
+/// left, and π/2 is along X, so the map shows the sphere of directions from inside. A pixel is an
+/// area, as in other renderers. In a map of w columns and h rows, the centre of column i is at
+/// longitude π (1 − (2 i + 1)/w), and the centre of row j is at latitude π (½ − (j + ½)/h). In
+/// Mitsuba 3, the centres of the first and the last row are at the poles instead, and the centre of
+/// row j is at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
@@ -74,8 +75,8 @@ impl Environment {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Returns the unit vector towards the origin of light that travels along a direction, in the
-    /// coordinates of the map.
+    /// Returns the direction from which light comes if it travels along `along`. The result has
+    /// unit length and is in the coordinates of the map.
     #[inline]
     #[must_use]
     pub fn origin_of(&self, along: DVec3) -> DVec3 {
@@ -213,12 +214,12 @@ mod tests {
             // The limit is the rounding error of angles.
             assert!((map.direction(place) - direction).length() < 1e-15);
             let [column, row] = map.place(direction);
-            assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
+            assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // rounding
         }
         let map = LatLong::from_pole_to_pole(Raster::new(8, 4, vec![1.0; 32]).unwrap());
         for (direction, row) in [(DVec3::Y, 0.5), (DVec3::X, 2.0), (DVec3::NEG_Y, 3.5)] {
             let [column, found] = map.place(direction);
-            assert!((found - row).abs() < 1e-14); // likewise
+            assert!((found - row).abs() < 1e-14); // rounding
             assert!((map.direction([column, row]) - direction).length() < 1e-15);
         }
         let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;

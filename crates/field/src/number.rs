@@ -49,8 +49,8 @@ pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
 }
 
-/// Errors below this limit are written with a power of ten, because zeros would hide them in a
-/// decimal.
+/// Errors below this limit are written with a power of ten. In a decimal number, zeros would hide
+/// their digits.
 const MIN_PLAIN_ERROR: f64 = 1e-8;
 
 /// Formats value ± error, to two digits of the error.

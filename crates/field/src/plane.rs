@@ -39,8 +39,8 @@ pub enum Orientation {
     /// The tangent plane at the point where the central ray hits the surface. Positions are along T
     /// and B, and angles are relative to the normal N at this point.
     Tangent,
-    /// The surface itself. Positions are those of the point that the ray hits, along T and B.
-    /// Angles are relative to the normal at the point that the ray hits; T and B are turned
+    /// The surface itself. Positions along T and B are the coordinates of the point that the ray
+    /// hits. Angles are relative to the normal at the point that the ray hits; T and B are turned
     /// together with the normal, by the smallest angle.
     LocalNormals,
     /// As `LocalNormals`, but arriving light is rotated about the normal into the direction of mirror
@@ -67,7 +67,7 @@ pub struct VirtualPlane {
     /// The leg of the path that the plane is on: the number of surfaces that the light has left
     /// before the plane.
     pub leg: usize,
-    /// The side of the mask or surface at the plane's distance.
+    /// The side on which the plane observes light, relative to a mask or surface at its distance.
     pub side: Side,
     /// The quantity recorded.
     pub quantity: Quantity,

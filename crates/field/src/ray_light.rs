@@ -12,9 +12,9 @@ pub struct FluxRay {
     pub flux: f64,
 }
 
-/// Rays through the plane of the light, all of which go forward. The rays are straight lines on
-/// both sides of the plane. If a ray of the file begins beyond the plane, it is extended back to
-/// the plane.
+/// Rays through the plane of the light. All rays go forward. The rays are straight lines on both
+/// sides of the plane. If a ray of the file begins beyond the plane, it is extended back to the
+/// plane.
 ///
 /// The light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[derive(Clone, Debug, PartialEq)]

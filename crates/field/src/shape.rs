@@ -108,7 +108,7 @@ pub struct HalfPlane {
     pub axis: usize,
     /// The coordinate of the edge, in metres.
     pub edge: f64,
-    /// Whether the half-plane contains the coordinates above the edge; otherwise it contains the
+    /// Whether the half-plane contains the coordinates above the edge. If not, it contains the
     /// coordinates below the edge.
     pub above: bool,
 }

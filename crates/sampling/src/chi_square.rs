@@ -56,8 +56,9 @@ impl ChiSquare {
     /// Checks that χ² is within four and a half standard deviations. One comparison in 300,000
     /// exceeds this limit by chance.
     ///
-    /// The integral comes from the midpoint rule over cells of 32 × 32 points, some of which are
-    /// cut by edges of the density. The share comes from some 100,000 samples.
+    /// Also checks that the excess is below 0.005, which allows for two errors. The integral comes
+    /// from a midpoint rule of 32 × 32 points in each cell, and edges of the density cut some
+    /// cells. The share comes from about 100,000 samples.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.chi2 < self.cells + 4.5 * (2.0 * self.cells).sqrt() && self.excess.abs() < 5e-3

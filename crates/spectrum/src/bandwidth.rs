@@ -137,7 +137,7 @@ mod tests {
         let rho = bandwidth_rho(power.view(), &grid, 0.95).unwrap();
         let nu = bandwidth_nu(power.view(), &grid, 0.95).unwrap();
         assert!((rho - 1.386 * 0.8).abs() < 0.02, "{rho}"); // curvature within a cell of 0.3
-        assert!((nu - 1.386).abs() < 0.02, "{nu}"); // the same for 0.25
+        assert!((nu - 1.386).abs() < 0.02, "{nu}"); // curvature within a cell of 0.25
     }
 
     /// Returns ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.

@@ -298,7 +298,7 @@ mod tests {
     }
 
     /// Tests sines without their mean at several azimuths. The bandwidth of a sine of frequency f
-    /// is |f| plus the width of the window's main lobe. Along a direction e, the bandwidth is that
+    /// is |f| plus the width of the window's main lobe. Along a direction e, it has the bandwidth
     /// of a sine of frequency f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {

@@ -1,7 +1,7 @@
 //! Subtracts the mean of a light field from the field.
 //!
-//! Most of the power of a typical spectrum comes from the mean of the light behind the window.
-//! The bandwidth of the total power would therefore say little about how fast the light changes.
+//! Most of the power of a typical spectrum comes from the mean of the light in the window. The
+//! bandwidth of the total power would therefore say little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use ndarray::{Array2, Array3};
@@ -14,7 +14,7 @@ pub struct WindowedMean {
 }
 
 impl WindowedMean {
-    /// Builds the mean behind a window, at the frequencies of a grid.
+    /// Prepares the subtraction of the mean under a window, at the frequencies of a grid.
     #[must_use]
     pub fn new(window: &Window, grid: &SliceGrid) -> Self {
         let shape = transform(window, grid);

@@ -55,7 +55,7 @@ fn threads_and_memory_do_not_change_a_bit() {
     assert!(one.full_radial.sigma.iter().all(|sigma| *sigma > 0.0));
 }
 
-/// Checks that the photons, tallies and means over batches on the grid equal those of the slices.
+/// Checks that the grid and the slices have the same photons, tallies and means over batches.
 #[test]
 fn the_grid_sees_what_the_slices_see() {
     let source = shower();

@@ -2,8 +2,8 @@
 
 use etendue_field::{Light, Patch, Shape};
 
-/// A parameter of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of
-/// the elements of a system.
+/// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
+/// an element of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// The size of a light: the side along X of a rectangle, whose aspect ratio is constant, or the

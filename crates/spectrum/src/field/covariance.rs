@@ -72,7 +72,7 @@ impl Moments {
         }
     }
 
-    /// Returns the band whose largest frequencies are half of those of this band.
+    /// Returns the band whose largest frequencies are half of the largest frequencies of this band.
     fn halved(&self) -> Self {
         Self {
             grid: self.grid,

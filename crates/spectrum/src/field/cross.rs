@@ -8,9 +8,9 @@ use ndarray::Array2;
 /// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
 /// independently, over the azimuth of (Ωu, Ωv).
 ///
-/// Arrays are indexed [|Ωxy|, |Ωuv|], and the bins are those of [`RadialBins`]. The unit of the
-/// power is the square of the unit of ℓ̂. A full radial spectrum does not show the sign of a shear,
-/// but the slices show it.
+/// Arrays are indexed [|Ωxy|, |Ωuv|], and [`RadialBins`] defines the bins. The unit of the power is
+/// the square of the unit of ℓ̂. A full radial spectrum does not show the sign of a shear, but the
+/// slices show it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullRadial {
     /// Edges of the bins in |Ωxy|, cycles per metre.

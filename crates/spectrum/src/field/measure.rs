@@ -116,10 +116,10 @@ pub struct FieldGroup {
 /// Measures the light field at plane number `index` of `source` on the grid from
 /// [`FieldOptions::grid`].
 ///
-/// The batches and photons are those of [`measure`](crate::measure), and field and spectrum are
-/// unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices). The i-th
-/// non-empty batch belongs to group i mod R. One thread measures a group sequentially, and groups
-/// are summed in order, so the result is bitwise identical on any number of threads.
+/// The batches and photons are the same as in [`measure`](crate::measure). The field and the
+/// spectrum are unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices).
+/// The i-th non-empty batch belongs to group i mod R. One thread measures a group sequentially, and
+/// groups are summed in order, so the result is bitwise identical on any number of threads.
 ///
 /// One call measures only one plane, because the grids of a plane need much memory: see
 /// [`FieldOptions::bytes`]. `progress` is called with the number of photons as they are traced.

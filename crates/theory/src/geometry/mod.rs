@@ -31,8 +31,8 @@
 //! direction of longitude θ and latitude φ is cos φ (sin θ T + cos θ N) + sin φ B.
 //!
 //! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
-//! holds to first order in the size e of the neighbourhood: the relative error of the step falls
-//! as e, and at normal incidence as e².
+//! holds to first order in the size e of the neighbourhood. The relative error of the step falls as
+//! e, and at normal incidence as e².
 //!
 //! **The printed equations.** Some equations of Durand et al. 2005 differ from the maps of this
 //! module; [`Edition`] contains both versions.

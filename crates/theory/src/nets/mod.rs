@@ -1,7 +1,7 @@
 //! Sums over rays that represent a light field, by randomised quasi-Monte Carlo.
 //!
 //! Light fields without a closed form are integrals over rays: positions and slopes at the plane,
-//! and points of the light. The nodes are those of scrambled nets ([`sobol`]). Each of
+//! and points of the light. The nodes are the points of scrambled nets ([`sobol`]). Each of
 //! [`REPLICATES`] independent nets is an unbiased prediction, and the error of their mean is
 //! computed from their spread. If there are too few nodes, the nets disagree. Nodes are added until
 //! the error is below the requested error, or until a budget is spent.
@@ -228,7 +228,7 @@ const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Approximate number of fields that are summed in one pass over all derivatives.
 const FIELDS: f64 = 12.0;
-/// Estimated number of computing steps of a transform per frequency.
+/// Estimated number of computing steps of a transform for each frequency.
 const TRANSFORM: f64 = 300.0;
 
 /// Estimates the work of a prediction by nets that uses all of its budget. The estimate includes

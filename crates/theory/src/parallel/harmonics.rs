@@ -81,8 +81,8 @@ impl Harmonics {
         if path.receiver().is_some() {
             return None;
         }
-        // A spline of order 3 reduces aliases from beyond twice the Nyquist frequency to less than
-        // 1/27.
+        // A spline of order 3 multiplies aliases from beyond twice the Nyquist frequency by less
+        // than 1/27.
         let reach = if folded.is_some() { 2.0 } else { 1.0 };
         let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
@@ -197,7 +197,7 @@ impl HarmonicTable {
     }
 }
 
-/// Number of aliases on either side of a frequency that are added to it.
+/// Number of aliases from each side that are added to a frequency.
 const FOLDS: u32 = 4;
 
 /// The frequencies along an axis of a table, with the aliases that coincide on its grid.

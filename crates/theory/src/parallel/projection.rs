@@ -25,10 +25,10 @@ const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
-/// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at
-/// frequency zero. Each polygon is clipped to each cell, where the window is integrated by a Gauss
-/// rule, so edges cause no aliasing. Discs are split into strips of a twentieth of a cell or
-/// wider. Unit: W m⁻² sr⁻¹ · m.
+/// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at frequency
+/// zero. Each polygon is clipped to each cell, and the window is integrated over the clipped
+/// polygon by a Gauss rule. Edges therefore cause no aliasing. Discs are split into strips of a
+/// twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -284,7 +284,7 @@ mod tests {
         };
         for (window, bins, close) in [
             (window(Profile::Hann(0.5), Profile::Hann(0.3)), 64, 1e-13), // rounding
-            (window(Profile::Hann(0.5), Profile::Hann(0.3)), 8, 1e-11),  // as said at NODES
+            (window(Profile::Hann(0.5), Profile::Hann(0.3)), 8, 1e-11),  // stated at NODES
             (window(gaussian, Profile::Box(0.3)), 37, 1e-13),            // rounding
         ] {
             let grid = ProjectionGrid::new(&window, bins);
@@ -313,8 +313,8 @@ mod tests {
         shaded.operators.push(cosine());
         let round = chain_of(spot(disc([0.05, 0.0], 0.2), 0.0), masks.clone());
         for (chain, close) in [
-            (chain_of(square, masks.clone()), 1e-11), // as said at NODES
-            (chain_of(point.clone(), masks.clone()), 1e-11), // as said at NODES
+            (chain_of(square, masks.clone()), 1e-11), // stated at NODES
+            (chain_of(point.clone(), masks.clone()), 1e-11), // stated at NODES
             (chain_of(point, [(0.0, None)]), 1e-11),  // on an edge between cells
             (chain_of(spot(oblong, 20.0), masks), 1e-11), // the same series on both sides
             (shaded, 1e-11),                          // the same series on both sides

@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn profiles_may_differ() {
         let (worst, ..) = check([Profile::Hann(0.3), Profile::Box(1.1)], -2.0);
-        assert!(worst < 2e-8); // as above
+        assert!(worst < 2e-8); // the same residuals
     }
 
     #[test]

@@ -28,8 +28,8 @@ const FOR_PICTURES: RayBudget = RayBudget {
 /// Returns the prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.
 ///
-/// For a projector, point or beam this function uses a midpoint rule if no sharp edge cuts the
-/// light and the rule converges; otherwise it uses nets of rays. Derivatives are central
+/// For a projector, point or beam, this function uses a midpoint rule if no sharp edge cuts the
+/// light and the rule converges. In all other cases, it uses nets of rays. Derivatives are central
 /// differences between two predictions from the same sampled rays, so the derivatives are accurate
 /// to about a per cent. The result is bitwise identical on any number of threads.
 pub(crate) fn predict(

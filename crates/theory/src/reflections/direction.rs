@@ -105,7 +105,7 @@ impl OutgoingDirections<'_> {
         GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])
     }
 
-    /// Returns the longitude and latitude of a direction, minus those of the central ray.
+    /// Returns the longitude and latitude of a direction relative to the central ray.
     fn angles(&self, direction: DVec3) -> [f64; 2] {
         let ScatteringSurface {
             frame, outgoing, ..

@@ -189,7 +189,7 @@ mod tests {
         };
         let phong = total(Lobe::Phong { exponent: 40.0 }, false);
         assert!((phong - 1.0).abs() < 1e-12); // quadrature of a polynomial in cos θ
-        assert!((total(Lobe::Lambertian, true) - 1.0).abs() < 1e-12); // as above
+        assert!((total(Lobe::Lambertian, true) - 1.0).abs() < 1e-12); // the same quadrature
         for lobe in [
             Lobe::Beckmann { roughness: 0.1 },
             Lobe::Ggx { roughness: 0.02 },

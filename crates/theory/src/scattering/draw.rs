@@ -62,7 +62,7 @@ impl LightStrategy {
     }
 
     /// Returns the approximate computing time of a ray with this strategy. The time is relative to
-    /// that of a ray that is sampled by the window and has a single part of the light.
+    /// the time of a ray that is sampled by the window and has a single part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }

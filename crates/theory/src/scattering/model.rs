@@ -49,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// For a sum of BRDFs, the parameters albedo and lobe are those of the first BRDF.
+    /// For a sum of BRDFs, the parameters albedo and lobe belong to the first BRDF.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,

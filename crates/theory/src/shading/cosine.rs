@@ -76,7 +76,7 @@ mod tests {
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
             // The limit is three times the rounding error of ln Γ for arguments up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
-            assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
+            assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // rounding
         }
     }
 

@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn unit_integrals_and_transforms() {
         for lobe in LOBES {
-            assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
+            assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // the stated error
             for omega in [0.0, 0.3, 2.0, 11.0] {
                 // The trapezoid rule converges exponentially for functions that vanish at the ends,
                 // and for functions that are periodic because 2πΩ is an integer.
@@ -220,7 +220,7 @@ mod tests {
             let n = f64::from(n);
             let expected = libm::pow((p - root) / q, n) * (1.0 + n * root / p);
             let got = lobe.spectrum(n / (2.0 * PI));
-            assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // as promised
+            assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // the stated error
         }
     }
 
@@ -231,7 +231,7 @@ mod tests {
         // divided by 2√2 πσ.
         for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
             let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
-            assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised
+            assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // the stated error
         }
         // A Phong lobe is nearly a Gaussian of σ² = 1/n.
         let phong = PlanarLobe::Phong { exponent: 400.0 }.cutoff(0.99);

@@ -36,7 +36,7 @@ mod tests {
         };
         for omega in [0.0, 0.3, 2.0, 11.0] {
             let constant = table_hat(&of(&[1.0, 1.0, 1.0]), libm::cos, omega);
-            assert!((constant - cosine_hat(omega)).abs() < 1e-12); // as promised
+            assert!((constant - cosine_hat(omega)).abs() < 1e-12); // the stated error
             // The factor 1 − |θ|/(π/2) has the transform π/2 sinc²(Ω π/2).
             let half = 0.5 * PI * omega * 0.5 * TAU;
             let sinc = if omega > 0.0 {
@@ -48,7 +48,7 @@ mod tests {
             assert!(
                 (triangle - FRAC_PI_2 * sinc * sinc).abs() < 1e-12,
                 "{omega}"
-            ); // as promised
+            ); // the stated error
         }
     }
 }

@@ -212,8 +212,8 @@ mod tests {
                 let scale = at(m as f64, rows) * at(nu, columns) / 2.0;
                 let period = (n + columns - grid.nu.half) % columns;
                 let off = found * scale - plain(&fine, placement, [m, period]);
-                // The limit covers the rounding errors of sums of up to 56 numbers, about 4 in
-                // total, and of 38 numbers, about 13 in total.
+                // The limit covers the rounding errors of sums of up to 56 numbers with a total of
+                // about 4, and of 38 numbers with a total of about 13.
                 assert!(modulus(off) < 5e-14, "{rows} × {columns}, {m}, {nu}: {off}");
             }
         }

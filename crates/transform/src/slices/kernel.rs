@@ -26,11 +26,13 @@ const TERMS: usize = 4;
 /// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, *SIAM Journal on
 /// Scientific Computing* 41(5)).
 ///
-/// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
-/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
-/// − 1 that interpolates the kernel at Chebyshev nodes; its error is below 5·10⁻⁸ of the kernel's
-/// peak. The spectrum is divided by the transform of these polynomials, so only their roughness
-/// matters: a higher degree, or the kernel itself, gives the same error to two digits.
+/// A point is spread over eight cells. If the point lies a fraction f of a cell beyond a cell of
+/// the fine grid, the weight of cell j, called tap j, is the kernel at z = (j − 3 − f)/4. Each tap
+/// is a polynomial in t = 2f − 1 that interpolates the kernel at Chebyshev nodes, with an error
+/// below 5·10⁻⁸ of the kernel's peak. The spectrum is divided by the transform of these
+/// polynomials, so their deviation from the kernel does not matter, except where it makes them less
+/// smooth. A higher degree, or the kernel itself, gives the same error of the spectrum to two
+/// digits.
 ///
 /// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps determine all eight taps.
 /// Products and sums are rounded separately and never fused, so every SIMD level gives bitwise the
@@ -60,8 +62,8 @@ impl Kernel {
         kernel
     }
 
-    /// Computes the eight taps of eight points, each a fraction `f` of a cell beyond its cell: lane
-    /// i of tap j belongs to point i.
+    /// Computes the eight taps of eight points. Each point lies a fraction `f` of a cell beyond its
+    /// cell, and lane i of each tap belongs to point i.
     #[inline(always)]
     pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64x8<S>) -> [f64x8<S>; WIDTH] {
         let t = f * 2.0 - 1.0;
@@ -81,7 +83,7 @@ impl Kernel {
         taps
     }
 
-    /// Computes tap `tap`, 0 to 3, for a single number: for the plan and for tests.
+    /// Computes tap `tap`, 0 to 3, for a single number. The plan and the tests use this function.
     fn tap(&self, tap: usize, f: f64) -> f64 {
         let t = 2.0 * f - 1.0;
         let horner = |terms: &[[f64; HALF]]| {
@@ -111,8 +113,8 @@ impl Kernel {
     }
 }
 
-/// Transposes eight rows of eight by three perfect shuffles, each of which moves the last of six
-/// index bits to the front.
+/// Transposes eight rows of eight numbers by three perfect shuffles. The index of a number has six
+/// bits, and each shuffle moves the last bit to the front.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {
     for _ in 0..3 {

@@ -10,9 +10,9 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 /// Columns divide the period of q = u cos φ + v sin φ, the coordinate of the frequency ν.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
-    /// cos φ and sin φ times the spacing of ρ: periods per metre.
+    /// cos φ and sin φ times the spacing of ρ, in periods per metre.
     pub(crate) rho: [f64; 2],
-    /// cos φ and sin φ times the spacing of ν: periods per unit slope.
+    /// cos φ and sin φ times the spacing of ν, in periods per unit slope.
     pub(crate) nu: [f64; 2],
     /// Number of cells in a period of p.
     pub(crate) rows: usize,

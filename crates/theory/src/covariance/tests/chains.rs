@@ -1,4 +1,4 @@
-//! Tests of covariance along chains, against quadrature.
+//! Tests of covariance tracing along chains, against quadrature.
 
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
@@ -185,7 +185,7 @@ fn behind_a_textured_lobe() {
         }
     }
     let added = chain.off.spectral_covariance(&along).unwrap();
-    assert!(apart(&textured, &sum(&plain, &added)) < 1e-10); // the same
+    assert!(apart(&textured, &sum(&plain, &added)) < 1e-10); // rounding
     let squares = Pattern::Checkerboard { period: 0.1 };
     let untraced = view(Some(squares)).spectral_covariance();
     assert_eq!(untraced, Err(Untraced::Reflectance));

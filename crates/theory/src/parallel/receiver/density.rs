@@ -329,7 +329,7 @@ mod tests {
                 [[-3.0, 2.0], [-1.0, 4.0]],
             ] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                assert!(error.abs() < 3e-12, "{power} {sides:?} {error:e}"); // as promised at NATS
+                assert!(error.abs() < 3e-12, "{power} {sides:?} {error:e}"); // see `NATS`
             }
         }
     }

@@ -11,7 +11,7 @@ const GOOD: f64 = 1e-6;
 /// Relative error allowed for nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
-/// Returns slices whose values are those of a function of the frequency.
+/// Returns slices whose values are computed by a function of the frequency.
 fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     let mut slices = Slices::zeros(*grid);
     for ((k, m, n), to) in slices.half.indexed_iter_mut() {

@@ -56,7 +56,7 @@ fn beams_refraction_and_two_mirrors_converge() {
     };
     for system in [oblique, two, glass] {
         let found = order(&system, &after(&system, 0.3), [0.5, 0.5]);
-        assert!((found - 1.0).abs() < 0.25, "{found}"); // as above
+        assert!((found - 1.0).abs() < 0.25, "{found}"); // the next power of e
     }
 }
 
