@@ -1,5 +1,5 @@
-//! A midpoint rule over the rays of a light whose rays have two coordinates, which is a projector,
-//! a point or a beam.
+//! A midpoint rule over the rays of a projector, a point or a beam. The rays of these lights have
+//! two coordinates.
 //!
 //! The rule sums the rays of a region of the emission. The region contains all rays that land in
 //! the window. If the border of the region is dark, the only error is aliasing, which vanishes if

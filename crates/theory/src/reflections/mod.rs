@@ -68,8 +68,8 @@ pub struct PathSurface {
     pub name: String,
     /// The geometry of the surface.
     pub patch: Patch,
-    /// If the surface is a rectangle in the patch, its side lengths along X and Y, metres. If the
-    /// surface is the whole patch, `None`.
+    /// The side lengths along X and Y, metres, if the surface is a rectangle in the patch. `None`
+    /// stands for the whole patch.
     pub outline: Option<[f64; 2]>,
     /// The point where the central ray meets the surface.
     pub hit: DVec3,
