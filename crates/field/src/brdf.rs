@@ -13,13 +13,13 @@ use std::sync::Arc;
 /// | lobe | BRDF |
 /// |---|---|
 /// | Lambertian | albedo / π · F(θi) |
-/// | Phong | albedo · (n + 1)/(2π) · max(0, cos α)ⁿ · F(θi): its integral over dωo is the albedo (Phong 1975) |
+/// | Phong | albedo · (n + 1)/(2π) · max(0, cos α)ⁿ · F(θi); if F = 1, the integral over dωo is the albedo (Phong 1975) |
 /// | Beckmann, GGX | albedo · D(h) G₁(ωi) G₁(ωo) F(h·ωi) / (4 cos θi cos θo) (Walter et al. 2007, Eq. 20) |
 ///
-/// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, with the exact G₁ of
-/// Beckmann. The BRDF is zero unless both cosines are positive. The lobe is multiplied by f(θi) and
-/// h(θo) if the BRDF has such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal
-/// unless it has a Fresnel factor of the angle of incidence, or f and h differ.
+/// D and Smith's G₁ are given by Walter et al. 2007, Eqs. 25–27 and 33–34. For Beckmann, G₁ is the
+/// exact function. The BRDF is zero unless both cosines are positive. If the BRDF has the factors f
+/// or h, they multiply the lobe by f(θi) or h(θo) (Durand et al. 2005, section 4.3). A BRDF is
+/// reciprocal unless its Fresnel factor depends on θi, or f and h differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Brdf {
     /// The lobe.
@@ -28,9 +28,9 @@ pub struct Brdf {
     pub albedo: f64,
     /// The Fresnel factor F.
     pub fresnel: Fresnel,
-    /// The factor f of the angle of incidence; `None` is 1.
+    /// The factor f, which depends on the angle of incidence. `None` stands for f = 1.
     pub incoming: Option<AngleTable>,
-    /// The factor h of the angle at which light leaves; `None` is 1.
+    /// The factor h, which depends on the angle at which light leaves. `None` stands for h = 1.
     pub outgoing: Option<AngleTable>,
 }
 
@@ -48,11 +48,12 @@ impl Brdf {
     }
 }
 
-/// A factor from 0 to 1 that depends on the angle to the normal: values at equal steps from 0 to
-/// 90°, linear in between.
+/// A factor from 0 to 1 that depends on the angle to the normal. The table has values at equal
+/// steps from 0 to 90°, and the factor is linear between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AngleTable {
-    /// There are at least two values: the first is along the normal, the last along the surface.
+    /// There are at least two values. The first value is for the direction of the normal, and the
+    /// last value is for directions along the surface.
     #[serde(serialize_with = "listed")]
     pub values: Arc<[f64]>,
 }
@@ -62,7 +63,7 @@ fn listed<S: Serializer>(values: &Arc<[f64]>, serializer: S) -> Result<S::Ok, S:
 }
 
 impl AngleTable {
-    /// Returns the factor at an angle with this cosine, 0 to 1.
+    /// Returns the factor at the angle whose cosine is given, from 0 to 1.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -101,8 +102,8 @@ pub enum Lobe {
 }
 
 impl Lobe {
-    /// Checks whether the lobe is centred on the mirror direction; otherwise it is centred on the
-    /// normal.
+    /// Checks whether the lobe is centred on the mirror direction. If it is not, it is centred on
+    /// the normal.
     #[must_use]
     pub fn is_about_mirror(&self) -> bool {
         !matches!(self, Self::Lambertian)
@@ -126,7 +127,7 @@ impl Lobe {
 pub enum MicrofacetDistribution {
     /// Gaussian distribution of slopes.
     Beckmann,
-    /// GGX distribution, with longer tails (Trowbridge and Reitz 1975).
+    /// GGX distribution, which has longer tails (Trowbridge and Reitz 1975).
     Ggx,
 }
 

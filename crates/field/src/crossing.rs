@@ -60,14 +60,15 @@ impl Ledger {
     }
 }
 
-/// Photons that crossed a plane: crossed = inside + outside of its window.
+/// The number of photons that crossed a plane. `crossed` is the sum of `inside` and `outside`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PlaneTally {
     /// Photons that crossed the plane on the plane's leg of the path.
     pub crossed: u64,
     /// Crossings inside the window.
     pub inside: u64,
-    /// Crossings outside the window, which are counted but never wrapped into it.
+    /// Crossings outside the window. They are counted here, and they are never wrapped into the
+    /// window.
     pub outside: u64,
 }
 
@@ -87,9 +88,9 @@ pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Emits the photons of `batch`. `record` receives the index of a plane and crossings of this
-    /// plane, a block at a time, in an order that is always the same. `progress` receives the
-    /// number of photons of each block.
+    /// Emits the photons of `batch`. Each call of `record` receives the index of a plane and a
+    /// block of crossings of this plane. The order of the calls and of the crossings is always the
+    /// same. `progress` receives the number of photons of each block.
     fn emit(
         &self,
         batch: u32,
@@ -97,8 +98,8 @@ pub trait PhotonSource: Sync {
         progress: &dyn Fn(u64),
     ) -> Ledger;
 
-    /// Returns into how many parts a batch is divided, so that several threads can emit them. The
-    /// number is at least one and depends only on the scene.
+    /// Returns the number of parts into which a batch is divided, so that several threads can emit
+    /// one batch. The number is at least one and depends only on the scene.
     fn parts(&self, _batch: u32) -> u32 {
         1
     }

@@ -8,12 +8,14 @@ use std::sync::Arc;
 
 /// Light from infinity: radiance that depends on direction alone.
 ///
-/// Environments shine forward: a ray of a leg goes along (u, v, 1). Therefore only directions from
-/// the hemisphere in which the central ray begins carry light, whatever the map contains. The light
-/// begins in the plane across the central ray's start, and nothing behind that plane occludes it.
+/// Environments shine forward, because a ray in two-plane coordinates has the direction (u, v, 1).
+/// Light that would travel against the central ray is left out, even if the map contains it. The
+/// light begins in the plane that is perpendicular to the central ray at the ray's start. Nothing
+/// behind this plane occludes the light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
-    /// The axes of the map, in the coordinates of the frame at the light: Y is up, D is to the front, and X = Y × D.
+    /// The axes of the map, in the coordinates of the frame at the light. Y points up, D points to
+    /// the front, and X = Y × D.
     pub frame: Frame,
     /// The radiance in each direction.
     pub map: EnvironmentMap,
@@ -41,16 +43,17 @@ pub struct SphericalGaussian {
     pub width: f64,
 }
 
-/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of
-/// pixels, periodic in longitude. Between the centres of the first or the last row and the poles,
-/// radiance is constant along the meridian.
+/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹. Radiance is bilinear between the
+/// centres of pixels and periodic in longitude. Between the centres of the first or the last row
+/// and the poles, radiance is constant along the meridian.
 ///
-/// The axes are those of `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude π/2.
-/// Longitude is 0 in the middle, to the front (Z), and grows to the left; π/2 is along X. So the
-/// map is seen from inside. A pixel is an area, as in other renderers. The centre of column i of w
-/// is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π (½ − (j +
-/// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
-/// centre of row j at latitude π (½ − j/(h − 1)).
+/// The axes are the same as in `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude
+/// π/2. The middle of the map is at longitude 0, which is the front (Z). Longitude grows to the
+/// left, and π/2 is along X, so the map shows the sphere of directions from inside. A pixel is an
+/// area, as in other renderers. In a map of w columns and h rows, the centre of column i is at
+/// longitude π (1 − (2 i + 1)/w), and the centre of row j is at latitude π (½ − (j + ½)/h). In
+/// Mitsuba 3, the centres of the first and the last row are at the poles instead, and the centre of
+/// row j is at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
@@ -72,8 +75,8 @@ impl Environment {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Returns the unit vector towards the origin of light that travels along a direction, in the
-    /// coordinates of the map.
+    /// Returns the direction from which light comes if it travels along `along`. The result has
+    /// unit length and is in the coordinates of the map.
     #[inline]
     #[must_use]
     pub fn origin_of(&self, along: DVec3) -> DVec3 {
@@ -119,7 +122,7 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns the map of a picture that has the centres of its first and its last row at the
+    /// Returns the map of a picture in which the centres of the first and the last row are at the
     /// poles.
     #[must_use]
     pub fn from_pole_to_pole(radiance: Raster) -> Self {
@@ -130,8 +133,8 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns a map of at least one pixel, with `radiance` at the direction of each pixel's
-    /// centre.
+    /// Returns a map of at least one pixel. The value of each pixel is `radiance` at the direction
+    /// of the pixel's centre.
     #[must_use]
     pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
         let (width, height) = (width.max(1), height.max(1));
@@ -196,8 +199,8 @@ fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3
 mod tests {
     use super::*;
 
-    /// Tests the axes of `OpenEXR`: up at the top, +X (longitude π/2) a quarter from the left, +Z
-    /// in the middle.
+    /// Tests the axes of `OpenEXR`: up is at the top, +X (longitude π/2) is a quarter of the width
+    /// from the left, and +Z is in the middle.
     #[test]
     fn the_map_is_seen_from_within() {
         let map = LatLong::from_fn(8, 4, |_| 1.0);
@@ -211,12 +214,12 @@ mod tests {
             // The limit is the rounding error of angles.
             assert!((map.direction(place) - direction).length() < 1e-15);
             let [column, row] = map.place(direction);
-            assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
+            assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // rounding
         }
         let map = LatLong::from_pole_to_pole(Raster::new(8, 4, vec![1.0; 32]).unwrap());
         for (direction, row) in [(DVec3::Y, 0.5), (DVec3::X, 2.0), (DVec3::NEG_Y, 3.5)] {
             let [column, found] = map.place(direction);
-            assert!((found - row).abs() < 1e-14); // likewise
+            assert!((found - row).abs() < 1e-14); // rounding
             assert!((map.direction([column, row]) - direction).length() < 1e-15);
         }
         let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;

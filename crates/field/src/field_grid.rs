@@ -3,12 +3,12 @@
 use crate::{SliceGrid, TwoPlane, Window};
 use serde::{Deserialize, Serialize};
 
-/// A 4D grid over the support of a window, axes in the order x, y, u, v.
+/// A 4D grid over the support of a window. Its axes are in the order x, y, u, v.
 ///
-/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred
-/// at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2, and half of cell 0
-/// lies at either edge. The frequencies of its transform are the multiples of 1/(2h) up to the
-/// Nyquist frequency n/(4h).
+/// Along an axis of half-width h and n cells, the grid is periodic with the period 2h, and cell i
+/// is centred at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2, and half
+/// of cell 0 lies at either edge. The frequencies of its transform are the multiples of 1/(2h) up
+/// to the Nyquist frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.
@@ -104,22 +104,23 @@ impl FieldGrid {
     }
 }
 
-/// The assignment of a weighted ray to the cells of a [`FieldGrid`]: by a B-spline in units of a
-/// cell, along each axis (Hockney and Eastwood 1981, section 5-3, which also gives the names).
+/// The method that assigns a weighted ray to the cells of a [`FieldGrid`]. Along each axis, a
+/// B-spline over the cells gives the weight in each cell (Hockney and Eastwood 1981, section 5-3,
+/// which also gives the names of the methods).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Assignment {
-    /// Nearest grid point, order 1: all weight in the cell of the ray.
+    /// Nearest grid point, order 1: the cell of the ray receives all of the weight.
     Nearest,
-    /// Cloud in cell, order 2: linear between two cells.
+    /// Cloud in cell, order 2: two cells share the weight, linearly.
     Cic,
-    /// Triangular shaped cloud, order 3: quadratic over three cells.
+    /// Triangular shaped cloud, order 3: three cells share the weight, by quadratic functions.
     #[default]
     Tsc,
 }
 
 impl Assignment {
-    /// Returns the order p of the B-spline: the number of cells along an axis, and the power of the
-    /// sinc that is its transform.
+    /// Returns the order p of the B-spline. The spline extends over p cells along an axis, and its
+    /// transform is the sinc to the power of p.
     #[inline]
     #[must_use]
     pub fn order(&self) -> usize {

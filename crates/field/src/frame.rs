@@ -18,7 +18,7 @@ pub struct TwoPlane {
 }
 
 impl TwoPlane {
-    /// Returns 1 + u² + v² = 1/cos²θ, θ being the angle to the central ray.
+    /// Returns 1 + u² + v² = 1/cos²θ, where θ is the angle to the central ray.
     ///
     /// The square of this factor turns flux density in (x, y, u, v) into radiance, since cos θ dω =
     /// du dv / (1 + u² + v²)².
@@ -79,7 +79,7 @@ impl Frame {
         if across.length() < 1e-6 {
             return None;
         }
-        // For a short vector, the remainder along d due to rounding is subtracted again.
+        // If the vector is short, rounding leaves a remainder along d, which is subtracted again.
         let across = across.normalize();
         let x = (across - d * d.dot(across)).normalize();
         Some(Self {
@@ -99,7 +99,8 @@ impl Frame {
         }
     }
 
-    /// Converts a frame from the coordinates of this frame to world coordinates.
+    /// Converts `local` to world coordinates; `local` is a frame given in the coordinates of this
+    /// frame.
     #[must_use]
     pub fn compose(&self, local: &Self) -> Self {
         Self {
@@ -110,7 +111,7 @@ impl Frame {
         }
     }
 
-    /// Converts a frame from world coordinates to the coordinates of this frame.
+    /// Converts `world`, a frame given in world coordinates, to the coordinates of this frame.
     #[must_use]
     pub fn decompose(&self, world: &Self) -> Self {
         Self {
@@ -171,8 +172,8 @@ impl Frame {
     }
 }
 
-/// Returns the lowest and the highest corner of the bounding box of points; the origin, twice, for
-/// no points.
+/// Returns the lowest and the highest corner of the bounding box of points. If there are no points,
+/// both corners are the origin.
 #[must_use]
 pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
     let low = points.iter().copied().reduce(DVec3::min);

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// An odd number of evenly spaced frequencies with zero at the centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrequencyAxis {
-    /// Number of frequencies on either side of zero; the axis has 2 `half` + 1.
+    /// Number of frequencies on either side of zero; the axis has 2 `half` + 1 frequencies.
     pub half: usize,
     /// Spacing, in cycles per unit (cycles per metre, or per unit slope).
     pub spacing: f64,
@@ -24,7 +24,8 @@ impl FrequencyAxis {
         self.half as f64 * self.spacing
     }
 
-    /// Returns the frequency at `index`, 0 ≤ index < count; ascending, zero at `half`.
+    /// Returns the frequency at `index`, 0 ≤ index < count. Frequencies ascend, and the frequency
+    /// at `half` is zero.
     #[must_use]
     pub fn value(&self, index: usize) -> f64 {
         (index as f64 - self.half as f64) * self.spacing
@@ -75,10 +76,11 @@ impl SliceGrid {
         [self.azimuths, self.rho.count(), self.nu.count()]
     }
 
-    /// Checks whether the half-plane cell (m, n), with ρ = m·spacing ≥ 0, is one of the independent
+    /// Checks whether the cell (m, n) of the half-plane ρ = m·spacing ≥ 0 is one of the independent
     /// cells.
     ///
-    /// On the line ρ = 0 the values at −ν are the conjugates of those at ν.
+    /// On the line ρ = 0, the values at −ν are the conjugates of the values at ν, so only half of
+    /// them count.
     #[must_use]
     pub fn is_independent(&self, m: usize, n: usize) -> bool {
         m > 0 || n >= self.nu.half

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Beyond this distance the picture is below 10⁻¹² of its peak.
 const PICTURE: f64 = 3.0;
 
-/// A light in a plane perpendicular to the central ray; the light shines along the ray.
+/// A light in a plane that is perpendicular to the central ray; the light shines along the ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Light {
     /// A flat area light.
@@ -17,7 +17,8 @@ pub enum Light {
         shape: Shape,
         /// Radiance L₀ along the central ray, W m⁻² sr⁻¹.
         radiance: f64,
-        /// Exponent n of the radiance L₀ cosⁿθ; 0 is Lambertian, larger values are a spot.
+        /// Exponent n of the radiance L₀ cosⁿθ. With 0, the light is Lambertian; with larger
+        /// values, it is a spotlight.
         exponent: f64,
     },
     /// A point on the central ray, with the same intensity in all directions.
@@ -25,14 +26,15 @@ pub enum Light {
         /// Intensity, W sr⁻¹.
         intensity: f64,
     },
-    /// A slide projector: a point on the central ray whose intensity is a picture over slopes (u, v).
+    /// A slide projector: a point on the central ray whose intensity varies over the slopes (u, v)
+    /// like a picture.
     Projector {
         /// Intensity, in W sr⁻¹, where the picture has the value 1.
         intensity: f64,
         /// The picture.
         image: Image,
     },
-    /// A collimated beam along the central ray whose irradiance is a picture over (x, y).
+    /// A collimated beam along the central ray, whose irradiance varies over (x, y) like a picture.
     Beam {
         /// Irradiance, in W m⁻², where the picture has the value 1.
         irradiance: f64,
@@ -108,7 +110,8 @@ impl Light {
         [-half, half]
     }
 
-    /// Returns the largest slope of the light along x or y (0 or 1). Infinite if unbounded.
+    /// Returns the largest slope of the light along x or y (0 or 1). The result is infinite if the
+    /// slopes are unbounded.
     #[must_use]
     pub fn steepest(&self, axis: usize) -> f64 {
         match self {

@@ -9,8 +9,8 @@ pub fn tidy(x: f64) -> String {
     (rounded + 0.0).to_string()
 }
 
-/// Returns a text for people: at most seven significant digits, with a power of ten where zeros would
-/// hide them.
+/// Returns a text with at most seven significant digits. If many zeros would hide the digits, the
+/// text has a power of ten.
 #[must_use]
 pub fn brief(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
@@ -22,8 +22,8 @@ pub fn brief(x: f64) -> String {
     }
 }
 
-/// Formats a share in per cent, to `places` decimals, or more if that would give fewer than two
-/// digits.
+/// Formats a share in per cent, to `places` decimals. If this would give fewer than two digits, the
+/// text has more decimals.
 #[must_use]
 pub fn percent(share: f64, places: usize) -> String {
     let percent = 100.0 * share;
@@ -35,7 +35,7 @@ pub fn percent(share: f64, places: usize) -> String {
     fixed(percent, places) + " %"
 }
 
-/// Formats with a given number of decimals, and never −0.
+/// Formats a number with a given number of decimals; the text is never −0.
 #[must_use]
 pub fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
@@ -49,8 +49,8 @@ pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
 }
 
-/// Errors below this limit are written with a power of ten, because zeros would hide them in a
-/// decimal.
+/// Errors below this limit are written with a power of ten. In a decimal number, zeros would hide
+/// their digits.
 const MIN_PLAIN_ERROR: f64 = 1e-8;
 
 /// Formats value ± error, to two digits of the error.
@@ -66,8 +66,8 @@ pub fn uncertain(value: f64, error: f64) -> String {
     format!("{} ± {error:.digits$}", fixed(value, digits))
 }
 
-/// Returns the whole part of a number: 0 for negative numbers and NaN, saturating at the largest
-/// value.
+/// Returns the whole part of a number. The result is 0 for negative numbers and NaN, and saturates
+/// at the largest value of the type.
 #[inline]
 #[must_use]
 #[expect(
@@ -79,7 +79,7 @@ pub fn whole(x: f64) -> usize {
     x as usize
 }
 
-/// Returns sin(πf)/(πf), 1 at zero: the transform of a box of width 1.
+/// Returns sin(πf)/(πf), which is the transform of a box of width 1. The value at zero is 1.
 #[must_use]
 pub fn sinc(f: f64) -> f64 {
     let t = std::f64::consts::PI * f;

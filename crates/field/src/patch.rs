@@ -4,17 +4,18 @@ use crate::{Frame, box_corners};
 use glam::DVec3;
 use serde::Serialize;
 
-/// A smooth piece of a quadric around its vertex: plane, sphere, cylinder or paraboloid.
+/// A smooth piece of a quadric around the quadric's vertex. The quadric is a plane, sphere,
+/// cylinder or paraboloid.
 ///
 /// In coordinates (s, t, h) along X, Y and D of the patch's frame, where D is the normal at the
 /// vertex, the points of the patch satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a
 /// plane through D is positive if the surface is convex as seen from D, as in docs/theory.md. A
-/// sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a
-/// paraboloid (k₁, k₂, 0), a plane zeros.
+/// sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y has k = (1/R, 0,
+/// 1/R), a paraboloid has k = (k₁, k₂, 0), and a plane has k = (0, 0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
-    /// The frame, with O at the vertex, D along the normal there, and X and Y along the principal
-    /// directions.
+    /// The frame of the patch: O is at the vertex, D is along the normal at the vertex, and X and Y
+    /// are along the principal directions.
     pub frame: Frame,
     /// Curvatures k₁, k₂ and k₃, per metre.
     pub curvature: [f64; 3],
@@ -23,8 +24,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Converts the patch to the coordinates of a frame that is given in the coordinates of the
-    /// patch.
+    /// Returns the patch in the coordinates of `frame`. `frame` is given in the same coordinates as
+    /// the patch's frame.
     #[must_use]
     pub fn seen_from(&self, frame: &Frame) -> Self {
         Self {
@@ -33,8 +34,9 @@ impl Patch {
         }
     }
 
-    /// Returns the point of the patch over (s, t), in the coordinates in which its frame is given;
-    /// NaN beyond the half that contains the vertex.
+    /// Returns the point of the patch over (s, t), in the coordinates in which the patch's frame is
+    /// given. The result is NaN if (s, t) lies beyond the half of the quadric that contains the
+    /// vertex.
     #[must_use]
     pub fn point(&self, s: f64, t: f64) -> DVec3 {
         let [a, b, c] = self.curvature;
@@ -47,8 +49,8 @@ impl Patch {
     /// given.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
-        // At distance r across, the half that contains the vertex deviates along the normal by at
-        // most |k| r².
+        // At the distance r from the normal through the vertex, the half that contains the vertex
+        // deviates along this normal by at most |k| r².
         let most = self
             .curvature
             .iter()
@@ -77,9 +79,9 @@ impl Patch {
         a * x * x + b * y * y + c * z * z + 2.0 * z
     }
 
-    /// Returns half the gradient of [`value`](Self::value), in the patch's frame: along the normal,
-    /// on the side of D. The last component is positive on the half of the quadric that contains
-    /// the vertex.
+    /// Returns half of the gradient of [`value`](Self::value), in the patch's frame. The gradient
+    /// is along the normal, on the side of D. The last component is positive on the half of the
+    /// quadric that contains the vertex.
     #[inline]
     #[must_use]
     pub fn gradient(&self, point: DVec3) -> DVec3 {
@@ -87,8 +89,9 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
-    /// Returns the parameters of the points start + t · direction, in the patch's frame, that lie
-    /// on the patch, ascending; NaN if no point does.
+    /// Returns the parameters t, ascending, at which the points start + t · direction lie on the
+    /// patch. `start` and `direction` are in the patch's frame. A parameter without such a point is
+    /// NaN.
     #[inline]
     #[must_use]
     pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {
@@ -119,10 +122,10 @@ impl Patch {
 }
 
 impl Specular {
-    /// Returns the direction of a ray after it meets a surface at `point`, given the unit normal
-    /// there on the side the surface faces. All vectors are in one frame, and the direction may
-    /// have any length. `lens` is the frame of a lens. Returns `None` if a ray to be refracted is
-    /// totally reflected.
+    /// Returns the direction of a ray after it meets a surface at `point`. `normal` is the unit
+    /// normal at this point, on the side that the surface faces. All vectors are in one frame, and
+    /// the direction may have any length. `lens` is the frame of a lens. Returns `None` if a
+    /// surface that refracts reflects the ray totally.
     #[must_use]
     pub fn turned(
         &self,
@@ -169,7 +172,8 @@ pub enum Specular {
         /// Index of refraction on the side opposite to the normal.
         back: f64,
     },
-    /// A flat lens without thickness: slopes across it decrease by position over focal length.
+    /// A flat lens without thickness. The lens reduces each slope of a ray by the ray's position
+    /// divided by the focal length.
     ThinLens {
         /// Focal length, metres; negative for a diverging lens.
         focal_length: f64,

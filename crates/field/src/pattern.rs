@@ -19,8 +19,8 @@ pub enum Pattern {
     Picture(Picture),
 }
 
-/// A picture on a surface: bilinear between the centres of pixels, constant from the outermost
-/// centres to the edge, 0 beyond the edge.
+/// A picture on a surface. Its value is bilinear between the centres of pixels, constant from the
+/// outermost centres to the edge, and 0 beyond the edge.
 ///
 /// The picture appears upright and unmirrored to a viewer in front of the surface with X to the
 /// right and Y up: the first pixel is at the top left.

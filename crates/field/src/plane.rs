@@ -28,19 +28,20 @@ pub enum Quantity {
 
 /// The reference for the coordinates of a plane's rays.
 ///
-/// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
-/// point away from the surface, so the directions of arriving light are reversed. A direction is
-/// cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
+/// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md). Directions
+/// point away from the surface, so the directions of arriving light are reversed. A direction has
+/// the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane orthogonal to the central ray, in two-plane parameterisation.
     #[default]
     Orthogonal,
-    /// The tangent plane where the central ray hits the surface: positions along T and B, angles to
-    /// the normal N at this point.
+    /// The tangent plane at the point where the central ray hits the surface. Positions are along T
+    /// and B, and angles are relative to the normal N at this point.
     Tangent,
-    /// The surface itself: positions along T and B of the point hit, angles to the normal at that
-    /// point, with T and B turned together with the normal by the smallest angle.
+    /// The surface itself. Positions along T and B are the coordinates of the point that the ray
+    /// hits. Angles are relative to the normal at the point that the ray hits; T and B are turned
+    /// together with the normal, by the smallest angle.
     LocalNormals,
     /// As `LocalNormals`, but arriving light is rotated about the normal into the direction of mirror
     /// reflection (Durand et al. 2005, Fig. 10, step 4).
@@ -66,7 +67,7 @@ pub struct VirtualPlane {
     /// The leg of the path that the plane is on: the number of surfaces that the light has left
     /// before the plane.
     pub leg: usize,
-    /// The side of the mask or surface at the plane's distance.
+    /// The side on which the plane observes light, relative to a mask or surface at its distance.
     pub side: Side,
     /// The quantity recorded.
     pub quantity: Quantity,
@@ -75,8 +76,8 @@ pub struct VirtualPlane {
     /// The angle θ of the central ray on a surface, radians; 0 on an orthogonal plane. The
     /// coordinates of rays are (x, y, θ − longitude, φ).
     pub longitude: f64,
-    /// The plane's frame, with O on the central ray and D along the central ray; on a surface X =
-    /// T, Y = B and D = N.
+    /// The plane's frame, whose origin O is on the central ray. D is along the central ray; on a
+    /// surface, X = T, Y = B and D = N.
     pub frame: Frame,
     /// The window that multiplies the light field.
     pub window: Window,
@@ -85,7 +86,8 @@ pub struct VirtualPlane {
 }
 
 impl VirtualPlane {
-    /// Returns the factor from radiance to the plane's quantity at a ray.
+    /// Returns the factor by which the radiance of a ray is multiplied to obtain the plane's
+    /// quantity.
     #[inline]
     #[must_use]
     pub fn factor(&self, ray: &TwoPlane) -> f64 {

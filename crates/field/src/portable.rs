@@ -12,7 +12,7 @@ pub fn cis(angle: f64) -> Complex {
 }
 
 /// Returns x to the power of y for x ≥ 0, in fewer steps than `libm::pow`. The relative error is y
-/// ln x times that of a rounding, about 10⁻¹³ at worst.
+/// ln x times the error of one rounding, and at worst about 10⁻¹³.
 #[inline]
 #[must_use]
 pub fn power(x: f64, y: f64) -> f64 {
@@ -23,20 +23,21 @@ pub fn power(x: f64, y: f64) -> f64 {
     }
 }
 
-/// Returns |z|, without overflow or underflow on the way.
+/// Returns |z|. No intermediate result overflows or underflows.
 #[must_use]
 pub fn modulus(z: Complex) -> f64 {
     libm::hypot(z.re, z.im)
 }
 
-/// Returns the square root with Re √z ≥ 0; on the branch cut, negative z, its imaginary part has
-/// the sign of Im z.
+/// Returns the square root with Re √z ≥ 0. If z is negative, which is the branch cut, the imaginary
+/// part of the root has the sign of Im z.
 #[must_use]
 pub fn square_root(z: Complex) -> Complex {
     if z == Complex::ZERO {
         return z;
     }
-    // The larger part is a sum without cancellation, the other follows from 2 Re √z Im √z = Im z.
+    // The larger part of the root is a sum without cancellation. The smaller part follows from 2 Re
+    // √z Im √z = Im z.
     let larger = (0.5 * (modulus(z) + z.re.abs())).sqrt();
     let other = 0.5 * z.im / larger;
     if z.re >= 0.0 {

@@ -1,4 +1,4 @@
-//! The light field integrated over y and v, for pictures.
+//! The light field integrated over y and v, which is shown in pictures.
 
 use crate::Window;
 
@@ -52,7 +52,8 @@ impl ProjectionGrid {
     }
 }
 
-/// The windowed light field integrated over y and v: ∫∫ L W dy dv, as means over cells of (x, u).
+/// The windowed light field integrated over y and v, ∫∫ L W dy dv. The values are means over cells
+/// of (x, u).
 ///
 /// By the Fourier slice theorem the integral is the primal counterpart of the slice at azimuth 0.
 /// The array has the axes [x, u], both ascending. Unit: W m⁻² sr⁻¹ · m.

@@ -12,7 +12,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Returns `None` unless there are as many values as pixels, and at least one.
+    /// Returns `None` unless there is at least one pixel and there are as many values as pixels.
     #[must_use]
     pub fn new(width: usize, height: usize, values: Vec<f64>) -> Option<Self> {
         let fits = !values.is_empty() && width.checked_mul(height) == Some(values.len());
@@ -45,8 +45,8 @@ impl Raster {
     /// interpolation.
     ///
     /// Positions are in pixels from the left and from the top edge: the centre of the first pixel
-    /// is at (½, ½). Beyond the outermost centres the nearest pixel is used; columns are periodic
-    /// if the raster `wraps`.
+    /// is at (½, ½). Beyond the outermost centres, the nearest pixel is used. If the raster
+    /// `wraps`, its columns are periodic.
     #[inline]
     #[must_use]
     pub fn around(&self, column: f64, row: f64, wraps: bool) -> [(usize, f64); 4] {

@@ -12,8 +12,8 @@ pub struct FluxRay {
     pub flux: f64,
 }
 
-/// Rays through the plane of the light, all of which go forward. The rays are straight lines on
-/// both sides of the plane: a ray of a file that begins beyond the plane is extended back to the
+/// Rays through the plane of the light. All rays go forward. The rays are straight lines on both
+/// sides of the plane. If a ray of the file begins beyond the plane, it is extended back to the
 /// plane.
 ///
 /// The light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
@@ -81,13 +81,14 @@ impl RayLight {
         self.behind
     }
 
-    /// Returns the ray at a share of the cumulative flux, from 0 to 1: each ray is sampled in
-    /// proportion to its flux.
+    /// Returns the ray at a share of the cumulative flux, from 0 to 1. If the share is random, each
+    /// ray is sampled in proportion to its flux.
     #[must_use]
     pub fn at_share(&self, share: f64) -> &FluxRay {
         let flux = share * self.flux();
         let index = self.upto.partition_point(|upto| *upto <= flux);
-        // If rounding leads beyond the last ray with non-zero flux, this ray is used.
+        // Because of rounding, the search can end after the last ray with non-zero flux; then this
+        // last ray is used.
         let last = || self.upto.partition_point(|upto| *upto < self.flux());
         self.rays.get(index).unwrap_or_else(|| &self.rays[last()])
     }

@@ -65,13 +65,13 @@ impl Shape {
     }
 }
 
-/// Returns the distance along the central ray at which a ray meets a triangle, both given in the
-/// frame of the ray's coordinates.
+/// Returns the distance along the central ray at which a ray meets a triangle. The triangle is
+/// given in the frame of the ray's coordinates.
 ///
-/// Projected along the ray, the triangle becomes a flat triangle, which contains the origin if the
-/// ray meets the triangle. Two triangles compute the same two products for a common edge, so no
-/// ray passes between them (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*,
-/// which introduces this shear).
+/// The corners are projected along the ray, and the ray meets the triangle if the projected
+/// triangle contains the origin. For two triangles with a common edge, the same two products are
+/// computed for this edge, so no ray passes between the triangles (Woop, Benthin and Wald 2013,
+/// *Watertight ray/triangle intersection*, which introduces this projection).
 #[inline]
 #[must_use]
 pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
@@ -82,7 +82,8 @@ pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
     let sum: f64 = weights.iter().sum();
     let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
     (inside && sum != 0.0).then(|| {
-        // Rounding must not put a hit before the triangle begins, because a plane may be there.
+        // Rounding must not move the hit in front of the triangle's nearest corner, because a
+        // virtual plane may be just before the triangle.
         let [a, b, c] = corners.map(|p| p.z);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         (depth / sum).max(low).min(high)
@@ -107,7 +108,7 @@ pub struct HalfPlane {
     pub axis: usize,
     /// The coordinate of the edge, in metres.
     pub edge: f64,
-    /// Whether the half-plane contains the coordinates above the edge; otherwise it contains the
+    /// Whether the half-plane contains the coordinates above the edge. If not, it contains the
     /// coordinates below the edge.
     pub above: bool,
 }
@@ -153,7 +154,7 @@ impl Grating {
 /// A mask in one plane across the central ray, which multiplies radiance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Mask {
-    /// Opaque, black shapes; they do not overlap.
+    /// Opaque, black shapes that do not overlap.
     Opaque {
         /// Bounded shapes.
         shapes: Vec<Shape>,
@@ -196,7 +197,8 @@ impl Mask {
 mod tests {
     use super::*;
 
-    /// A plane lies just before a mesh, and may touch a triangle that is perpendicular to the path.
+    /// Tests triangles that are perpendicular to the path, because a plane just before a mesh may
+    /// touch such a triangle.
     #[test]
     fn rounding_puts_no_hit_beside_its_triangle() {
         let z = 0.728_987_365_116_f64;

@@ -5,8 +5,8 @@ use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 
 /// The slices S_φ(ρ, ν) = ℓ̂(ρ cos φ, ρ sin φ, ν cos φ, ν sin φ) of the spectrum of a windowed light field.
 ///
-/// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν) and only ρ ≥ 0 is stored: `half` is
-/// [azimuth, ρ ≥ 0, ν], ν ascending from −max to +max.
+/// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν), and only ρ ≥ 0 is stored. The array
+/// `half` is [azimuth, ρ ≥ 0, ν], and ν ascends from −max to +max.
 ///
 /// The unit is that of ∫ L W dx dy du dv, W m⁻² sr⁻¹ · m².
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ impl Slices {
         }
     }
 
-    /// Checks whether all values are zero: no light.
+    /// Checks whether all values are zero, which means that there is no light.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.half.iter().all(|s| s.norm_sqr() <= 0.0)
@@ -61,8 +61,8 @@ impl Slices {
         self.relative_difference_where(reference, |_, _| true)
     }
 
-    /// Returns the relative difference over the independent frequencies: the line ρ = 0, where the
-    /// values at −ν repeat those at ν, counts once.
+    /// Returns the relative difference over the independent frequencies. On the line ρ = 0, the
+    /// values at −ν repeat the values at ν, so only half of the line counts.
     #[must_use]
     pub fn independent_relative_difference(&self, reference: &Self) -> f64 {
         self.relative_difference_where(reference, |m, n| self.grid.is_independent(m, n))
@@ -88,7 +88,7 @@ impl Slices {
     }
 }
 
-/// Spreads values on the half-plane ρ ≥ 0, [azimuth, ρ ≥ 0, ν], over all frequencies [azimuth, ρ, ν], by
+/// Copies values on the half-plane, [azimuth, ρ ≥ 0, ν], to all frequencies, [azimuth, ρ, ν], by
 /// S(−ρ, −ν) = `mirrored`(S(ρ, ν)).
 fn unfold<T: Copy>(
     grid: &SliceGrid,
@@ -107,15 +107,15 @@ fn unfold<T: Copy>(
 }
 
 impl SliceGrid {
-    /// Spreads real values that are even in (ρ, ν), such as errors or powers, from the half-plane
-    /// [azimuth, ρ ≥ 0, ν] over all frequencies [azimuth, ρ, ν].
+    /// Copies real values that are even in (ρ, ν), such as errors or powers, from the half-plane
+    /// [azimuth, ρ ≥ 0, ν] to all frequencies [azimuth, ρ, ν].
     #[must_use]
     pub fn unfold_even(&self, half: ArrayView3<'_, f64>) -> Array3<f64> {
         unfold(self, half, |value| value)
     }
 
-    /// Spreads even values that are averaged over the azimuths, from [ρ ≥ 0, ν] over all
-    /// frequencies [ρ, ν].
+    /// Copies even values that are averaged over the azimuths from [ρ ≥ 0, ν] to all frequencies
+    /// [ρ, ν].
     #[must_use]
     pub fn unfold_radial(&self, half: ArrayView2<'_, f64>) -> Array2<f64> {
         let one = Self {

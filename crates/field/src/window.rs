@@ -5,7 +5,7 @@ use crate::number::sinc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One factor of a window: 1 at its centre, zero outside |t| < half-width.
+/// One factor of a window. The factor is 1 at its centre and zero outside |t| < half-width.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Profile {
@@ -51,8 +51,8 @@ const COSINE: [f64; TERMS] = {
 };
 
 /// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
-/// evaluated for each photon. This function takes a small part of the time of a library's cosine,
-/// and its results are bitwise identical on every machine.
+/// evaluated for each photon, and this function is much faster than the cosine of a library. Its
+/// results are bitwise identical on every machine.
 #[inline]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
     let mut cosines = [0.0; N];
@@ -105,7 +105,7 @@ impl Profile {
         }
     }
 
-    /// Returns the Fourier transform ∫ W(t) e^(−2πi f t) dt at a frequency, which is real.
+    /// Returns the Fourier transform ∫ W(t) e^(−2πi f t) dt at a frequency. The transform is real.
     #[must_use]
     pub fn transform(&self, frequency: f64) -> f64 {
         let width = 2.0 * self.half_width();
@@ -118,9 +118,9 @@ impl Profile {
 
     /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
-    /// The sum is exact for Hann and Box. A Gaussian is approximated by the sum of its copies a
-    /// period 2L apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶
-    /// inside the cut, and terms below 10⁻¹⁷ are left out.
+    /// The sum is exact for Hann and Box. A Gaussian is approximated by a Fourier series of period
+    /// 2L, which equals the sum of copies of the Gaussian at distances of 2L. L is chosen such that
+    /// the copies add less than 10⁻¹⁶ inside the cut, and terms below 10⁻¹⁷ are left out.
     #[must_use]
     pub fn cosine_terms(&self) -> Vec<CosineTerm> {
         match *self {
@@ -266,7 +266,7 @@ mod tests {
                     .iter()
                     .map(|c| c.weight * libm::cos(std::f64::consts::TAU * c.frequency * t))
                     .sum();
-                // The Gaussian's copies and dropped terms stay below 1e-15; the rest of the
+                // The Gaussian's copies and the omitted terms stay below 1e-15. The rest of the
                 // tolerance covers rounding errors.
                 assert!((sum - profile.value(t)).abs() < 3e-15, "{profile:?} at {t}");
             }

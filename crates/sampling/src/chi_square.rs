@@ -1,5 +1,5 @@
-//! Pearson's χ² test of samples, for tests: the counts of samples in cells are compared with the
-//! integrals of their density.
+//! Pearson's χ² test, for tests of samplers. It compares the counts of samples in cells with the
+//! integrals of the density over these cells.
 
 use etendue_field::Frame;
 use glam::DVec3;
@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Number of points of the midpoint rule along a side of a cell.
 const FINE: u32 = 32;
-/// Number of rings of cells on a sphere; each ring is divided into sectors, and all rings but the
-/// last ones have equal shares of samples.
+/// Number of rings of cells on a sphere. Each ring is divided into sectors, and all rings except
+/// the last ones have equal shares of the samples.
 const RINGS: usize = 16;
 const SECTORS: usize = 12;
 /// Cells with fewer expected samples than this are merged.
@@ -24,8 +24,8 @@ pub struct ChiSquare {
 }
 
 impl ChiSquare {
-    /// Compares the counts of samples in some cells, drawn with `all` random numbers, with the
-    /// integrals of the density over these cells.
+    /// Compares the counts of samples in some cells with the integrals of the density over these
+    /// cells. `all` is the number of random numbers with which the samples were drawn.
     fn new(counts: &[f64], shares: &[f64], all: f64) -> Self {
         let excess = shares.iter().sum::<f64>() - counts.iter().sum::<f64>() / all;
         let [mut chi2, mut cells] = [0.0; 2];
@@ -53,11 +53,12 @@ impl ChiSquare {
         }
     }
 
-    /// Checks that χ² is within four and a half standard deviations, which one comparison in
-    /// 300,000 exceeds by chance.
+    /// Checks that χ² is within four and a half standard deviations. One comparison in 300,000
+    /// exceeds this limit by chance.
     ///
-    /// The integral comes from the midpoint rule over cells of 32 × 32 points, some of which are
-    /// cut by edges of the density. The share comes from some 100,000 samples.
+    /// Also checks that the excess is below 0.005, which allows for two errors. The integral comes
+    /// from a midpoint rule of 32 × 32 points in each cell, and edges of the density cut some
+    /// cells. The share comes from about 100,000 samples.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.chi2 < self.cells + 4.5 * (2.0 * self.cells).sqrt() && self.excess.abs() < 5e-3
@@ -100,7 +101,8 @@ impl RectangleCells {
         cells.map(integral).collect()
     }
 
-    /// Returns the cell of a point; for a point beyond the outermost edges, the nearest cell.
+    /// Returns the cell of a point. If the point is beyond the outermost edges, returns the nearest
+    /// cell.
     fn cell(&self, point: [f64; 2]) -> usize {
         let [i, j] = [0, 1].map(|axis| {
             let edges = &self.edges[axis];
@@ -137,7 +139,8 @@ pub struct SphereCells {
 }
 
 impl SphereCells {
-    /// Returns cells about a pole, whose rings contain equal shares of the given directions.
+    /// Returns cells about a pole. The rings of these cells contain equal shares of the given
+    /// directions.
     #[must_use]
     pub fn new(pole: DVec3, directions: impl IntoIterator<Item = DVec3>) -> Self {
         let pole = Frame::IDENTITY.turned_to(pole);
@@ -146,8 +149,8 @@ impl SphereCells {
         angles.sort_by(f64::total_cmp);
         let mut rings = vec![0.0];
         rings.extend((1..RINGS).map(|i| angles[i * angles.len() / RINGS]));
-        // The rings resolve the tail of a lobe, and the edge of a lobe, where the density may
-        // jump.
+        // The additional rings resolve the tail of a lobe, and the edge of a lobe, where the
+        // density may jump.
         rings.extend([255, 4095].map(|i| angles[i * angles.len() / (i + 1)]));
         rings.extend([0.5 * PI, PI]);
         rings.sort_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use crate::{about, polar};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// A cone of directions, which are sampled uniformly.
+/// A cone whose directions are sampled uniformly.
 #[derive(Clone, Copy, Debug)]
 pub struct Cone {
     axis: DVec3,
@@ -19,7 +19,8 @@ impl Cone {
         fall: 2.0,
     };
 
-    /// Returns the directions with at least this cosine to an axis of unit length.
+    /// Returns the cone of the directions whose angle to an axis has at least the given cosine. The
+    /// axis has unit length.
     #[must_use]
     pub fn new(axis: DVec3, cosine: f64) -> Self {
         Self {
@@ -28,8 +29,8 @@ impl Cone {
         }
     }
 
-    /// Returns the cone of directions to a sphere, where `way` leads from the observer to the
-    /// centre of the sphere; `None` from inside the sphere.
+    /// Returns the cone of directions from an observer to a sphere. `way` leads from the observer
+    /// to the centre of the sphere. Returns `None` if the observer is inside the sphere.
     #[must_use]
     pub fn around_sphere(way: DVec3, radius: f64) -> Option<Self> {
         let squared = way.length_squared();

@@ -27,7 +27,7 @@ impl DiscreteDistribution {
         self.sums.last().copied().unwrap_or(0.0)
     }
 
-    /// Samples the index of an item with a weight above 0; 0 if there is none.
+    /// Samples the index of an item with a weight above 0. Returns 0 if there is no such item.
     #[inline]
     #[must_use]
     pub fn sample(&self, r: f64) -> usize {

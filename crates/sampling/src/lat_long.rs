@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A picture of all directions, with a sampler of directions by radiance.
+/// A picture of all directions, from which directions are sampled in proportion to radiance.
 ///
 /// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel
 /// in proportion to its light, then a position within the pixel's tent. The density is therefore

@@ -17,7 +17,7 @@ fn numbers() -> impl Iterator<Item = [f64; 4]> {
     (0..SAMPLES).map(|index| random::words(5, Stream::Photon, index, 0).map(random::unit))
 }
 
-/// Compares points of the square from −1 to 1 with a density.
+/// Compares samples of points in the square from −1 to 1 with a density.
 fn in_square(sample: impl Fn([f64; 2]) -> DVec2, density: impl Fn(DVec2) -> f64) -> ChiSquare {
     let cells = RectangleCells::new([[-1.0, 1.0]; 2], [24, 24]);
     let samples = numbers().map(|[a, b, ..]| Some(sample([a, b]).to_array()));
@@ -27,7 +27,7 @@ fn in_square(sample: impl Fn([f64; 2]) -> DVec2, density: impl Fn(DVec2) -> f64)
 /// A pole of cells that differs from the axes of all samplers.
 const ASIDE: DVec3 = DVec3::new(0.6, -0.48, 0.64);
 
-/// Compares directions with a density, in cells about a pole.
+/// Compares samples of directions with a density, in cells about a pole.
 fn on_sphere(
     pole: DVec3,
     sample: impl Fn([f64; 4]) -> DVec3,
@@ -136,8 +136,8 @@ fn pictures_are_drawn_by_their_light() {
     }
 }
 
-/// Weights of samples do not vary much where pixels are small, because the density is
-/// interpolated like the radiance.
+/// Tests that the weights of samples do not vary much where pixels are small. The reason is that
+/// the density is interpolated like the radiance.
 #[test]
 fn weights_of_pictures_are_bounded() {
     let values = (0..64 * 33).map(|i| if i % 97 == 0 { 100.0 } else { 1.0 });
@@ -177,7 +177,7 @@ fn things_are_drawn_by_their_weights() {
     assert_eq!(ends, [1, 4]);
 }
 
-/// The comparison of samples with densities detects each of the planted faults.
+/// Tests that the comparison of samples with densities detects each of the planted faults.
 #[test]
 fn planted_faults_are_seen() {
     let linear = |[a, b]: [f64; 2]| 0.9 * a * DVec2::from_angle(2.0 * PI * b);

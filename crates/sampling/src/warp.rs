@@ -28,8 +28,8 @@ pub fn sphere([a, b]: [f64; 2]) -> DVec3 {
     polar(2.0 * a, b)
 }
 
-/// Samples a direction with z > 0 in proportion to its cosine to Z (Malley's method: a point of the
-/// disc below the hemisphere).
+/// Samples a direction with z > 0 in proportion to its cosine to Z. By Malley's method, a point is
+/// sampled in the unit disc and projected up to the hemisphere.
 #[inline]
 #[must_use]
 pub fn cosine_hemisphere([a, b]: [f64; 2]) -> DVec3 {
@@ -43,8 +43,8 @@ pub fn cosine_hemisphere_density(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// Returns the direction at an angle θ to Z and an azimuth φ, given 1 − cos θ (which keeps its
-/// digits for small θ) and φ/2π.
+/// Returns the direction at an angle θ to Z and an azimuth φ. `fall` is 1 − cos θ, which keeps its
+/// digits for small θ, and `turn` is φ/2π.
 #[inline]
 #[must_use]
 pub fn polar(fall: f64, turn: f64) -> DVec3 {
@@ -53,8 +53,8 @@ pub fn polar(fall: f64, turn: f64) -> DVec3 {
     DVec3::new(sine * cos, sine * sin, 1.0 - fall)
 }
 
-/// Converts a direction from a frame with Z along `axis` to the coordinates of `axis`. The frame
-/// results from turning the coordinate axes by the smallest angle.
+/// Converts a direction from a frame with Z along `axis` to the coordinates in which `axis` is
+/// given. The frame results from turning the axes of these coordinates by the smallest angle.
 #[inline]
 #[must_use]
 pub fn about(axis: DVec3, local: DVec3) -> DVec3 {

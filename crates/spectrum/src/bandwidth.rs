@@ -16,7 +16,7 @@ pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64
 pub struct Widest<T> {
     /// The azimuth, radians.
     pub azimuth: f64,
-    /// The bandwidth at the azimuth of the largest bandwidth.
+    /// The largest bandwidth, which is the bandwidth at this azimuth.
     pub value: T,
 }
 
@@ -58,8 +58,8 @@ pub(crate) fn widest_slice(
     each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
 }
 
-/// Returns the smallest frequency B for which the power at |frequency| ≤ B is at least `fraction`
-/// of the total power.
+/// Returns the smallest frequency B such that the power at |frequency| ≤ B is at least `fraction`
+/// times the total power.
 ///
 /// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency
 /// is spread uniformly over a cell that extends half a step to either side of the frequency, so
@@ -78,8 +78,8 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Adds the two cells at the same distance from zero; the single cell at zero extends to
-        // both sides.
+        // The two cells at the same distance from zero are added. The single cell at zero extends
+        // to both sides of zero.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (
@@ -93,8 +93,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Only rounding errors let the loop end without a result, because the total power exceeds every
-    // fraction of itself.
+    // The loop ends without a result only because of rounding errors.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 
@@ -138,7 +137,7 @@ mod tests {
         let rho = bandwidth_rho(power.view(), &grid, 0.95).unwrap();
         let nu = bandwidth_nu(power.view(), &grid, 0.95).unwrap();
         assert!((rho - 1.386 * 0.8).abs() < 0.02, "{rho}"); // curvature within a cell of 0.3
-        assert!((nu - 1.386).abs() < 0.02, "{nu}"); // the same for 0.25
+        assert!((nu - 1.386).abs() < 0.02, "{nu}"); // curvature within a cell of 0.25
     }
 
     /// Returns ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
@@ -160,8 +159,8 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // By the midpoint rule with 4·10⁴ points up to 20, the bandwidth is 0.55722. For a
-        // half-width of 0.09105, the bandwidth is 6.12.
+        // The midpoint rule with 4·10⁴ points up to 20 gives the bandwidth 0.55722 for a half-width
+        // of 1. For a half-width of 0.09105, the bandwidth is 6.12.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();

@@ -5,8 +5,8 @@ use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
 /// The measurement of one batch of photons at one plane.
 ///
-/// Slices and projection are sums over the batch, divided by the number of photons that the batch
-/// emitted, so each batch gives an unbiased estimate.
+/// The slices and the projection are sums over the batch, divided by the number of photons that the
+/// batch emitted. Each batch therefore gives an unbiased estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneBatch {
     /// Number of photons that crossed the plane, inside and outside its window.
@@ -58,10 +58,10 @@ pub struct Batch {
 pub struct PartialBatch {
     /// The number of the batch.
     pub index: u32,
-    /// Number of parts of the batch in the sum.
+    /// The number of parts of the batch that the sum contains.
     pub parts: u32,
-    /// The sum of the parts, or `None` if there are no parts. Like all sums, this sum is divided
-    /// by the number of photons of the complete batch.
+    /// The sum of the parts, or `None` if there are no parts. The sum is divided by the number of
+    /// photons of the complete batch, like the sums in [`PlaneBatch`].
     pub sum: Option<Batch>,
 }
 

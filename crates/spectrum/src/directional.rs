@@ -2,8 +2,8 @@
 //!
 //! A picture is a windowed function of two slopes. The 2D spectrum of a picture is measured by
 //! slices that contain only ρ = 0, which are lines through zero, one for each azimuth. For each
-//! direction e, [`DirectionalBandwidth`] has the smallest B for which the power at |ν · e| > B is
-//! at most a twentieth of the total. Each frequency represents its polar cell, whose power is
+//! direction e, [`DirectionalBandwidth`] has the smallest B such that the power at |ν · e| > B is
+//! at most a twentieth of the total power. Each frequency represents its polar cell, whose power is
 //! spread uniformly over the range of ν · e within the cell.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
@@ -20,10 +20,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionalBandwidth {
     /// The bandwidths, cycles per unit slope, at the azimuths π k / K.
     pub along: Vec<f64>,
-    /// The largest bandwidth, with its azimuth in radians; if several azimuths have the largest
-    /// bandwidth, the first of them.
+    /// The largest bandwidth, with its azimuth in radians. If several azimuths have the largest
+    /// bandwidth, this is the first of them.
     pub widest: Widest<Uncertain>,
-    /// The bandwidth along the direction perpendicular to that of the largest bandwidth.
+    /// The bandwidth along the direction that is perpendicular to the direction of `widest`.
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
@@ -148,7 +148,8 @@ struct PolarCell {
     azimuth: f64,
     /// The frequency along the azimuth.
     nu: f64,
-    /// Half of the lengths of the cell's sides, along the azimuth and perpendicular to it.
+    /// Half of the length of each side of the cell: along the azimuth, and perpendicular to the
+    /// azimuth.
     half: [f64; 2],
     /// The power in the cell, ∫ |F|².
     power: f64,
@@ -174,7 +175,7 @@ impl PolarCell {
     }
 }
 
-/// The cumulative power: the power at |ν · e| below each of many limits.
+/// The power at |ν · e| below each of many limits.
 struct Cumulative {
     step: f64,
     /// The power between each limit and the next limit.
@@ -224,7 +225,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // Only rounding errors let the search end without a result.
+        // The search ends without a result only because of rounding errors.
         self.bins.len() as f64 * self.step
     }
 }
@@ -288,7 +289,7 @@ mod tests {
     #[test]
     fn a_window_has_the_bandwidth_of_its_profile() {
         let found = DirectionalBandwidth::of_window(&window(), &grid());
-        // The expected bandwidth is 0.55722 along the axes by the midpoint rule. The polar cells
+        // The midpoint rule gives the expected bandwidth 0.55722 along the axes. The polar cells
         // change the bandwidth by up to 2 %.
         for azimuth in [0.0, FRAC_PI_2] {
             let value = found.at(azimuth);
@@ -296,8 +297,9 @@ mod tests {
         }
     }
 
-    /// Without the mean, the bandwidth of a sine is the frequency of the sine plus the window's
-    /// main lobe, at any azimuth. The bandwidth along e is the bandwidth of the component f · e.
+    /// Tests sines without their mean at several azimuths. The bandwidth of a sine of frequency f
+    /// is |f| plus the width of the window's main lobe. Along a direction e, it has the bandwidth
+    /// of a sine of frequency f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {
         for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {

@@ -29,7 +29,7 @@ pub struct ProjectionEstimate {
     pub standard_error: Array2<f64>,
 }
 
-/// The error if there are too few batches to estimate a standard error.
+/// The error that is returned if there are too few batches to estimate a standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{have} batches are too few for an error: at least {need} are needed")]
 pub struct TooFewBatches {

@@ -3,8 +3,8 @@
 use etendue_field::{Projection, ProjectionGrid, TwoPlane};
 use ndarray::Array2;
 
-/// A partial sum of weighted rays that becomes a [`Projection`], the counterpart in (x, u) of the
-/// slice at azimuth 0.
+/// A sum of weighted rays in cells of (x, u), which becomes a [`Projection`]. A projection is the
+/// counterpart of the slice at azimuth 0.
 #[derive(Clone, Debug)]
 pub struct ProjectionHistogram {
     grid: ProjectionGrid,

@@ -7,7 +7,7 @@ use ndarray::{Array, Dimension};
 pub struct Uncertain {
     /// The number.
     pub value: f64,
-    /// Its standard error.
+    /// The standard error of the number.
     pub error: f64,
 }
 

@@ -1,14 +1,14 @@
 //! Converts photons that cross virtual planes to spectra with statistical errors.
 //!
 //! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. The
-//! function [`measure`] runs batches of photons. For each batch and plane, the function records the
-//! [`Slices`](etendue_field::Slices) of the windowed light field, the field's projection on (x, u),
-//! and the numbers of photons inside and outside the window. The output is a complete or partial
-//! [`Measurement`]. Estimates are made from the independent batches of a measurement: mean slices
-//! with their variance ([`estimate::slices`]), radial power without the photons' noise
-//! ([`CrossPower`]), and slopes ([`moments`]) and bandwidths ([`bandwidth`](mod@bandwidth)) with
-//! jackknife errors. The module [`field`] has the light field on a 4D grid, with its full radial
-//! spectrum.
+//! function [`measure`] runs batches of photons. For each batch and plane, the function records
+//! three results: the [`Slices`](etendue_field::Slices) of the windowed light field, the projection
+//! of this field on (x, u), and the numbers of photons inside and outside the window. The output is
+//! a complete or partial [`Measurement`]. The independent batches of a measurement give estimates.
+//! [`estimate::slices`] returns the mean slices with their variance, and [`CrossPower`] computes
+//! the radial power without the photons' noise. Slopes ([`moments`]) and bandwidths
+//! ([`bandwidth`](mod@bandwidth)) have jackknife errors. The module [`field`] measures the light
+//! field on a 4D grid, with its full radial spectrum.
 //!
 //! [`SliceTransform`](etendue_transform::SliceTransform) computes the transform of rays to slices.
 //! This crate does not trace photons or predict spectra, and another crate compares the results

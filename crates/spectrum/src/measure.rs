@@ -20,8 +20,8 @@ pub const PROJECTION_BINS: usize = 64;
 /// result is bitwise identical on any number of threads. `progress` is called with the number of
 /// photons as they are traced.
 ///
-/// Batches without photons are left out: if there are fewer photons than batches, the result has
-/// as many batches as photons.
+/// Batches without photons are left out. If there are fewer photons than batches, the result has as
+/// many batches as photons.
 #[must_use]
 pub fn measure(
     source: &dyn PhotonSource,
@@ -38,9 +38,9 @@ pub trait Watch: Sync {
     /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether a part of a batch should be measured, and is called just before the
-    /// measurement of the part. If the result is false, the remaining parts of the batch are not
-    /// measured.
+    /// Returns whether a part of a batch should be measured. This function is called just before
+    /// the part is measured. If it returns false, this part and the later parts of the batch are
+    /// not measured.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
@@ -211,8 +211,8 @@ fn measure_part(
     }
 }
 
-/// A receiver of the crossings of one plane, which applies the plane's quantity and window, and
-/// accumulates the sums.
+/// Receives the crossings of one plane, multiplies their weights by the plane's window and by the
+/// factor of the plane's quantity, and accumulates the sums.
 struct Recorder<'plan> {
     plane: &'plan VirtualPlane,
     tally: PlaneTally,

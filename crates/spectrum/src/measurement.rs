@@ -75,7 +75,7 @@ impl Measurement {
     ///
     /// # Panics
     ///
-    /// Panics when the iterator is used, if the measurement has no such plane.
+    /// If the measurement has no such plane, the use of the iterator panics.
     pub fn at_plane(&self, plane: usize) -> impl ExactSizeIterator<Item = &PlaneBatch> {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }

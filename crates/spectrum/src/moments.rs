@@ -1,4 +1,4 @@
-//! Computes statistics of a power spectrum [ρ, ν], measured or predicted.
+//! Computes statistics of a measured or predicted power spectrum [ρ, ν].
 
 use etendue_field::{Profile, SliceGrid, Window};
 use ndarray::{ArrayView2, Axis};
@@ -44,8 +44,8 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
 /// cut in the spectrum at ν = 0.
 ///
 /// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν =
-/// 0 is that of the windowed irradiance. On such a plane, H distinguishes a sharp shadow from a
-/// smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
+/// 0 is the spectrum of the windowed irradiance. On such a plane, H distinguishes a sharp shadow
+/// from a smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -58,8 +58,8 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
     (all > 0.0).then(|| high / all)
 }
 
-/// Returns the share of the power that lies in the wedge of blockers between two distances from
-/// the plane, `[nearest, farthest]` in metres.
+/// Returns the share of the power that lies in the wedge of blockers whose distances from the plane
+/// are in `[nearest, farthest]`, in metres.
 ///
 /// A blocker at the distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005,
 /// section 3.2; Egan et al. 2009). The window blurs the lines of blockers. A frequency therefore
@@ -122,8 +122,8 @@ mod tests {
         let grid = grid();
         let ridge = ridge(0.5);
         let moment = |powers| second_moment(ridge.view(), &grid, powers).unwrap();
-        // The mean of ρ² is 0.8²/2; for a given ρ, ν has the mean ρ/2 and the variance ½; the
-        // tails off the grid are below e^-14.
+        // The mean of ρ² is 0.8²/2. For a given ρ, ν has the mean ρ/2 and the variance ½. The tails
+        // outside the grid are below e^-14.
         let square = 0.5 * 0.8 * 0.8;
         assert!((moment([2, 0]) - square).abs() < 1e-4);
         assert!((moment([1, 1]) - 0.5 * square).abs() < 1e-4);
@@ -134,8 +134,8 @@ mod tests {
     fn the_slope_of_a_ridge_is_found() {
         for slope in [-2.0, -0.5, 0.0, 1.3] {
             let found = shear_slope(ridge(slope).view(), &grid()).unwrap();
-            // At the ends of the ρ axis, where the ridge leaves the grid in ν, its height is
-            // e^-14.
+            // The ridge leaves the grid in ν at the ends of the ρ axis, where the height of the
+            // ridge is e^-14.
             assert!((found - slope).abs() < 1e-5, "{found}");
         }
         assert!(shear_slope((-ridge(1.0)).view(), &grid()).is_none());

@@ -8,8 +8,8 @@ use etendue_field::{Complex, SliceGrid, Slices};
 use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis, Slice};
 use std::ops::Range;
 
-/// The measured radial power of a plane, which is |S_φ|² averaged over the azimuths φ, [ρ, ν]
-/// ascending.
+/// The measured radial power of a plane, which is |S_φ|² averaged over the azimuths φ. The arrays
+/// are [ρ, ν], both ascending.
 #[derive(Clone, Debug)]
 pub struct RadialPower {
     /// The power without the noise of the photons. The estimate of the power is unbiased, and noise
@@ -135,7 +135,8 @@ impl<'m> CrossPower<'m> {
         })
     }
 
-    /// Returns the cross power of the slice with index `slice` among the slices of this object.
+    /// Returns the cross power of a single slice. `slice` is the index among the slices of this
+    /// cross power.
     fn slice(&self, slice: usize) -> Self {
         let one = slice..slice + 1;
         let first = self.azimuths.start;
@@ -212,9 +213,10 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths, with its standard error at the azimuth of
-    /// the largest bandwidth. If the bandwidths of several azimuths are nearly equal, noise decides
-    /// which bandwidth is largest, and the result exceeds the true value by about the error.
+    /// Returns the largest bandwidth over the azimuths and its standard error. The error is that of
+    /// the bandwidth at the azimuth found. If the bandwidths of several azimuths are nearly equal,
+    /// noise decides which of them is the largest, and the result exceeds the true value by about
+    /// the error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);

@@ -1,12 +1,12 @@
-//! Subtracts the mean from light fields.
+//! Subtracts the mean of a light field from the field.
 //!
-//! Most of the power of a typical spectrum comes from the mean of the light behind the window.
-//! The bandwidth of the total power would therefore say little about how fast the light changes.
+//! Most of the power of a typical spectrum comes from the mean of the light in the window. The
+//! bandwidth of the total power would therefore say little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use ndarray::{Array2, Array3};
 
-/// The mean of a light field behind a window, to be subtracted from the field's slices.
+/// The mean of a light field times the window, which is subtracted from the field's slices.
 #[derive(Clone, Debug)]
 pub struct WindowedMean {
     /// The transform of the window divided by its value at zero, Ŵ / Ŵ(0), [azimuth, ρ ≥ 0, ν].
@@ -14,7 +14,7 @@ pub struct WindowedMean {
 }
 
 impl WindowedMean {
-    /// Builds the mean behind a window, at the frequencies of a grid.
+    /// Prepares the subtraction of the mean under a window, at the frequencies of a grid.
     #[must_use]
     pub fn new(window: &Window, grid: &SliceGrid) -> Self {
         let shape = transform(window, grid);
@@ -27,8 +27,8 @@ impl WindowedMean {
     /// Returns the slices of a windowed light field minus its mean, which are F − F(0) Ŵ / Ŵ(0),
     /// where F is the spectrum of the light field times the window W.
     ///
-    /// The result is the spectrum of the window times the deviation of the light field from its
-    /// mean. The mean of the light field is weighted by the window.
+    /// The result is the spectrum of a product: the window times the deviation of the light field
+    /// from its mean. The mean is weighted by the window.
     ///
     /// # Panics
     ///
@@ -43,8 +43,8 @@ impl WindowedMean {
         varying
     }
 
-    /// Returns several slices, such as those of batches, each minus the mean of its own light
-    /// field.
+    /// Returns several slices, such as the slices of several batches. From each of them, the mean
+    /// of its own light field is subtracted.
     ///
     /// # Panics
     ///

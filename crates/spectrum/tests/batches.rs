@@ -32,8 +32,8 @@ fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
     measure(source, &source.planes, batches, &|_| ())
 }
 
-/// A source of photons whose batches have two parts: the photons at one plane of a shower, and the
-/// photons at the other plane.
+/// A source of photons whose batches have two parts. The first part has the photons at one plane of
+/// a shower, and the second part has the photons at the other plane.
 struct Parted(Shower);
 
 impl PhotonSource for Parted {
@@ -71,7 +71,7 @@ impl PhotonSource for Parted {
     }
 }
 
-/// The sum of the parts of a batch equals the batch, on any number of threads.
+/// Tests that the sum of the parts of a batch equals the batch, on any number of threads.
 #[test]
 fn parts_make_a_batch() {
     let whole = run(&shower(), 0..10);
@@ -133,8 +133,8 @@ impl Watch for Stop {
     }
 }
 
-/// If a batch stops after any of its parts and continues from there, the result is bitwise
-/// identical, on any number of threads.
+/// Tests that the result is bitwise identical if a batch stops after any of its parts and continues
+/// later, on any number of threads.
 #[test]
 fn a_batch_goes_on_where_it_was_left() {
     let source = Large(shower());
@@ -290,7 +290,7 @@ fn batches_that_emit_nothing_are_left_out() {
     assert!(none.is_err());
 }
 
-/// The mean of two values a and b has the variance |a − b|²/4.
+/// Tests that the mean of two values a and b has the variance |a − b|²/4.
 #[test]
 fn two_batches_tell_their_error() {
     let measurement = run(&shower(), 0..2);

@@ -101,8 +101,8 @@ fn no_frequency_is_beyond_its_bound() {
     }
 }
 
-/// The spectrum is given one fault at a time: a wrong power of the sinc, a shift by half a cell
-/// along x, and a wrong sign of the transform.
+/// Tests that a faulty spectrum exceeds the bound. The spectrum has one fault at a time: a wrong
+/// power of the sinc, a shift by half a cell along x, or a wrong sign of the transform.
 #[test]
 fn wrong_compensations_are_beyond_it() {
     let window = hann();

@@ -1,4 +1,4 @@
-//! Tests the light field of a plane on its 4D grid, and the field's full radial spectrum.
+//! Tests the measured light field of a plane on a 4D grid, and the field's full radial spectrum.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -55,7 +55,7 @@ fn threads_and_memory_do_not_change_a_bit() {
     assert!(one.full_radial.sigma.iter().all(|sigma| *sigma > 0.0));
 }
 
-/// Checks that the photons, tallies and means over batches on the grid equal those of the slices.
+/// Checks that the grid and the slices have the same photons, tallies and means over batches.
 #[test]
 fn the_grid_sees_what_the_slices_see() {
     let source = shower();
@@ -186,7 +186,8 @@ fn the_jackknife_leaves_groups_out() {
     assert!(largest(&(&three.power - &expected)) < 1e-12 * largest(&expected)); // rounding
 }
 
-/// A source of photons all over a box, with weights of zero mean, whose field contains only noise.
+/// A source of photons that cover a box and have weights of zero mean, so the field contains only
+/// noise.
 struct White(u64);
 
 impl PhotonSource for White {
@@ -217,8 +218,8 @@ fn shot_noise_is_removed() {
     let plane = plane("white", boxed(), grid(&boxed(), 2, [4, 5], 1.0));
     let (mut removed, mut left_in, mut variance, mut frequencies) = (0.0, 0.0, 0.0, 0.0);
     let trials = 40;
-    // The expected noise power, E w²/N of the mean times the aliasing of white noise averaged
-    // over the bins, is the same for every trial.
+    // The expected noise power is E w²/N times the aliasing of white noise, averaged over the bins.
+    // It is the same for every trial.
     for seed in 0..trials {
         let radial = run(&White(seed), &plane, 20).full_radial;
         let counts = radial.counts.mapv(|count| count as f64);
@@ -236,7 +237,7 @@ fn shot_noise_is_removed() {
     // The tolerance is four standard deviations, times 1.5 because noise is not white on the grid
     // (its aliases grow towards Nyquist).
     assert!(mean.abs() < 4.0 * 1.5 * sd, "{mean} {sd}");
-    assert!(noise > 50.0 * sd); // left in it would be seen
+    assert!(noise > 50.0 * sd); // noise that is not removed would be noticed
     // If there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let ratio = variance / frequencies.powi(2) / (sd * sd) / (2.0 * 19.0 / 18.0);
     assert!((0.8..1.5).contains(&ratio), "{ratio}");

@@ -132,8 +132,8 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
 }
 
-/// The field of the box, on a grid three times finer than its period, has a known power that is
-/// not zero.
+/// Tests the field of a box on a frequency grid three times finer than the box's period requires.
+/// The power of this field is known and is not zero.
 #[test]
 fn jackknife_intervals_cover_the_truth() {
     let (trials, batches) = (300, 16);
@@ -162,7 +162,7 @@ fn jackknife_intervals_cover_the_truth() {
     // times this error, plus 1 % for the error of the jackknife.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
-    assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %
+    assert!(share(halved) < 0.80); // half of the error covers only 70 %
 }
 
 #[test]

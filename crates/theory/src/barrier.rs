@@ -1,5 +1,5 @@
-//! Masks prepared for many queries, which ask what fraction of a ray's radiance passes and which
-//! shapes are near a ray.
+//! Masks that are prepared for many queries. A query asks what fraction of a ray's radiance passes,
+//! or which shapes are near a ray.
 
 use etendue_field::{HalfPlane, Mask, Shape};
 
@@ -9,8 +9,8 @@ pub(crate) type Bounds = [[f64; 2]; 2];
 /// A mask that is prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// The distance of the mask in metres, either from the light or backward from a receiver, as
-    /// the caller chooses.
+    /// The distance of the mask in metres. The caller chooses whether it is the distance from the
+    /// light or the distance before a receiver.
     pub(crate) distance: f64,
     /// The region that the mask's half-planes do not block.
     pub(crate) open: Bounds,

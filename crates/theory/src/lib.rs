@@ -1,27 +1,28 @@
 //! Predicted spectra of local light fields, in closed form or from nets of rays.
 //!
-//! Every prediction comes from a [`Model`]: a [`Chain`] of parallel planes, or light [`Observed`]
-//! from specular surfaces ([`rays`]) or from a surface with a BRDF ([`scattering`]).
+//! Every prediction comes from a [`Model`]. A model is a [`Chain`] of parallel planes, or light
+//! [`Observed`] after specular surfaces ([`rays`]) or after a surface with a BRDF ([`scattering`]).
 //!
-//! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
-//! planes, and the cosine and diffuse reflection of a receiver. The output contains the values that
-//! a measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
-//! their error ([`quadrature_error`]), their [`derivative`] with respect to any parameter of the
-//! chain, and the [`projection`] on (x, u).
+//! A [`Chain`] contains a light, travel, masks, and the cosine and diffuse reflection of a
+//! receiver. Masks are opaque shapes, half-planes and cosine gratings in planes. The prediction
+//! contains the values that a measurement would have without noise: the [`slices`] of the windowed
+//! spectrum, an estimate of their error ([`quadrature_error`]), their [`derivative`] with respect
+//! to any parameter of the chain, and the [`projection`] on (x, u).
 //!
-//! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is
-//! then a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows
-//! and gratings are sums of cosines. The transform of a convex polygon has a closed form, which
-//! requires no quadrature and no grid and has no aliasing. A disc is a weighted sum of rectangles,
-//! and a factor of slope is a sum of products of cosine series; both sums converge exponentially.
+//! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is then
+//! a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows and
+//! gratings are sums of cosines. The transform of a convex polygon has a closed form, which
+//! requires no quadrature and no grid and has no aliasing. A disc is replaced by a weighted sum of
+//! rectangles, and a factor that depends on slopes is replaced by a sum of products of cosine
+//! series. Both sums converge exponentially.
 //!
 //! [`geometry`] contains the steps that bend a light path (incidence, curvature, mirrors,
-//! refraction, lenses) as affine maps of rays, with their effect on spectra and covariances; a
-//! [`Chain`] does not use these maps. [`rays`] predicts light behind mirrors, refracting surfaces
-//! and lenses in two ways: exactly, by following rays; and to first order, by a chain of those
-//! maps derived from the same surfaces. [`covariance`] follows second moments of spectra along the
-//! same paths. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in
-//! 2D.
+//! refraction, lenses). Each step is an affine map of rays, with its effect on spectra and
+//! covariances. A [`Chain`] does not use these maps. [`rays`] predicts light behind mirrors,
+//! refracting surfaces and lenses in two ways. The exact prediction follows rays. The first-order
+//! prediction uses a chain of affine maps that are derived from the same surfaces. [`covariance`]
+//! follows second moments of spectra along the same paths. [`shading`] has cosines, BRDF lobes,
+//! Fresnel factors, textures and environments, in 2D.
 //!
 //! This crate has no access to scenes, photons or measured spectra, so the agreement of a
 //! prediction with a measurement is evidence that both are correct.

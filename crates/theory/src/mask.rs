@@ -13,7 +13,7 @@ pub(crate) struct Masks<'a> {
 }
 
 impl<'a> Masks<'a> {
-    /// Prepares masks, given with their distances from the light in metres, and obstacles.
+    /// Prepares masks and obstacles. Each mask is given with its distance from the light in metres.
     pub(crate) fn new(layers: &'a [(f64, Mask)], obstacles: &'a [Obstacle]) -> Self {
         let barriers = layers.iter();
         Self {

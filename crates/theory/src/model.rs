@@ -7,7 +7,7 @@ use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{Light, ProjectionGrid, SliceGrid, Window};
 
-/// The domain of a prediction: a window, frequencies and the cells of a picture.
+/// The domain of a prediction: a window, the frequencies of slices, and the cells of a picture.
 pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
 
 /// A model that predicts the light field at a plane.
@@ -26,8 +26,8 @@ pub trait Model: Clone {
     /// the parameter, or if the central ray does not arrive.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
 
-    /// Predicts the slices with their error, a picture, and the derivatives with respect to the
-    /// given parameters.
+    /// Predicts the slices, their error, a picture, and the derivatives of the slices with respect
+    /// to the given parameters.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
     /// Calls `then` with the light field as nets of rays, which are sampled in the same way as in
@@ -74,8 +74,7 @@ pub struct Observed<S> {
 /// A model with a parameter slightly increased and slightly decreased.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShiftedModels<M> {
-    /// The difference between the increased and the decreased value of the parameter, in the
-    /// parameter's unit.
+    /// The increased value of the parameter minus the decreased value, in the parameter's unit.
     pub(crate) apart: f64,
     /// The models with the increased and with the decreased value of the parameter.
     pub(crate) sides: [M; 2],

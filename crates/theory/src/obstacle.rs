@@ -8,7 +8,7 @@ use glam::DVec3;
 /// An occluder, in the frame at the light; it stops every ray that meets it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// Name, for messages.
+    /// The name of the obstacle, which messages use.
     pub name: String,
     /// The shape of the obstacle and its position.
     pub form: ObstacleForm,
@@ -17,8 +17,9 @@ pub struct Obstacle {
 /// The shape and position of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg that stops light on leg `from` and all later legs. If `from` is
-    /// not the first leg, the mask is also among the masks of the first leg.
+    /// A mask across the first leg of the path. This obstacle stops light on leg `from` and on all
+    /// later legs. If `from` is not the first leg, the mask is also among the masks of the first
+    /// leg.
     Mask {
         /// The index of the first leg on which this obstacle blocks light.
         from: usize,
@@ -164,7 +165,7 @@ pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
         .map(|t| Some(t).filter(|t| t.is_finite() && patch.contains(point + *t * direction)))
 }
 
-/// Returns the distance along a ray to a triangle. The ray meets the triangle where the volumes
+/// Returns the distance along a ray to a triangle. The ray meets the triangle if the three volumes
 /// that the ray spans with the edges have the same sign (Plücker coordinates).
 fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
     let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);

@@ -2,23 +2,23 @@
 
 use etendue_field::{Light, Patch, Shape};
 
-/// A parameter of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of
-/// the elements of a system.
+/// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
+/// an element of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The side along X of a rectangular light, whose aspect ratio is constant, or the radius of a
-    /// disc.
+    /// The size of a light: the side along X of a rectangle, whose aspect ratio is constant, or the
+    /// radius of a disc.
     SourceSize,
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
     /// The first width of a light's picture; the ratio of the two widths is constant.
     ImageWidth,
-    /// The distance of a step of travel. In a system, the length of the central ray from an
-    /// element, or from the light (0), to the next element or the plane. All elements and the
-    /// plane after this distance move along D.
+    /// The distance of a step of travel. In a system, this is the length of a leg of the central
+    /// ray. The leg starts at an element, or at the light (0), and ends at the next element or at
+    /// the plane. If the length changes, all elements after the leg and the plane move along D.
     Travel(usize),
-    /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the
-    /// mask scale by the same factor about their centres.
+    /// The size of the first shape of an opaque mask: the side along X of a rectangle, or the
+    /// radius of a disc. All shapes of the mask scale by the same factor about their centres.
     BlockerSide(usize),
     /// The edge of the first half-plane of an opaque mask; the mask's other edges do not move.
     HalfPlaneEdge(usize),
@@ -29,8 +29,8 @@ pub enum Parameter {
     /// The angle of incidence θ₀ of the central ray on a patch; a change turns only this patch
     /// about B.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). All curvatures of the patch that are equal to
-    /// this curvature change with it, and so does k₃. The patch's vertex does not move.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). Other curvatures of the patch change too if they
+    /// are equal to this curvature. The patch's vertex does not move.
     Curvature(usize, usize),
     /// The index of refraction of the denser side of a surface.
     Index(usize),
@@ -71,8 +71,8 @@ impl Parameter {
         }
     }
 
-    /// Returns the scale of the parameter: a change is small if it is small compared with this
-    /// scale.
+    /// Returns the scale of the parameter. A change of the parameter is small if it is small
+    /// compared with this scale.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
@@ -149,8 +149,8 @@ pub(crate) fn size_word(shape: &Shape) -> &'static str {
     }
 }
 
-/// Sets the side along X, or the radius, of the first shape and scales all shapes by the same
-/// factor.
+/// Sets the size of the first shape, which is its side along X or its radius, and scales all shapes
+/// by the same factor.
 pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
     let size = match &shapes[0] {
         Shape::Rectangle(rectangle) => rectangle.size[0],

@@ -5,16 +5,16 @@ use etendue_field::{Frame, Orientation, Patch, Quantity};
 /// The plane at which the light field is observed, behind all surfaces that light meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
-    /// it. On a surface the axes of the frame are T, B and the normal, on the side to which
-    /// directions point.
+    /// The plane's frame, in the coordinates of the frame at the light. O is on the central ray,
+    /// and D is along this ray. On a surface, the axes of the frame are T, B and the normal on the
+    /// side to which directions point.
     pub frame: Frame,
     /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.
     pub orientation: Orientation,
     /// The angle θ of the central ray on a surface, in radians. The coordinates are then (s, t, θ
     /// − longitude, φ).
     pub longitude: f64,
-    /// The surface, for local normals; without it all normals are along D.
+    /// The surface that gives the local normals. If it is `None`, all normals are along D.
     pub patch: Option<Patch>,
     /// Whether the plane observes light that arrives at a surface, for which directions are
     /// reversed. If light arrives at the plane's surface, this surface is not among the system's
@@ -25,7 +25,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Returns a plane perpendicular to the D of a frame that records radiance and is not on a
+    /// Returns a plane that is perpendicular to the D of a frame, records radiance and is not on a
     /// surface.
     #[must_use]
     pub fn orthogonal(frame: Frame) -> Self {

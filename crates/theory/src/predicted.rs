@@ -12,17 +12,17 @@ pub struct Predicted {
     /// Independent unbiased predictions whose mean is `slices`; empty for closed forms and
     /// quadrature rules.
     pub replicates: Vec<Slices>,
-    /// The relative error ‖error‖/‖F‖: the standard error of the mean of the replicates, or the
-    /// change under finer quadrature rules. The error is `None` for a closed form, and infinite if
-    /// no ray arrives.
+    /// The relative error ‖error‖/‖F‖. For replicates, the error is the standard error of their
+    /// mean. For quadrature rules, the error is the change under finer rules. The error is `None`
+    /// for a closed form, and infinite if no ray arrives.
     pub error: Option<f64>,
-    /// The integral ∫ L W of the light without occluders, which is the scale for errors of a closed
-    /// form; zero for nets.
+    /// The integral ∫ L W of the light without occluders. This is the scale for errors of a closed
+    /// form. For nets, the value is zero.
     pub unblocked: f64,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,
-    /// Second central moments of the windowed light field, in the plane's coordinates; `None` for
-    /// closed forms, and if no light arrives.
+    /// Second central moments of the windowed light field, in the plane's coordinates. The value is
+    /// `None` for closed forms, or if no light arrives.
     pub covariance: Option<Matrix<4>>,
     /// The derivatives of the slices with respect to each of the requested parameters, per unit of
     /// the parameter.

@@ -4,7 +4,8 @@ use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussi
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A density over directions, exactly or nearly proportional to the radiance from each direction.
+/// A density over directions, which is proportional or nearly proportional to the radiance from
+/// each direction.
 #[derive(Clone, Debug)]
 pub(crate) enum SkyDensity<'a> {
     /// The density of spherical Gaussians.
@@ -18,8 +19,8 @@ pub(crate) enum SkyDensity<'a> {
 pub(crate) struct Lobes {
     /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points in the direction from
-    /// which most of the Gaussian's light comes.
+    /// Three values for each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points in the
+    /// direction from which most of the Gaussian's light comes.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
@@ -35,12 +36,13 @@ pub(crate) struct Pixels<'a> {
     cells: Vec<Vec<f64>>,
 }
 
-/// The smallest cosine used to weight light that meets the surface, in the density over a map.
+/// The density over a map weights light by the cosine at the surface, but by no less than this
+/// value.
 const GRAZING: f64 = 0.05;
 
 impl<'a> SkyDensity<'a> {
-    /// Returns the density for a surface with this normal, given in the frame at the light; `None`
-    /// if the environment is dark.
+    /// Returns the density for a surface with this normal, which is given in the frame at the
+    /// light. Returns `None` if the environment is dark.
     pub(crate) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
         match &environment.map {
             EnvironmentMap::Lobes(lobes) => {
@@ -65,7 +67,7 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Samples a direction that light comes from, of unit length in the axes of the environment.
+    /// Samples a direction from which light comes, as a unit vector in the axes of the environment.
     pub(crate) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
         match self {
             Self::Lobes(lobes) => {
@@ -108,8 +110,8 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // An environment emits light only forward, so a cell across the border of the forward
-            // half emits light in part.
+            // An environment emits light only forward, so only part of a cell across the border of
+            // the forward half emits light.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {
@@ -184,7 +186,8 @@ fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
     (sum > 0.0).then_some(sums)
 }
 
-/// Returns the part that a number in (0, 1) falls into, and the position within that part.
+/// Returns the index of the part that contains a number in (0, 1), and the position of the number
+/// within this part.
 fn picked(shares: &[f64], at: f64) -> (usize, f64) {
     let i = shares
         .partition_point(|sum| *sum <= at)

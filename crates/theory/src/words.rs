@@ -1,4 +1,4 @@
-//! Descriptions in words of the steps of light: maps, masks and numbers.
+//! Describes the steps of light in words: maps, masks and numbers.
 
 use crate::geometry::Matrix;
 use crate::obstacle::{Obstacle, ObstacleForm};
@@ -38,7 +38,7 @@ pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     }
 }
 
-/// Describes the effect of a mask; the text `named` precedes it, such as "bars: ".
+/// Describes the effect of a mask. The text `named`, such as "bars: ", precedes the description.
 pub(crate) fn mask(named: &str, mask: &Mask) -> String {
     match mask {
         Mask::Opaque {

@@ -3,7 +3,7 @@
 /// The estimated work of a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PredictionWork {
-    /// Number of elementary steps; a core does one in about a nanosecond.
+    /// Number of elementary steps. A core takes about a nanosecond for each step.
     pub steps: f64,
     /// Bytes shared by all threads.
     pub bytes: f64,
@@ -25,7 +25,7 @@ impl PredictionWork {
         }
     }
 
-    /// The work of a prediction that would take far too long, whose exact amount was not counted.
+    /// The work of a prediction that would take far too long. The exact amount was not counted.
     pub(crate) fn endless(drivers: String) -> Self {
         Self {
             steps: f64::INFINITY,

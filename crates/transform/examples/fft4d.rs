@@ -1,11 +1,13 @@
-//! Times the 4D real transform, or transforms a file; the counterpart of `tests/peers/fft4d.py`.
+//! Times the 4D real transform, or transforms a file. This program is the counterpart of
+//! `tests/peers/fft4d.py`.
 //!
 //!     cargo run --release -p etendue-transform --example fft4d -- time 64 [ROUNDS] [THREADS]
 //!     cargo run --release -p etendue-transform --example fft4d -- serve 64 kept|fresh
 //!     cargo run --release -p etendue-transform --example fft4d -- file NX NY NU NV IN OUT
 //!
-//! `serve` answers each line of its input with the milliseconds of one transform, and the end of
-//! input with its peak memory in megabytes. `file` reads and writes raw little-endian f64.
+//! For each line of its input, `serve` performs one transform and prints the milliseconds that it
+//! takes. At the end of the input, `serve` prints its peak memory in megabytes. `file` reads and
+//! writes raw little-endian f64.
 
 #![allow(clippy::print_stdout, reason = "its purpose")]
 
@@ -54,8 +56,8 @@ impl Job {
         }
     }
 
-    /// Returns the milliseconds of one transform: in existing, filled memory, or including the
-    /// allocation and filling of new memory.
+    /// Returns the milliseconds of one transform. If `fresh` is set, they include the time to
+    /// allocate and fill new memory; otherwise the transform uses existing memory.
     fn run(&mut self) -> f64 {
         if self.fresh {
             self.place = Vec::new();

@@ -1,4 +1,4 @@
-//! Plain sums, the reference for the slice transform.
+//! Plain sums, which are the reference for the slice transform.
 
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, cis};
 use std::f64::consts::TAU;
@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 /// Returns Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx,
 /// Ωy, Ωu, Ωv).
 ///
-/// Exact to rounding. Divided by the number of emitted photons, the sum estimates the transform of L W
-/// at Ω.
+/// The sum is exact apart from rounding errors. If it is divided by the number of emitted photons,
+/// it estimates the transform of L W at Ω.
 pub fn at<'a>(
     crossings: impl IntoIterator<Item = &'a Crossing>,
     window: impl Fn(&TwoPlane) -> f64,

@@ -18,15 +18,15 @@ const BAND: usize = 512;
 /// F[a, b, c, d] = Σ f[i, j, k, l] e^(−2πi (a i/n₀ + b j/n₁ + c k/n₂ + d l/n₃)), without a
 /// normalisation factor, for d = 0 … n₃/2; the other values are conjugates of these.
 ///
-/// The array is [n₀, n₁, n₂, [`row`](Self::row)] complex numbers, C order. Before the transform a
-/// row holds n₃ reals, two to a complex number (real part first), and the rest of the row is
-/// unused, as in FFTW's in-place transforms of reals. See [`real`] and [`real_mut`].
+/// The array has [n₀, n₁, n₂, [`row`](Self::row)] complex numbers in C order. Before the transform,
+/// a row holds n₃ reals: each complex number stores two of them, the real part first. The rest of
+/// the row is unused, as in FFTW's in-place transforms of reals. See [`real`] and [`real_mut`].
 ///
-/// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the
-/// other axes. Each one-dimensional transform is computed by one thread, and columns are grouped
-/// in the same way on any number of threads, so the result is bitwise independent of that number.
-/// The result depends on the kind of processor, since both libraries use the best instructions
-/// available.
+/// The library `realfft` computes the one-dimensional transforms along rows, and `rustfft` computes
+/// the transforms along the other axes. Each one-dimensional transform is computed by one thread,
+/// and columns are grouped in the same way on any number of threads, so the result is bitwise
+/// independent of that number. The result depends on the kind of processor, since both libraries
+/// use the best instructions available.
 ///
 /// The error, relative to the root mean square of F, is 2 to 5·10⁻¹⁶, and at most 1.5·10⁻¹⁵ (AVX,
 /// shapes up to 64 × 64 and 9⁴).

@@ -1,9 +1,9 @@
 //! The numerical tools that the tracer and theory share: transforms, nets and random numbers.
 //!
 //! [`SliceTransform`] sums weighted rays on all slices of a [`SliceGrid`](etendue_field::SliceGrid)
-//! by a non-uniform fast Fourier transform, tested against the plain sums of [`direct`]. The
-//! transform [`RealFft4`] transforms a 4D grid. A [`Net`] has the points of a scrambled Sobol' net,
-//! and the module [`random`] has random numbers addressed by index.
+//! by a non-uniform fast Fourier transform, tested against the plain sums of [`direct`].
+//! [`RealFft4`] transforms a 4D grid. A [`Net`] generates the points of a scrambled Sobol' net, and
+//! the module [`random`] generates random numbers that are addressed by index.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, SliceGrid, TwoPlane};

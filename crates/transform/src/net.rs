@@ -1,9 +1,10 @@
 //! Points of randomly scrambled Sobol' nets, addressed by index.
 //!
-//! A net of 2ᵐ points has one point in each of the boxes formed by halving the sides of the unit
-//! cube in turn, whereas random points leave clusters and gaps. Scrambling moves each point at
-//! random and preserves this property, so a mean over a net is unbiased, and nets with different
-//! keys are independent (Owen 1997, *Scrambled net variance for integrals of smooth functions*).
+//! A net is a set of 2ᵐ points in the unit cube. If the cube is divided into boxes by halving its
+//! sides in turn, each box contains one point of the net, whereas random points form clusters and
+//! gaps. Scrambling moves each point at random and preserves this property. A mean over a net is
+//! therefore unbiased, and nets with different keys are independent (Owen 1997, *Scrambled net
+//! variance for integrals of smooth functions*).
 
 use crate::random::{self, Stream};
 
@@ -12,9 +13,9 @@ const WIDTH: usize = 4;
 /// Number of blocks that form one net of 8 dimensions; each further block is a separate net.
 const JOINT: usize = 2;
 
-/// Degree, inner coefficients and first direction numbers of each coordinate but the first
-/// (Joe and Kuo 2008, *Constructing Sobol' sequences with better two-dimensional projections*,
-/// table `new-joe-kuo-6`).
+/// Degree, inner coefficients and first direction numbers of each coordinate except the first (Joe
+/// and Kuo 2008, *Constructing Sobol' sequences with better two-dimensional projections*, table
+/// `new-joe-kuo-6`).
 const POLYNOMIALS: [(usize, u32, [u32; 5]); 9] = [
     (1, 0, [1, 0, 0, 0, 0]),
     (2, 1, [1, 3, 0, 0, 0]),
@@ -138,10 +139,10 @@ impl Net {
     }
 }
 
-/// Applies Owen scrambling by a hash of the reversed bits, each of which depends only on the bits
-/// above it (Laine and Karras 2011). The hash is that of Vegdahl 2021, *Building a better LK
-/// hash*, with a multiplier that is independent of the addend, which makes all numbers equally
-/// likely.
+/// Applies Owen scrambling by a hash. In Owen scrambling, the change of each bit depends only on
+/// the bits above it, so the hash is applied to the reversed bits (Laine and Karras 2011). The hash
+/// is that of Vegdahl 2021, *Building a better LK hash*, but its multiplier is independent of its
+/// addend, which makes all numbers equally likely.
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();
@@ -176,9 +177,9 @@ mod tests {
             .count()
     }
 
-    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ. The first two
-    /// coordinates of a block have one point in every box of volume 2⁻ᵐ that is formed by halving
-    /// sides.
+    /// Tests 2ᵐ points of a net. Along each coordinate, every interval of length 2⁻ᵐ contains one
+    /// point. In the plane of the first two coordinates of a block, every box of area 2⁻ᵐ that is
+    /// formed by halving sides contains one point.
     #[test]
     fn boxes_hold_one_point_each() {
         const N: u32 = 256;
@@ -203,8 +204,8 @@ mod tests {
         }
     }
 
-    /// The mean of a product over all coordinates is unbiased and has less noise than with random
-    /// numbers; the same is true of the mean over the coordinates of one block.
+    /// Tests that the mean of a product over all coordinates is unbiased and has less noise than
+    /// with random numbers. The test is repeated for the coordinates of one block.
     #[test]
     fn nets_beat_random_numbers() {
         const N: u32 = 1 << 12;
@@ -231,9 +232,9 @@ mod tests {
         }
     }
 
-    /// The values are points 5, 16 and 32, times 64, from `scipy.stats.qmc.Sobol(8,
-    /// scramble=False)` of SciPy 1.17. SciPy orders points by Gray code, where these points have
-    /// the numbers 6, 31 and 63.
+    /// The expected values are points 5, 16 and 32, times 64. They are computed by
+    /// `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy 1.17, where these points have the
+    /// numbers 6, 31 and 63, because SciPy orders points by Gray code.
     #[test]
     fn points_are_those_of_sobol() {
         let point = |[low, high]: [usize; 2]| -> Vec<u32> {

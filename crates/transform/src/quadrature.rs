@@ -63,8 +63,8 @@ mod tests {
             for degree in 0..2 * count {
                 assert!(error(degree) < 1e-14, "{count}, {degree}"); // rounding of values up to 1
             }
-            // The rule of n points has an error of about 4^−n for ∫ x^2n; with many points that is
-            // below the rounding error.
+            // For ∫ x^2n, the rule of n points has an error of about 4^−n. With many points, this
+            // error is below the rounding error.
             assert_eq!(error(2 * count) > 1e-8, count < 16, "{count}");
         }
     }

@@ -14,8 +14,8 @@ pub enum Stream {
     Flip,
     /// Backward ray `index`.
     Backward,
-    /// The random numbers of photon `index` without aimed emission, a reference for aimed
-    /// emission.
+    /// The random numbers of photon `index` if emission is not aimed. Such photons are a reference
+    /// for aimed emission.
     Even,
     /// The scrambling of net `index` of photons.
     Net,
@@ -37,14 +37,15 @@ pub fn words(seed: u64, stream: Stream, index: u64, block: u32) -> [u32; 4] {
     )
 }
 
-/// Converts a random word to a number in (0, 1): the centre of one of 2³² equal cells.
+/// Converts a random word to a number in (0, 1). The number is the centre of one of 2³² equal
+/// cells.
 #[inline]
 #[must_use]
 pub fn unit(word: u32) -> f64 {
     (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0)
 }
 
-/// Converts a random word to one of 0..`count`, `count` > 0.
+/// Converts a random word to a whole number in 0..`count`; `count` must be above 0.
 #[inline]
 #[must_use]
 #[expect(

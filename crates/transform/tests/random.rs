@@ -2,7 +2,7 @@
 
 use etendue_field::{Crossing, FrequencyAxis, Profile, SliceGrid, TwoPlane, Window};
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
+/// The random number generator SplitMix64 (Steele, Lea and Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -20,8 +20,8 @@ impl Random {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// Returns a crossing up to `reach` half-widths of `window` from its centre, with a weight in
-    /// [0, 2).
+    /// Returns a random crossing, up to `reach` half-widths of `window` from the window's centre,
+    /// with a weight in [0, 2).
     pub(crate) fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
         let ray = TwoPlane {
@@ -55,8 +55,8 @@ pub(crate) fn boxed() -> Window {
     }
 }
 
-/// Returns `azimuths` slices with `half` values of ρ and of ν on either side of zero, `fineness`
-/// samples for each 1/(2 half-width).
+/// Returns a grid of `azimuths` slices with `half` values of ρ and of ν on either side of zero, and
+/// with `fineness` samples for each 1/(2 half-width).
 pub(crate) fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,

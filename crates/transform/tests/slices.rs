@@ -34,8 +34,8 @@ fn the_transform_is_the_plain_sum() {
         ] {
             let grid = grid(&window, azimuths, half, fineness);
             let many: Vec<_> = (0..1000).map(|_| random.crossing(&window, 1.0)).collect();
-            // At the corners x cos φ + y sin φ exceeds a period. There is a single ray, so errors
-            // do not average out.
+            // At the corners, x cos φ + y sin φ exceeds a period. There is only a single ray, so
+            // errors do not average out.
             let corner = |sign: f64| Crossing {
                 ray: TwoPlane {
                     x: 0.999_999 * window.x.half_width(),
@@ -111,8 +111,9 @@ fn an_accumulator_is_used_again() {
     assert!((sum.finish(1.0).at_zero()).abs() < f64::MIN_POSITIVE);
 }
 
-/// On a lattice of n positions the discrete Parseval identity is exact: the mean of |S|² over n successive
-/// frequencies of spacing 1/(n a) is the sum of the squared weights.
+/// Tests the discrete Parseval identity, which is exact on a lattice of n positions with the
+/// spacing a: the mean of |S|² over n successive frequencies of spacing 1/(n a) is the sum of the
+/// squared weights.
 #[test]
 fn power_over_all_frequencies_is_the_sum_of_squares() {
     let (half, step) = ([10, 7], [0.05, 0.03]);

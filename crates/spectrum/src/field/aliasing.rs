@@ -12,23 +12,23 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 pub struct Aliasing {
     /// Number of frequencies compared; only one frequency of each conjugate pair counts.
     pub compared: usize,
-    /// The difference. The relative difference between spectrum and slices, including the error of
-    /// the slices, which is below 2·10⁻⁷ Σw at each frequency.
+    /// The difference between the spectrum and the slices. It includes the error of the slices,
+    /// which is below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
-    /// The expected difference due to aliasing, if the spectrum beyond Nyquist is as strong as in
-    /// the outermost quarter below Nyquist. The expected difference is not a bound: it is correct
-    /// for white noise, too large if the spectrum falls off, and too small if the spectrum rises
-    /// again.
+    /// The difference that aliasing would cause if the spectrum beyond Nyquist were as strong as
+    /// the spectrum in the outermost quarter below Nyquist. The expected difference is not a bound.
+    /// It is correct for white noise, too large if the spectrum falls off, and too small if the
+    /// spectrum rises beyond Nyquist.
     pub expected: f64,
-    /// The bound of [`FieldSpectrum::alias_bound`], which holds for any photons, and is far above
-    /// the difference for most photons.
+    /// The bound from [`FieldSpectrum::alias_bound`]. The bound holds for any photons, but it is
+    /// usually far above the difference.
     pub bound: f64,
 }
 
 /// A frequency that the slices and the 4D spectrum share.
 struct SharedFrequency {
     harmonics: [isize; 4],
-    /// The frequency along the two axes of its line, in cycles per cell, 0 to ½.
+    /// The frequency along each of the two axes of the line, in cycles per cell, from 0 to ½.
     f: [f64; 2],
     slice: Complex,
 }
@@ -37,13 +37,12 @@ impl FieldSpectrum {
     /// Compares the 4D spectrum with the slices of the same photons, at all shared frequencies
     /// below `share` of Nyquist.
     ///
-    /// The spectrum shares frequencies with Ωy = Ωv = 0 with the slice at azimuth 0. The spectrum
-    /// shares frequencies with Ωx = Ωu = 0 with the slice at azimuth π/2, which exists if the
-    /// number of azimuths is even. If the spacing of the slices is finer than the natural spacing,
-    /// only every n-th frequency is shared. Returns `None` if no frequency is shared or if there is
-    /// no light.
+    /// Shared frequencies with Ωy = Ωv = 0 are in the slice at azimuth 0. Shared frequencies with
+    /// Ωx = Ωu = 0 are in the slice at azimuth π/2, which exists if the number of azimuths is even.
+    /// If the spacing of the slices is finer than the natural spacing, only every n-th frequency is
+    /// shared. Returns `None` if no frequency is shared or if there is no light.
     ///
-    /// At the shared frequencies, only the two axes along the line have aliasing. At other
+    /// At the shared frequencies, only the two axes of the line have aliasing. At other
     /// frequencies, all four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
@@ -127,8 +126,8 @@ impl FieldSpectrum {
     }
 }
 
-/// Returns the mean power of a line in the outermost quarter along each of its axes, as an estimate
-/// of the power beyond Nyquist.
+/// Estimates the power beyond Nyquist along each axis of a line. Returns the mean power of the line
+/// in the outermost quarter along this axis.
 fn edge_powers(line: &[SharedFrequency]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let outer = line.iter().filter(|s| s.f[axis] >= 0.375);

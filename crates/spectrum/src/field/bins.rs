@@ -5,7 +5,8 @@ use etendue_field::{Complex, FieldGrid};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// The bins of a full radial spectrum: rings in |Ωxy| times rings in |Ωuv|, over the frequencies of a 4D grid.
+/// The bins of a full radial spectrum over the frequencies of a 4D grid. Each bin is the product of
+/// a ring in |Ωxy| and a ring in |Ωuv|.
 ///
 /// The width Δ of the rings is the natural spacing 1/(2·half-width). If the spacings of x and y (or
 /// u and v) differ, Δ is the larger spacing. The edges are 0, Δ/2, 3Δ/2, …: the first ring contains
@@ -15,8 +16,8 @@ use rayon::prelude::*;
 #[derive(Clone, Debug)]
 pub struct RadialBins {
     grid: FieldGrid,
-    /// Edges of the rings in |Ωxy|, cycles per metre, and in |Ωuv|, cycles per unit slope; their
-    /// number is the number of rings plus one.
+    /// Edges of the rings in |Ωxy|, in cycles per metre, and edges of the rings in |Ωuv|, in cycles
+    /// per unit slope. The number of edges is the number of rings plus one.
     pub edges: [Vec<f64>; 2],
     /// Number of frequencies in each bin, [|Ωxy|, |Ωuv|], counted in both halves of the spectrum.
     pub counts: Array2<u64>,
@@ -32,8 +33,8 @@ struct Angular {
     /// Indices of Ωu and Ωv in the spectrum.
     index: [usize; 2],
     ring: usize,
-    /// Weight of the frequency in sums: 2 if Ωv > 0, because the conjugate frequency counts too,
-    /// otherwise 1.
+    /// Weight of the frequency in sums. The weight is 2 if Ωv > 0, because the conjugate frequency
+    /// counts too, and 1 otherwise.
     weight: u64,
 }
 
@@ -92,8 +93,8 @@ impl RadialBins {
         all.map(|angular| (angular.index, angular.ring, angular.weight as f64))
     }
 
-    /// Returns the means, over each bin, of numbers that are even in Ω, such as powers. `of` is
-    /// called with indices [x, y, u, v] of the spectrum.
+    /// Returns the mean over each bin for numbers that are even in Ω, such as powers. `of` returns
+    /// these numbers for the indices [x, y, u, v] of a frequency.
     ///
     /// The numbers are summed for each Ωx, and these sums are added in order, so the result is
     /// bitwise identical on any number of threads.
@@ -127,7 +128,7 @@ impl RadialBins {
         means.map(|sum| sum / self.counts.mapv(|count| count as f64))
     }
 
-    /// Returns the mean of |ℓ̂|² over the bins, including noise.
+    /// Returns the mean of |ℓ̂|² over each bin, including noise.
     #[must_use]
     pub fn power(&self, spectrum: &FieldSpectrum) -> Array2<f64> {
         let [power] = self.means(|index| [spectrum.values[index].norm_sqr()]);
@@ -146,7 +147,7 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
 }
 
 /// Returns |F|² of a prediction as a full radial spectrum, [|Ωxy|, |Ωuv|]. The value of each bin of
-/// [`RadialBins`] is the mean over the frequencies that a measurement on `grid` has in the bin.
+/// [`RadialBins`] is the mean over those frequencies of `grid` that are in the bin.
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv), and is called only for Ωv ≥ 0.
 #[must_use]
@@ -202,8 +203,8 @@ mod tests {
         assert_eq!(bins.counts[[1, 0]], 8); // |(m, n)| = 1 and √2
     }
 
-    /// Tests means of known numbers: of 1, and of a number whose mean would change if conjugates
-    /// had a wrong weight.
+    /// Tests the means of two known numbers: the number 1, and a number whose mean would change if
+    /// conjugates had a wrong weight.
     #[test]
     fn means_count_conjugates() {
         let grid = grid([8, 8, 8, 8], [0.5; 4]);

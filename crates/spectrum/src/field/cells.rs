@@ -23,8 +23,8 @@ impl FieldTransform {
     pub fn new(grid: FieldGrid, assignment: Assignment) -> Self {
         let factor = |axis: usize, i: usize| {
             let harmonic = grid.harmonic(axis, i);
-            // The origin is at cell n/2, which is half a period from cell 0, the phase reference
-            // of the transform.
+            // The origin is at cell n/2. Cell 0, the phase reference of the transform, is half a
+            // period from the origin.
             let sign = if harmonic % 2 == 0 { 1.0 } else { -1.0 };
             sign / transform(assignment, harmonic as f64 / grid.cells[axis] as f64)
         };
@@ -90,7 +90,7 @@ impl FieldTransform {
 /// A sum of weighted rays on a 4D grid.
 ///
 /// The caller multiplies each ray by the window and by its weight in radiance space. Each cell
-/// contains Σ w · share in f64, where `share` is the part of a ray that falls on the cell. Rays are
+/// contains Σ w · share, where `share` is the share of a ray that is assigned to the cell. Rays are
 /// added in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCells {

@@ -16,9 +16,9 @@ const COUNT: usize = 11;
 ///
 /// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals
 /// the ratio ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of
-/// these two ratios exists, because P falls as Ω⁻² along the normal of the edge, and the sum grows
-/// with the band. Each result therefore belongs to a band, and only results over the same band can
-/// be compared.
+/// these two ratios exists, because P falls only as Ω⁻² along the normal of the edge, so that the
+/// second moments grow with the band. Each result therefore belongs to a band, and only results
+/// over the same band can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor that all moments share.
@@ -37,7 +37,7 @@ impl PowerMoments {
         Self { power, second }
     }
 
-    /// Returns ∫ P Ω Ωᵀ/∫ P; `None` if there is no power, or if noise makes it negative.
+    /// Returns ∫ P Ω Ωᵀ/∫ P. Returns `None` if ∫ P is zero, or if noise makes ∫ P negative.
     #[must_use]
     pub fn covariance(&self) -> Option<FrequencyMatrix> {
         let of = |row: [f64; 4]| row.map(|sum| sum / self.power);
@@ -50,10 +50,10 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The band of frequencies over which moments are taken. The band holds the frequencies of a 4D
-/// grid with
-/// |Ωx| and |Ωy| ≤ ρ_max and |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest
-/// frequencies of the slices of a plane. Frequencies at Nyquist are excluded.
+/// The band of frequencies over which moments are computed. The band contains those frequencies of
+/// a 4D grid for which |Ωx| and |Ωy| are at most ρ_max, and |Ωu| and |Ωv| are at most ν_max. Here
+/// ρ_max and ν_max are the largest frequencies of the slices of a plane. Frequencies at Nyquist are
+/// excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -72,7 +72,7 @@ impl Moments {
         }
     }
 
-    /// Returns the band whose largest frequencies are half of those of this band.
+    /// Returns the band whose largest frequencies are half of the largest frequencies of this band.
     fn halved(&self) -> Self {
         Self {
             grid: self.grid,
@@ -80,8 +80,8 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of a power that is even in Ω. `power` is called with indices of a
-    /// transform, and only for frequencies along v from zero on.
+    /// Returns the moments of a power that is even in Ω. `power` is called with the indices of a
+    /// frequency in a transform, and only for Ωv ≥ 0.
     ///
     /// The power is summed for each Ωx, and these sums are added in order, so the result is
     /// bitwise identical on any number of threads.
@@ -168,10 +168,10 @@ impl GroupMoments {
 /// The covariance of a spectrum, measured without bias due to noise.
 ///
 /// Photon noise adds a constant power at all frequencies, and this power would dominate second
-/// moments. Products of different groups of batches are therefore used. If Re(G_r conj G_s) over
-/// all pairs r ≠ s replaces |G|², ∫ P and ∫ P Ω Ωᵀ are unbiased for any number of photons
-/// (docs/theory.md (13)). The error of the ratio of ∫ P Ω Ωᵀ to ∫ P is of second order in the
-/// noise.
+/// moments. Therefore, |G|² is replaced by the products Re(G_r conj G_s) of different groups of
+/// batches, over all pairs r ≠ s. With these products, ∫ P and ∫ P Ω Ωᵀ are unbiased for any number
+/// of photons (docs/theory.md (13)). The error of the ratio of ∫ P Ω Ωᵀ to ∫ P is of second order
+/// in the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCovariance {
     /// The largest frequency along each axis, cycles per unit.

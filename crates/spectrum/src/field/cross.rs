@@ -8,9 +8,9 @@ use ndarray::Array2;
 /// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
 /// independently, over the azimuth of (Ωu, Ωv).
 ///
-/// Arrays are indexed [|Ωxy|, |Ωuv|], and the bins are those of [`RadialBins`]. The unit of the
-/// power is the square of the unit of ℓ̂. A full radial spectrum does not contain the sign of a
-/// shear, but the slices do.
+/// Arrays are indexed [|Ωxy|, |Ωuv|], and [`RadialBins`] defines the bins. The unit of the power is
+/// the square of the unit of ℓ̂. A full radial spectrum does not show the sign of a shear, but the
+/// slices show it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullRadial {
     /// Edges of the bins in |Ωxy|, cycles per metre.
@@ -29,8 +29,8 @@ pub struct FullRadial {
     pub sigma: Array2<f64>,
 }
 
-/// The power of a spectrum in each bin, from products of the independent groups that add up to
-/// the spectrum (docs/theory.md (13)).
+/// The power of a spectrum in each bin. The power is computed from products of independent groups
+/// that add up to the spectrum (docs/theory.md (13)).
 ///
 /// Group r contains the share a_r of the batches and contributes G_r to the spectrum G = Σ G_r. The
 /// expectation of G_r is a_r F, and an unbiased estimate of |F|² is

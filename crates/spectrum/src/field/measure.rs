@@ -19,19 +19,20 @@ const MIN_GROUPS: usize = 3;
 pub struct FieldOptions {
     /// The method that assigns a ray to cells.
     pub assignment: Assignment,
-    /// Number of independent groups of batches from which errors are estimated: at least 3, and
-    /// at most the number of batches.
+    /// Number of independent groups of batches from which errors are estimated. There are at least
+    /// 3 groups, and at most as many groups as batches.
     pub groups: usize,
     /// Whether the grids of all groups are kept in memory. If the grids are not kept, photons are
     /// traced twice: once for the sum of all groups, and once for each group. The result is
     /// bitwise the same, whether the grids are kept or not.
     pub keep: bool,
-    /// Whether to return the spectra of all groups, which are then in memory together.
+    /// Whether to return the spectra of all groups. If so, all of these spectra are in memory at
+    /// the same time.
     pub spectra: bool,
     /// Whether the covariance of the spectrum is computed too, over the frequencies of the plane.
     /// If the covariance is computed, the grid extends to 1.5 times the largest frequencies of the
-    /// plane. The alias at the largest frequency is then an eighth of the spectrum at twice this
-    /// frequency.
+    /// plane. At the largest frequency of the plane, the alias is then an eighth of the spectrum at
+    /// twice this frequency.
     pub covariance: bool,
 }
 
@@ -65,9 +66,10 @@ impl FieldOptions {
         FieldGrid::new(&plane.window, &slices)
     }
 
-    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: for the
-    /// field, for its spectrum, and for the grid of each group that is kept or being measured. The
-    /// caller should compare this number with the available memory before the measurement.
+    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads. These are the
+    /// bytes of the field, of its spectrum, and of the grid of each group that is kept or being
+    /// measured. The caller should compare this number with the available memory before the
+    /// measurement.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);
@@ -107,21 +109,21 @@ pub struct FieldGroup {
     /// The number of batches in the group, divided by the number of all batches.
     pub share: f64,
     /// The contribution of the group to the spectrum. The expectation of the contribution is
-    /// `share` times that of the spectrum.
+    /// `share` times the expectation of the spectrum.
     pub spectrum: FieldSpectrum,
 }
 
 /// Measures the light field at plane number `index` of `source` on the grid from
 /// [`FieldOptions::grid`].
 ///
-/// The batches and photons are those of [`measure`](crate::measure), and field and spectrum are
-/// unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices). The i-th
-/// non-empty batch belongs to group i mod R. One thread measures a group sequentially, and groups
-/// are summed in order, so the result is bitwise identical on any number of threads.
+/// The batches and photons are the same as in [`measure`](crate::measure). The field and the
+/// spectrum are unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices).
+/// The i-th non-empty batch belongs to group i mod R. One thread measures a group sequentially, and
+/// groups are summed in order, so the result is bitwise identical on any number of threads.
 ///
-/// One call measures one plane, because of the memory of its grids: see [`FieldOptions::bytes`].
-/// `progress` is called with the number of photons as they are traced. Each photon counts twice
-/// unless the grids of groups are kept.
+/// One call measures only one plane, because the grids of a plane need much memory: see
+/// [`FieldOptions::bytes`]. `progress` is called with the number of photons as they are traced.
+/// Each photon counts twice unless the grids of groups are kept.
 ///
 /// # Errors
 ///

@@ -4,8 +4,8 @@ use super::spline::worst_alias;
 use etendue_field::{Assignment, Complex, FieldGrid};
 use ndarray::Array4;
 
-/// The spectrum of a windowed light field from its 4D grid: Σ w e^(−2πi Ω·z) over the rays, up to
-/// aliasing.
+/// The spectrum of a windowed light field, computed on a 4D grid. Apart from aliasing, the spectrum
+/// is Σ w e^(−2πi Ω·z) over the rays.
 ///
 /// Phases refer to the plane's origin, and the transform of the spline is divided out, so at each
 /// frequency a ray contributes w e^(−2πi Ω·z) (1 + ε). The unit is that of ∫ L W dx dy du dv, as
@@ -62,9 +62,10 @@ impl FieldSpectrum {
     /// rays, if no weight is negative. The bound is Σw (Π(1 + ε_d) − 1), where ε_d is the largest
     /// alias of a ray along axis d.
     ///
-    /// The bound is rigorous for any field. With assignments of order 1 and 2, the bound is reached
-    /// if all light is in one ray at the worst position. The bound grows as the frequency to the
-    /// power p, where p is the order of the spline, so it is almost useless near Nyquist.
+    /// The bound is rigorous for any field. For assignments of order 1 and 2, the bound is reached
+    /// if all light is in one ray at the position with the largest alias. The bound grows as the
+    /// frequency to the power p, where p is the order of the spline, so it is almost useless near
+    /// Nyquist.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {
         let worst = |axis: usize| {

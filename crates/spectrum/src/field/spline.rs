@@ -1,5 +1,5 @@
-//! Computes B-splines: the shares of cells, the splines' transforms, and the aliasing due to
-//! sampling on a grid.
+//! Computes the shares of a ray in cells by B-splines, the transforms of these splines, and the
+//! aliasing due to sampling on a grid.
 //!
 //! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order p
 //! with the transform sinc^p. Poisson's summation formula gives the transform of the shares at f
@@ -18,8 +18,9 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
-/// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
-/// axis, with the ray's share in each cell. The shares add up to 1.
+/// Returns the cells to which a ray contributes along one axis, and the ray's share in each cell.
+/// The ray is at `t` ≥ 0, in units of cells, and cells have numbers in the period 0..`n`. The
+/// shares add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -46,8 +47,8 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
 
 /// Returns the maximum of |ε| at the frequency `f`, over all positions of a ray.
 ///
-/// The value is exact for orders 1 and 2. For order 3 the value is the sum of the moduli of the
-/// terms, which exceeds the actual maximum by up to a fifth.
+/// The value is exact for orders 1 and 2. For order 3, the value is the sum of the moduli of the
+/// terms, and this sum exceeds the actual maximum by up to a fifth.
 pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     let f = f.abs();
     let one = sinc(f);
@@ -71,8 +72,8 @@ pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     }
 }
 
-/// Returns the mean of |ε|² over all positions of a ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of
-/// Jing (2005), Eq. 20.
+/// Returns the mean of |ε|² over all positions of a ray, Σ_(n≠0) (f/(f + n))^2p. Jing (2005), Eq.
+/// 20, gives closed forms of these sums.
 pub(crate) fn mean_square_alias(assignment: Assignment, f: f64) -> f64 {
     let s = libm::sin(PI * f).powi(2);
     let all = match assignment {

@@ -1,4 +1,5 @@
-//! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
+//! Covariances of the factors that multiply a light field, and of the lobes with which a light
+//! field is convolved.
 //!
 //! The covariance of a factor f is the second moment of its power spectrum, ∫ f'²/(4π² ∫ f²), if
 //! this moment exists. The power spectrum of a factor with edges has no second moment, so a

@@ -1,12 +1,13 @@
-//! Covariance tracing: the second moments of a spectrum, followed along a light path (Belcour et
-//! al. 2013, *5D Covariance Tracing for Efficient Defocus and Motion Blur*), without the dimension
-//! of time.
+//! Covariance tracing, which follows the second moments of a spectrum along a light path (Belcour
+//! et al. 2013, *5D Covariance Tracing for Efficient Defocus and Motion Blur*). The dimension of
+//! time is left out.
 //!
 //! A [`SpectralCovariance`] is the 4 × 4 matrix C of a Gaussian light field, whose power spectrum
-//! is |L(Ω)|² ∝ exp(−½ Ωᵀ C⁻¹ Ω). Axes are (ρx, ρy, νu, νv): cycles per metre along x and y, cycles
-//! per unit slope, or per radian on surfaces, along u and v. The units of the blocks of C are
-//! cycles²/m², cycles²/m and cycles². The light field with this spectrum is the Gaussian exp(−½ zᵀ
-//! S⁻¹ z) with S⁻¹ = 8π² C (docs/theory.md, section 6).
+//! is |L(Ω)|² ∝ exp(−½ Ωᵀ C⁻¹ Ω). Its axes are (ρx, ρy, νu, νv). Frequencies along x and y are in
+//! cycles per metre. Frequencies along u and v are in cycles per unit slope or, on surfaces, in
+//! cycles per radian. The units of the blocks of C are cycles²/m², cycles²/m and cycles². The light
+//! field with this spectrum is the Gaussian exp(−½ zᵀ S⁻¹ z) with S⁻¹ = 8π² C (docs/theory.md,
+//! section 6).
 //!
 //! | what light meets | operator | what becomes of C |
 //! |---|---|---|

@@ -23,7 +23,8 @@ pub enum Untraced {
     Obstacles,
     /// The light is a map or several lobes, which no Gaussian represents.
     Light,
-    /// The reflectance varies by a picture, squares or another BRDF, which no Gaussian represents.
+    /// The reflectance varies by a picture, by squares or between BRDFs, and no Gaussian represents
+    /// such a variation.
     Reflectance,
     /// The central ray does not arrive, or a map on its path has no inverse.
     Lost,
@@ -117,8 +118,8 @@ impl Traced for Observed<scattering::ScatteringSystem> {
     }
 }
 
-/// Returns the covariance of light at the source: a Gaussian of its variances over positions and
-/// slopes.
+/// Returns the covariance of light at the source. The light is replaced by a Gaussian that has the
+/// same variances of positions and slopes.
 fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
     let endless = f64::INFINITY;
     let of_image = |image: &Image| image.width.map(|width| width * width / TAU);

@@ -1,8 +1,9 @@
-//! Covariances of Gaussian light fields, for chains along which only second moments are followed.
+//! Covariances of Gaussian light fields, for chains that follow only second moments.
 //!
-//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and remains Gaussian under every step. S changes
-//! by [`covariance`](super::AffineMap::covariance) under an [`AffineMap`](super::AffineMap), by
-//! [`gaussian_window`] under a product, and by [`gaussian_lobe`] under a convolution over angle.
+//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and remains Gaussian under every step. Three
+//! functions compute the new S: [`covariance`](super::AffineMap::covariance) after an
+//! [`AffineMap`](super::AffineMap), [`gaussian_window`] after a product, and [`gaussian_lobe`]
+//! after a convolution over angles.
 
 use super::matrix::{self, Matrix, congruent, diagonal, dot, product, sum, times};
 use std::array;

@@ -6,9 +6,9 @@ use super::{AffineMap, Matrix, Media};
 impl AffineMap<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
-    /// The event consists of the steps incidence, curvature, mirror, back, and outgoing at −θ₀.
-    /// The product is x' = −x, θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)): both shears of a
-    /// curved surface add up (Durand et al. 2005, step 6).
+    /// The event consists of the steps incidence, curvature, mirror, back, and outgoing at −θ₀. The
+    /// product is x' = −x, θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)). The two shears by
+    /// curvature, on the way in and on the way out, add up (Durand et al. 2005, step 6).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, k: f64) -> Self {
         Self::incidence(theta0)
@@ -36,8 +36,8 @@ impl AffineMap<2> {
     /// A caustic: mirror reflection, then travel by a distance in metres (Durand et al. 2005, Fig.
     /// 11).
     ///
-    /// At the [focus](Self::focus) of the reflection, −cos θ₀/2k, positions depend on directions
-    /// alone: parallel light meets in a point.
+    /// The [focus](Self::focus) of the reflection is at the distance −cos θ₀/2k. At this distance,
+    /// the position of a ray depends only on its direction, so parallel light meets in a point.
     #[must_use]
     pub fn caustic(theta0: f64, k: f64, distance: f64) -> Self {
         Self::mirror_reflection(theta0, k).then(&Self::travel(distance))

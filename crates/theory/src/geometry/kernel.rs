@@ -10,16 +10,16 @@ const STEP: f64 = 1.0 / 32.0;
 /// of a cycle per radian.
 const MAX_FREQUENCY: f64 = 1e5;
 
-/// Returns the kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2 of the change from
-/// slopes to angles, which is real. The spectrum in angles is L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv)
+/// Returns the kernel of the change from slopes to angles, K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t))
+/// dt over |t| < π/2. K is real. The spectrum in angles is L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv)
 /// K(Ωv, Ωθ) dΩv (Durand et al. 2005, section 4, who plot it in Fig. 8 but give no formula).
 ///
 /// Frequencies are in cycles per unit slope and per radian. The absolute error is below 10⁻¹³ (K is
 /// at most π) for frequencies up to 160; the result is NaN beyond 10⁵. The computing time is
 /// proportional to Ωθ.
 ///
-/// K is π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md (30)). K(−Ωv,
-/// −Ωθ) = K(Ωv, Ωθ), K(0, Ωθ) = π sinc(b/2).
+/// K is π times Bateman's function k_b(a) with a = 2πΩv and b = 2πΩθ (docs/theory.md (30)). It
+/// satisfies K(−Ωv, −Ωθ) = K(Ωv, Ωθ) and K(0, Ωθ) = π sinc(b/2).
 #[must_use]
 pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     let sign = if omega_v < 0.0 { -1.0 } else { 1.0 };
@@ -44,7 +44,8 @@ fn scaled(a: f64, b: f64) -> f64 {
     if b < -1.0 {
         -twice_sine * integral(|t| libm::exp(damping(t) + b * t))
     } else {
-        // The integral of e^(bt), which converges only for b < 0, is separated.
+        // The integral of e^(bt) converges only for b < 0, so it is computed separately in closed
+        // form.
         PI * sinc(0.5 * b) - twice_sine * integral(|t| libm::expm1(damping(t)) * libm::exp(b * t))
     }
 }
@@ -58,9 +59,9 @@ fn integral(f: impl Fn(f64) -> f64) -> f64 {
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
-/// Returns K for b ≥ 1 from its values at two smaller b. With m = b/2, (m + 1) K(m + 1) = 2(a − m)
-/// K(m) − (m − 1) K(m − 1), which is the recurrence of Tricomi's U (DLMF 13.3.7). Both solutions
-/// of this recurrence oscillate if b > a. If b < a, K is the solution that grows, so the
+/// Returns K for b ≥ 1 from the values of K at two smaller b. For m = b/2, this is the recurrence
+/// of Tricomi's U (DLMF 13.3.7), which is (m + 1) K(m + 1) = 2(a − m) K(m) − (m − 1) K(m − 1). Both
+/// solutions of this recurrence oscillate if b > a. If b < a, K is the solution that grows, so the
 /// recurrence is stable.
 fn climbed(a: f64, b: f64) -> f64 {
     const HUGE: f64 = 1e100;

@@ -20,9 +20,9 @@ pub struct AffineMap<const N: usize> {
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
-    /// Returns the affine map that is tangent at the ray z = 0 to another map of rays, by
-    /// differences of fourth order, accurate to about 10⁻¹⁰ per metre and radian. Returns `None`
-    /// if a ray near z = 0 does not arrive.
+    /// Returns the affine map that is tangent at the ray z = 0 to another map of rays. It is
+    /// computed by differences of fourth order and is accurate to about 10⁻¹⁰ per metre and radian.
+    /// Returns `None` if a ray near z = 0 does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
@@ -46,10 +46,10 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// Returns the distance, as defined by [`apart`](Self::apart), between this map and the
-    /// tangent at the ray z = 0 to another map of rays. The estimated error of the finite
-    /// differences is subtracted from the distance, because this error is noticeable if the other
-    /// map is strongly curved.
+    /// Returns the distance between this map and the affine map that is tangent at the ray z = 0 to
+    /// another map of rays. [`apart`](Self::apart) defines the distance. The estimated error of the
+    /// finite differences is subtracted from the distance, because this error is noticeable if the
+    /// other map is strongly curved.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -127,7 +127,8 @@ impl<const N: usize> AffineMap<N> {
         plus(&times(&self.matrix, &ray), &self.offset)
     }
 
-    /// Returns Aᵀ Ω: the frequency before the map for the frequency Ω after it.
+    /// Returns Aᵀ Ω, the frequency before the map that corresponds to the frequency Ω after the
+    /// map.
     #[must_use]
     pub fn transpose_apply(&self, omega: [f64; N]) -> [f64; N] {
         times(&transpose(&self.matrix), &omega)
@@ -141,7 +142,8 @@ impl<const N: usize> AffineMap<N> {
         Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
     }
 
-    /// Returns the effect of the map on spectra: factor |det A|, matrix Aᵀ, phase vector t.
+    /// Returns the effect of the map on spectra, which has the factor |det A|, the matrix Aᵀ and
+    /// the phase vector t.
     #[must_use]
     pub fn spectrum_map(&self) -> SpectrumMap<N> {
         SpectrumMap {
@@ -181,8 +183,8 @@ impl<const N: usize> AffineMap<N> {
     ///
     /// The result is zero between two planes perpendicular to the light, whatever is between them.
     /// In 2D the conserved quantity is n dx du, and the result is |det A − r|. In 4D the conserved
-    /// quantity is the Lagrange invariant of every pair of rays. Maps onto or off a surface have
-    /// one cosine too many or too few, so their result is not zero.
+    /// quantity is the Lagrange invariant of every pair of rays. The result is not zero for a
+    /// single map onto a surface or off a surface, because each such map changes dx by a cosine.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;
@@ -199,9 +201,9 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<2> {
-    /// Returns the distance behind the map's end, −A₀₀/A₁₀ metres, at which rays that were
-    /// parallel before the map meet; the distance is negative for a virtual focus. Returns `None`
-    /// if the rays stay parallel.
+    /// Returns the distance of the focus behind the map's end, −A₀₀/A₁₀ metres. Rays that were
+    /// parallel before the map meet at the focus. The distance is negative for a virtual focus.
+    /// Returns `None` if the rays stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;

@@ -1,9 +1,9 @@
-//! The geometry of rays near a central ray: every geometric step of a light path as one affine map.
+//! The geometry of rays near a central ray. Every geometric step of a light path is one affine map.
 //!
 //! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step maps
-//! the ray to z' = A z + t and preserves the ray's radiance, and so maps the spectrum L to L'(Ω) =
-//! |det A| e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). An [`AffineMap`] is such a step; the
-//! functions of this module construct maps, or return their effect on rays, spectra and
+//! the ray to z' = A z + t and preserves the ray's radiance. The step therefore maps the spectrum L
+//! to L'(Ω) = |det A| e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). An [`AffineMap`] is such a step.
+//! The functions of this module construct maps, or return the effect of a map on rays, spectra and
 //! covariances. Steps are chained by [`AffineMap::then`] in the order of propagation:
 //!
 //! | step | constructor | in Durand et al. 2005 |
@@ -18,21 +18,21 @@
 //! | outgoing angle: off the surface | [`outgoing`](AffineMap::<2>::outgoing) | Eq. 10 |
 //! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
-//! In the frame of a light ray the last coordinates are slopes or angles to the central ray. Slopes
-//! and angles are equal to the order at which these maps hold ([`plane_sphere`] has the exact
-//! conversion). Lengths are in metres, angles in radians.
+//! In the frame of a light ray the last coordinates are slopes or angles to the central ray. These
+//! maps hold to first order, and to this order slopes and angles are equal ([`plane_sphere`] has
+//! the exact conversion). Lengths are in metres, angles in radians.
 //!
 //! **Surface frame.** N is the normal at the point that the central ray hits, on the side from
-//! which light comes. (T, N) are right-handed axes of the plane of incidence, with T to the right
-//! when N is up. B = N × T. Directions point away from the surface; their angle θ is counted from N
-//! towards T. s is arc length along T. With c₀ = cos θ₀ and c₁ = cos θ₁, the axes before the event
-//! are D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N. After the event the axes are D = sin θ₁ T +
-//! c₁ N and X = c₁ T − sin θ₁ N. Y is B before and after the event. In 4D a direction is cos φ (sin
-//! θ T + cos θ N) + sin φ B: longitude θ, latitude φ.
+//! which light comes. T and N are the axes of the plane of incidence; if N points up, T points to
+//! the right. B is N × T. Directions point away from the surface, and their angle θ is counted from
+//! N towards T. The coordinate s is arc length along T. With c₀ = cos θ₀ and c₁ = cos θ₁, the axes
+//! before the event are D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N. After the event the axes
+//! are D = sin θ₁ T + c₁ N and X = c₁ T − sin θ₁ N. Y is B before and after the event. In 4D, a
+//! direction of longitude θ and latitude φ is cos φ (sin θ T + cos θ N) + sin φ B.
 //!
 //! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
-//! holds to first order in the size e of the neighbourhood: the relative error of the step falls
-//! as e, and at normal incidence as e².
+//! holds to first order in the size e of the neighbourhood. The relative error of the step falls as
+//! e, and at normal incidence as e².
 //!
 //! **The printed equations.** Some equations of Durand et al. 2005 differ from the maps of this
 //! module; [`Edition`] contains both versions.

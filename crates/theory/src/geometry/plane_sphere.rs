@@ -1,4 +1,5 @@
-//! The exact conversion between two-plane and plane-sphere coordinates, slopes and angles.
+//! The exact conversion between slopes, which are two-plane coordinates, and angles, which are
+//! plane-sphere coordinates.
 //!
 //! The conversion does not change positions. In 2D the slope is v = tan θ. In 4D the direction is
 //! D + u X + v Y. With longitude θ and latitude φ the direction is cos φ (cos θ D + sin θ X) + sin

@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 pub enum Edition {
     /// The formulas that follow from ray geometry, which are the maps of [`geometry`](super).
     Corrected,
-    /// The operators in the paper's numbered Eqs. 9, 11 and 10, with the shear by M in the text
-    /// after Eq. 19 for a surface in 3D.
+    /// The operators in the paper's Eqs. 9, 11 and 10. For a surface in 3D, the shear by M is taken
+    /// from the text after Eq. 19.
     Equations,
     /// The operators in the paper's Table 1: light incidence, curvature and outgoing angle. The
     /// table has no row for 3D, so the shear by M is given the sign of the table's curvature.
@@ -82,7 +82,7 @@ impl Edition {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
     }
 
-    /// Curvature in 4D. The text after Eq. 19: a shear by M, without the cosine.
+    /// Curvature in 4D. In the text after Eq. 19, this step is a shear by M without the cosine.
     #[must_use]
     pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
         AffineMap::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()

@@ -28,7 +28,7 @@ impl Media {
         }
     }
 
-    /// Returns the angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). Returns
+    /// Returns the angle θ₂ of the refracted ray by Snell's law, n₁ sin θ₁ = n₂ sin θ₂. Returns
     /// `None` under total internal reflection.
     ///
     /// Like every angle on a surface, θ₂ is the direction from which light seems to come: the
@@ -41,14 +41,14 @@ impl Media {
 }
 
 impl AffineMap<2> {
-    /// Refraction of local directions, Snell's law linearised at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
+    /// Refraction of local directions by Snell's law, linearised at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
     /// θ₀/(n₂ cos θ₂).
     ///
     /// The formula follows by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); Durand et
-    /// al. 2005 do not treat refraction. Directions stay flipped, and light continues through the
-    /// surface: the next step back into a light frame is the inverse of the incidence at θ₂.
-    /// Returns `None` under total internal reflection, and at the critical angle, where there is no
-    /// derivative.
+    /// al. 2005 do not treat refraction. Directions stay flipped, because light continues through
+    /// the surface. The next step into a light frame is therefore the inverse of the incidence at
+    /// θ₂. Returns `None` under total internal reflection, and at the critical angle, where there
+    /// is no derivative.
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
@@ -61,11 +61,11 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of
-    /// incidence.
+    /// Refraction of local directions. The longitude changes as in 2D, and the latitude satisfies
+    /// n₁ φ = n₂ φ'.
     ///
-    /// The tangential part of n ω is the same on both sides: along B it is n sin φ, along T it is n
-    /// cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
+    /// The tangential part of n ω is the same on both sides. Its component along B is n sin φ. Its
+    /// component along T is n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let in_plane = AffineMap::<2>::refraction(theta0, media)?;

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 pub struct SpectrumMap<const N: usize> {
     /// The factor that multiplies the spectrum.
     pub factor: f64,
-    /// The matrix, as rows, from the frequency after the step to the frequency before it.
+    /// The matrix, as rows. It maps the frequency after the step to the frequency before the step.
     pub matrix: Matrix<N>,
     /// The phase vector, in the units of the ray coordinates.
     pub phase: [f64; N],

@@ -1,5 +1,5 @@
-//! Steps between the frame of the central ray, the surface it hits, and the frames of the surface's
-//! local normals.
+//! Steps between three frames: the frame of the central ray, the frame of the surface that the ray
+//! hits, and the frames of the surface's local normals.
 //!
 //! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at ± π/2 the scale 1/cos θ₀ is
 //! infinite. Signs follow the [module](super): with N up, positive angles lie to the right, and a
@@ -12,8 +12,8 @@ impl AffineMap<2> {
     /// directions of light are flipped.
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 has cos
-    /// θ₀ instead of 1/cos θ₀, in the factor and in the argument; Table 1 has cos θ₀ in the
-    /// argument alone. Both Eq. 9 and Table 1 omit 2π from the phase ([`Edition`](super::Edition)).
+    /// θ₀ instead of 1/cos θ₀, both in the factor and in the argument. Table 1 has cos θ₀ only in
+    /// the argument. Both Eq. 9 and Table 1 omit 2π from the phase ([`Edition`](super::Edition)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
@@ -22,8 +22,8 @@ impl AffineMap<2> {
         }
     }
 
-    /// Curvature, into the frames of the local normals: θ' = θ − k s. k > 0 is convex, |k| = 1/R in
-    /// 1/m.
+    /// Curvature, into the frames of the local normals: θ' = θ − k s. The surface is convex if k >
+    /// 0, and |k| is 1/R, in 1/m.
     ///
     /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 prints + k Ωθ, which
     /// belongs to the inverse, [`back`](Self::back)).
@@ -68,8 +68,8 @@ impl AffineMap<4> {
     /// `shape` is the symmetric matrix M, the derivative of the normal along (T, B), in 1/m and
     /// positive for convex surfaces. In principal axes M is diag(k₁, k₂). Eq. 19 of Durand et al.
     /// 2005 is this matrix M. The paper's text describes the step as a shear by M, without cos θ₀.
-    /// However, a tilt of the normal about T moves a direction at longitude θ₀ by only cos θ₀ times
-    /// the tilt.
+    /// However, if the normal is tilted about T, a direction at longitude θ₀ moves by only cos θ₀
+    /// times the tilt.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)

@@ -7,9 +7,9 @@ use std::array;
 impl<const N: usize> AffineMap<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
-    /// The step is exact if (u, v) are slopes; if they are angles it holds to first order. L'(Ωx,
-    /// Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2 corrected:
-    /// docs/theory.md, section 1).
+    /// The step is exact if (u, v) are slopes. If (u, v) are angles, the step holds to first order.
+    /// L'(Ωx, Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2
+    /// corrected: docs/theory.md, section 1).
     #[must_use]
     pub fn travel(distance: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -20,7 +20,8 @@ impl<const N: usize> AffineMap<N> {
         ))
     }
 
-    /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
+    /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. If f is positive, the
+    /// lens converges light.
     ///
     /// The map describes an ideal lens, which images planes onto planes exactly if directions are
     /// slopes (docs/theory.md (24)). Durand et al. 2005 do not treat lenses.
@@ -52,9 +53,10 @@ impl AffineMap<4> {
     /// A rotation of the axes by an angle in radians, from the first axis towards the second: x' =
     /// x cos + y sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
     ///
-    /// The rotation is exact for two-plane coordinates turned about the central ray, e.g. to bring
-    /// the plane of incidence onto X. About a normal the rotation turns (s_x, s_y) exactly and (θ,
-    /// φ) to first order in the angle to the normal (Durand et al. 2005, section 5.2).
+    /// For two-plane coordinates, a rotation about the central ray is exact; it is used, for
+    /// example, to bring the plane of incidence onto X. For a rotation about a surface normal, the
+    /// map of (s_x, s_y) is exact, and the map of (θ, φ) holds to first order in the angle to the
+    /// normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);

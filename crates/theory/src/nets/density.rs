@@ -1,8 +1,8 @@
-//! A probability density of one coordinate that is sampled through its quantile function.
+//! A probability density of one coordinate, which is sampled by its quantile function.
 
 use etendue_field::Profile;
 
-/// Number of equal cells of the interval; the density is linear in each cell.
+/// Number of equal cells into which the interval is divided. The density is linear in each cell.
 const CELLS: usize = 512;
 /// Number of lookup-table entries for each cell. With more entries, the first cell that a search
 /// tries contains the quantile more often.
@@ -135,8 +135,8 @@ const ANYWHERE_SHARE: f64 = 0.04;
 const WIDER: f64 = 1.2;
 
 impl Target {
-    /// Returns the density of aimed points along one coordinate, given the window's profile along
-    /// it.
+    /// Returns the density of aimed points along one coordinate. `profile` is the window's profile
+    /// along this coordinate.
     pub(crate) fn new(profile: &Profile) -> Self {
         let half = profile.half_width();
         let reach = 1.2 * WIDER * half;
@@ -171,8 +171,8 @@ impl Target {
 mod tests {
     use super::*;
 
-    /// The mean of f/density over quantiles is the integral of f, wherever the function f is
-    /// centred.
+    /// Tests that the mean of f/density over quantiles is the integral of f, wherever the function
+    /// f is centred.
     #[test]
     fn targets_reach_everywhere() {
         let target = Target::new(&Profile::Hann(0.5));

@@ -1,10 +1,10 @@
 //! Sums over rays that represent a light field, by randomised quasi-Monte Carlo.
 //!
 //! Light fields without a closed form are integrals over rays: positions and slopes at the plane,
-//! and points of the light. The nodes are those of scrambled nets ([`sobol`]). Each of
+//! and points of the light. The nodes are the points of scrambled nets ([`sobol`]). Each of
 //! [`REPLICATES`] independent nets is an unbiased prediction, and the error of their mean is
-//! computed from their spread. If the rule is too coarse, the nets disagree. Nodes are added until
-//! the error is below the requested one, or a budget is spent.
+//! computed from their spread. If there are too few nodes, the nets disagree. Nodes are added until
+//! the error is below the requested error, or until a budget is spent.
 
 mod density;
 mod rays;
@@ -31,9 +31,9 @@ const OF_DERIVATIVES: usize = 8;
 const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net for derivatives.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. An error of this size
-/// changes a measured parameter by about the square of this error, times the difference between the
-/// measured value and the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. If a parameter is
+/// measured with such a derivative, the measured value changes by about the square of this error,
+/// times the difference between the measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -133,10 +133,11 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even fewer
-/// rays, the chosen strategy would be the best strategy only for few rays. The nets of a trial
-/// differ from the nets of predictions. If the nets were the same, the chosen strategy would often
-/// be a strategy whose rays of large weight happen to be absent from the prediction's nets.
+/// Returns ‖error‖/‖F‖ for a small number of rays, so that the best sampling strategy can be
+/// chosen. The number of rays must not be too small, because a strategy that is best for very few
+/// rays may not be best for the many rays of a prediction. The nets of a trial differ from the nets
+/// of predictions. If they were the same, the chosen strategy would often be one whose rays of
+/// large weight happen to be absent from the nets. The prediction would then lack these rays too.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -227,11 +228,11 @@ const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Approximate number of fields that are summed in one pass over all derivatives.
 const FIELDS: f64 = 12.0;
-/// Estimated number of computing steps of a transform per frequency.
+/// Estimated number of computing steps of a transform for each frequency.
 const TRANSFORM: f64 = 300.0;
 
-/// Estimates the work of a prediction by nets that uses all of its budget, both for following rays
-/// and for the transforms of all nets.
+/// Estimates the work of a prediction by nets that uses all of its budget. The estimate includes
+/// the work to follow rays and the work of the transforms of all nets.
 #[must_use]
 pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWork {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
@@ -370,7 +371,8 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
     }
 }
 
-/// Sums, over rays z, of the weight times 1, times z, and times z zᵀ.
+/// Three sums over rays: of the weights, of the weights times z, and of the weights times z zᵀ,
+/// where z is a ray.
 #[derive(Clone, Copy, Debug, Default)]
 struct WeightedMoments {
     total: f64,

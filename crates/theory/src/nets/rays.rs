@@ -1,4 +1,4 @@
-//! Access to the individual rays of nets, for sums over rays that are not slices of a spectrum.
+//! Access to the individual rays of nets, for sums over rays other than the slices of a spectrum.
 
 use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
 use etendue_field::TwoPlane;

@@ -1,9 +1,9 @@
 //! Points of Sobol' nets that are scrambled independently.
 //!
-//! A net of 2ᵐ points has one point in each of the boxes formed by halving the sides of the unit
-//! cube in turn. Scrambling moves each point at random and preserves this property, so the mean
-//! over a net is an unbiased estimate, and nets scrambled with different keys are independent (Owen
-//! 1997).
+//! A net is a set of 2ᵐ points in the unit cube. If the cube is divided into boxes by halving its
+//! sides in turn, each box contains one point of the net. Scrambling moves each point at random and
+//! preserves this property. The mean over a net is therefore an unbiased estimate, and nets that
+//! are scrambled with different keys are independent (Owen 1997).
 
 use etendue_transform::random::unit;
 use etendue_transform::sobol_directions;

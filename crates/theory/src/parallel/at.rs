@@ -10,10 +10,10 @@ use etendue_field::{Complex, Window};
 ///
 /// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where each factor F is the transform of a
 /// convex polygon and is evaluated separately. The result is exact for uniform rectangles,
-/// half-planes and gratings, and accurate to 10⁻⁸ for factors of slope. For discs (see
-/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection the result has the
-/// error of a quadrature. This function is the reference for [`slices`](crate::slices). Unit: W m⁻²
-/// sr⁻¹ · m².
+/// half-planes and gratings, and accurate to 10⁻⁸ for factors that depend on slopes. For discs and
+/// for diffuse reflection, the result has the error of a quadrature (see
+/// [`quadrature_error`](crate::quadrature_error)). This function is the reference for
+/// [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();

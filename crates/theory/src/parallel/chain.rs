@@ -5,7 +5,7 @@ use etendue_field::{Light, Mask, Shape};
 /// The light, in a plane perpendicular to the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// Name of the light, for messages.
+    /// The name of the light, which messages use.
     pub name: String,
     /// The light, with coordinates relative to the central ray.
     pub light: Light,
@@ -16,8 +16,8 @@ pub struct Source {
 pub enum Operator {
     /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx)
     /// (Durand et al. 2005, Eq. 3). [`AffineMap::travel`](crate::geometry::AffineMap::travel) is
-    /// the same step as a map. In a chain the distances of consecutive steps are added, and
-    /// polygons are sheared by the sum.
+    /// the same step as a map. In a chain, the distances of consecutive steps are added, and
+    /// polygons are sheared by the total distance.
     Travel {
         /// Name of the plane from which the light travels.
         from: String,
@@ -26,24 +26,24 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane that the light has reached. An opaque mask multiplies radiance by 1
-    /// minus the sum of its shapes and half-planes, which must not overlap each other; a grating
-    /// multiplies radiance by a cosine pattern (Durand et al. 2005, Eq. 4).
+    /// A mask in the plane that the light has reached (Durand et al. 2005, Eq. 4). An opaque mask
+    /// multiplies radiance by 1 minus the sum of its shapes and half-planes, which must not overlap
+    /// each other. A grating multiplies radiance by a cosine pattern.
     Visibility {
         /// Name of the mask.
         name: String,
         /// The mask's transmission as a function of position relative to the central ray.
         mask: Mask,
     },
-    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md (7)): radiance becomes differential
-    /// irradiance.
+    /// A product with G = (1 + u² + v²)⁻², which converts radiance to differential irradiance
+    /// (docs/theory.md (7)).
     Cosine {
         /// Name of the surface.
         name: String,
     },
     /// Diffuse reflection: the integral over both slopes, times albedo/π. The result is exitant
-    /// radiance, constant in slope (Durand et al. 2005, section 5.1). The factor G is a separate
-    /// [`Cosine`](Self::Cosine) operator before the reflection.
+    /// radiance, which is constant in slope (Durand et al. 2005, section 5.1). The factor G is a
+    /// separate [`Cosine`](Self::Cosine) operator before the reflection.
     ///
     /// After the reflection the central ray returns along −D, with x' = −x and y' = y. The only
     /// operator allowed after a diffuse reflection is travel.
@@ -71,7 +71,7 @@ pub struct Chain {
 /// A plane with a mask, relative to the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaskLayer<'a> {
-    /// The distance from the mask to the end of the segment, in metres: the ray (x, u) crossed the
+    /// The distance from the mask to the end of the segment, in metres. The ray (x, u) crossed the
     /// mask at x − distance · u.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
@@ -93,7 +93,7 @@ pub(crate) struct ParallelEmitter {
     /// Radiance or intensity along the central ray.
     pub(crate) brightness: f64,
     /// The power p of the factor (1 + u² + v²)^p on radiance. For a spot's cosⁿθ, p = −n/2. For a
-    /// point light, whose distance to (x, y) is D √(1 + u² + v²), p = ½.
+    /// point light, p = ½, because the distance from the light to (x, y) is D √(1 + u² + v²).
     pub(crate) power: f64,
 }
 
@@ -117,8 +117,8 @@ impl ParallelEmitter {
     }
 }
 
-/// A chain up to its diffuse surface or, if it has none, up to its end; distances are relative to
-/// the end of this segment.
+/// The part of a chain up to its diffuse surface. If the chain has no diffuse surface, the segment
+/// is the whole chain. Distances are relative to the end of the segment.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainSegment<'a> {
     pub(crate) light: ParallelEmitter,
@@ -132,8 +132,7 @@ pub(crate) struct ChainSegment<'a> {
 }
 
 impl Chain {
-    /// Returns the light, masks and reflection of the chain, with distances relative to the end of
-    /// the chain.
+    /// Returns the segment of the chain with its light, masks and reflection.
     ///
     /// # Panics
     /// Panics if an operator other than travel follows a diffuse reflection.

@@ -1,5 +1,5 @@
-//! The transforms of many polygons along a row of frequencies, computed from sums over corners
-//! instead of one exponential per polygon and frequency (docs/theory.md, section 3).
+//! Computes the transforms of many polygons along a row of frequencies from sums over corners. This
+//! is faster than the transform of each polygon at each frequency (docs/theory.md, section 3).
 //!
 //! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p
 //! of the polygon. The edges that meet at p have the directions d and e:
@@ -26,11 +26,11 @@ use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Sums over corners are used if |k·d| is at least this value, where d is the longest possible edge
-/// along a direction. A quotient for two directions at this limit amplifies rounding errors by
-/// 1/CANCELLATION² = 1000.
+/// along a direction. If both directions of a corner are at this limit, the quotient amplifies
+/// rounding errors by 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
-/// Number of waves that are processed together; it is small enough for the quotients of these
-/// waves to fit into the cache.
+/// Number of waves that are processed together. The number is so small that the quotients of these
+/// waves fit into the cache.
 const WAVES_AT_A_TIME: usize = 32;
 
 /// A corner of a polygon, prepared for summation.
@@ -39,8 +39,8 @@ struct Corner {
     at: [f64; 2],
     /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign of the corner's term, which depends on the order of the corner's two directions; ±i
-    /// for the ends of a segment.
+    /// The sign of the corner's term, which depends on the order of the corner's two directions.
+    /// For the ends of a segment, this factor is ±i.
     sign: Complex,
     /// Index of the corner's polygon.
     polygon: usize,
@@ -57,8 +57,8 @@ pub(crate) struct Corners<'a> {
     /// Pairs of directions of the two edges that meet at a corner, with the lower index first. For
     /// the end of a segment the two indices are equal.
     pairs: Vec<[usize; 2]>,
-    /// Indices of the directions of edges, each with the |k·d| below which k·d is treated as
-    /// nearly zero.
+    /// Indices of the directions of edges. Each has a threshold of |k·d| below which k·d is treated
+    /// as nearly zero.
     edges: Vec<(usize, f64)>,
 }
 
@@ -210,8 +210,8 @@ impl SectionWave {
     }
 }
 
-/// Returns the length, in units of |direction|, of the longest edge along a direction that fits
-/// into the square |p| < 1.
+/// Returns the length of the longest edge along a direction that fits into the square |p| < 1. The
+/// length is in units of |direction|.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())
 }

@@ -16,7 +16,7 @@ const RELATIVE_STEP: f64 = 1e-4;
 /// The derivative is a forward difference with a step of 10⁻⁴ of the parameter's value. If the
 /// value is zero, the step is 10⁻⁴ of the parameter's unit.
 ///
-/// `prediction` must be the slices of the chain itself, on the same window and grid.
+/// `prediction` must be the slices of this chain under the same window and on the same grid.
 ///
 /// # Panics
 /// Panics if the chain has no such parameter.

@@ -1,5 +1,5 @@
-//! Discs as weighted sums of rectangles, so that products of discs with other shapes can be
-//! multiplied out.
+//! Discs as weighted sums of rectangles. In this form, products of discs and other shapes are sums
+//! of products of rectangles.
 
 use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Disc, Shape};
@@ -8,10 +8,10 @@ use std::f64::consts::FRAC_PI_2;
 /// The method for splitting a disc into rectangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Discs {
-    /// A sum of n × n weighted rectangles about the disc's centre, for spectra.
+    /// A sum of n × n weighted rectangles about the disc's centre, which is used for spectra.
     Rule(usize),
-    /// A sum of n strips along y, for the light field itself. Each strip has the same area as the
-    /// disc between the strip's two values of x.
+    /// A sum of n strips along y, which is used for the light field itself. Each strip has the same
+    /// area as the part of the disc between the strip's two values of x.
     Strips(usize),
 }
 
@@ -30,7 +30,7 @@ impl Discs {
     }
 }
 
-/// Returns the rectangles that a shape is split into.
+/// Returns the rectangles into which a shape is split.
 pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> {
     match shape {
         Shape::Rectangle(rectangle) => vec![WeightedRectangle::of_rectangle(rectangle)],
@@ -38,8 +38,8 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
     }
 }
 
-/// Returns the rectangles of Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n
-/// (docs/theory.md (5b)).
+/// Returns the rectangles of the sum Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], where t_j = π
+/// (2j + 1)/4n (docs/theory.md (5b)).
 ///
 /// In an integral with a smooth function, this sum replaces the disc. The integral of the function
 /// over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the two sides

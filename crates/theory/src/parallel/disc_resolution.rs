@@ -7,15 +7,17 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Mask, Profile, Shape, Window, whole};
 use std::f64::consts::PI;
 
-/// Number of nodes of the rule for discs in addition to π R Ω.
+/// The rule for discs has π R Ω nodes plus this number.
 const SPARE_NODES: f64 = 6.0;
-/// Maximum number of nodes of the rule for discs, with which a disc becomes 72² rectangles.
+/// Maximum number of nodes of the rule for discs. With this number, a disc is split into 72²
+/// rectangles.
 const MOST_NODES: f64 = 72.0;
-/// Limit on the bandwidth due to edges in other planes, as a multiple of the largest frequency of
-/// the spectra.
+/// Limit on the bandwidth that edges in other planes cause, as a multiple of the largest frequency
+/// of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
-/// Fraction of the bandwidth due to edges in other planes that is resolved. The remaining
-/// bandwidth is reached only in the corners of the grid of frequencies, where spectra are small.
+/// Edges in other planes increase the bandwidth, and only this fraction of the increased bandwidth
+/// is resolved. The rest is reached only in the corners of the grid of frequencies, where spectra
+/// are small.
 const FAR_SHARE: f64 = 0.7;
 /// Maximum number of terms of an expansion that results from splitting discs.
 const MOST_TERMS: f64 = 3e5;
@@ -43,9 +45,9 @@ impl DiscResolution {
         }
     }
 
-    /// Checks whether the affordable resolution of discs is approximately fine enough for spectra
-    /// up to `frequency`. For a wide disc behind a narrow window this resolution is too coarse,
-    /// and a comparison with finer rules does not reveal the error.
+    /// Checks whether the resolution of discs that [`MOST_TERMS`] allows is approximately fine
+    /// enough for spectra up to `frequency`. For a wide disc behind a narrow window, this
+    /// resolution is too coarse, and a comparison with finer rules does not reveal the error.
     pub(crate) fn is_enough(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> bool {
         if !path.has_discs() {
             return true;
@@ -111,8 +113,9 @@ impl DiscResolution {
         })
     }
 
-    /// Builds a resolution from the function `discs`, which chooses the method for each plane from
-    /// the largest radius of discs in the plane and the plane's index.
+    /// Builds a resolution by calling `discs` for each plane. `discs` receives the largest radius
+    /// of the discs in the plane and the plane's index, and returns the method for splitting these
+    /// discs.
     fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(
@@ -137,9 +140,9 @@ impl DiscResolution {
     }
 }
 
-/// A bound on the bandwidth of integrals along the lines x − h u = c, as functions of c. The
-/// spectrum of these integrals at frequency γ is the spectrum of the other factors of the field at
-/// (Ωx − γ, Ωu + h γ).
+/// A bound on the bandwidth of the integrals of the field along the lines x − h u = c, as functions
+/// of c. The spectrum of these integrals at frequency γ is the spectrum of the other factors of the
+/// field at (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],

@@ -8,17 +8,17 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// The lowest order at which the quadrature for discs converges.
 const ORDER: i32 = 4;
 
-/// Estimates the relative error ‖error‖/‖F‖, over the grid, of `slices`, the prediction of the
-/// given chain. Returns `None` if the prediction is a closed form.
+/// Estimates the relative error ‖error‖/‖F‖ of `slices` over the grid. `slices` is the prediction
+/// of the given chain. Returns `None` if the prediction is a closed form.
 ///
-/// * Discs: the difference between `slices` and a prediction that splits discs with a quarter more
-///   nodes, divided by 1 − 0.8⁴. If masks or windows have corners within a disc the error falls as
-///   n⁻⁴, otherwise faster than exponentially (docs/theory.md, section 3). So the difference
-///   between the two predictions is nearly equal to the error.
-/// * Diffuse reflection: a third of the difference between `slices` and a prediction with half as
-///   many nodes, because the rule is of second order.
-/// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,
-///   about 10⁻⁹.
+/// * Discs: the estimate is the difference between `slices` and a prediction that splits discs with
+///   a quarter more nodes, divided by 1 − 0.8⁴. The error falls as n⁻⁴ if masks or windows have
+///   corners within a disc, and faster than exponentially otherwise (docs/theory.md, section 3).
+///   The difference between the two predictions is therefore nearly equal to the error.
+/// * Diffuse reflection: the estimate is a third of the difference between `slices` and a
+///   prediction with half as many nodes, because the rule is of second order.
+/// * Spots, points and cosines: the estimate is the residual of the series of (1 + u² + v²)^p over
+///   the window, which is about 10⁻⁹.
 #[must_use]
 pub fn quadrature_error(
     chain: &Chain,
@@ -66,8 +66,8 @@ mod tests {
         quadrature_error(chain, window, &grid(), &slices)
     }
 
-    /// Returns the errors for a light that is a disc, and for a disc that blocks a square light;
-    /// `distances` are the travel before and after the blocker.
+    /// Returns two errors: for a light that is a disc, and for a disc that blocks a square light.
+    /// `distances` are the distances of travel before and after the blocker.
     fn errors(profile: fn(f64) -> Profile, radius: f64, distances: [f64; 2]) -> [f64; 2] {
         let round = disc([0.02, 0.01], radius);
         let light = chain_of(spot(round, 0.0), distances.map(|d| (d, None)));
@@ -104,8 +104,9 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The error of the coarse rule is much larger than that of the finer rule. So the estimate
-        // exceeds the error by the factor 1/(1 − 0.8⁴), which is correct for a rule of order 4.
+        // The error of the coarse rule is much larger than the error of the finer rule, so the
+        // difference is already nearly equal to the error. The estimate then exceeds the error by
+        // the factor 1/(1 − 0.8⁴), because this factor is for rules of order 4.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

@@ -12,14 +12,14 @@ use std::collections::HashMap;
 /// Polygons with an area below this threshold, in units of the window's half-widths, are dropped,
 /// because their contribution is below rounding error.
 const SMALLEST_MEASURE: f64 = 1e-15;
-/// Maximum number of pairs of a term and a rectangle that are tested, divided by the maximum
-/// number of terms.
+/// The limit on the number of tested pairs, divided by the maximum number of terms. A pair consists
+/// of a term and a rectangle.
 const PAIRS_PER_TERM: usize = 8;
 /// An interval without lower or upper bound.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis with the polygons that light fills in this plane.
-/// Coordinates are in units of the window's half-widths.
+/// The (position, slope) plane of one axis, with the polygons that light fills in it. Coordinates
+/// are in units of the window's half-widths.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
     /// Half-widths of the window in position (metres) and slope.
@@ -45,16 +45,16 @@ pub(crate) struct PolygonTerm {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// Two indices: that of the term from which this term was clipped, and that of the extent along
-    /// x to which this term was clipped. Terms for which both indices are equal have the same P.
+    /// The index of the term from which this term was clipped, and the index of the extent along x
+    /// to which it was clipped. If two terms have the same two indices, they have the same P.
     column: [usize; 2],
 }
 
 /// Weights and indices of the summands of a weighted sum.
 pub(crate) type Sum = Vec<(f64, usize)>;
 
-/// Terms that are summed along y first: the indicator 1_P(x, u) of each polygon P is multiplied by
-/// a weighted sum of `sums`.
+/// Terms that are summed along y first. The indicator 1_P(x, u) of each polygon P is multiplied by
+/// a weighted sum of entries of `sums`.
 #[derive(Debug)]
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
@@ -74,8 +74,9 @@ pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The expansion of the window, the gratings and the factor of slope: a sum of products of
-    /// waves of both sections. A factor of slope has several products of waves.
+    /// The product of the window, the gratings and the factor that depends on slopes, expanded as a
+    /// sum of products of waves of both sections. A factor that depends on slopes has several
+    /// products of waves.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -103,8 +104,8 @@ impl AxisSection {
         self.unit = self.half[1];
     }
 
-    /// Returns the shear of a distance in units of the window's half-widths: the change of
-    /// position per slope.
+    /// Returns the shear by a distance, which is the change of position per slope, in units of the
+    /// window's half-widths.
     fn shear(&self, distance: f64) -> f64 {
         distance * self.half[1] / self.half[0]
     }
@@ -141,8 +142,8 @@ impl AxisSection {
     }
 
     /// Returns ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, where k is in cycles per
-    /// metre and per unit slope. Uses one polygon transform for each complex exponential of the
-    /// waves. The unit is metre · slope, or slope for segments.
+    /// metre and per unit slope. The function computes one polygon transform for each complex
+    /// exponential of the waves. The unit is metre · slope, or slope for segments.
     pub(crate) fn value(&self, waves: &[SectionWave], polygon: &Polygon, k: [f64; 2]) -> Complex {
         let k = self.reduced(k);
         let shifts = waves.iter().flat_map(SectionWave::shifts);
@@ -291,10 +292,10 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms with sums along y taken first. The n × n rectangles of a disc behind
-    /// another disc of n × n rectangles result in n⁴ terms. The sum along y over n² of these terms
-    /// is the same for all n polygons of (x, u) that are clipped to one extent along x. So n³
-    /// terms with n³ summands are sufficient.
+    /// Returns the terms after summation along y. If a disc of n × n rectangles is behind another
+    /// disc of n × n rectangles, there are n⁴ terms. For one extent along x, the sum along y over
+    /// n² of these terms is the same for all n polygons of (x, u) that are clipped to this extent.
+    /// Therefore n³ terms with n³ summands are sufficient.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();
@@ -333,8 +334,8 @@ impl Expansion {
     }
 }
 
-/// Returns the product of the window, the factors of slope and the gratings along the path, as
-/// waves.
+/// Returns the product of the window, the factors that depend on slopes and the gratings along the
+/// path, expanded in waves.
 fn products(
     path: &ChainSegment<'_>,
     window: &Window,

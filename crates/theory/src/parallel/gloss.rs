@@ -1,16 +1,17 @@
-//! A chain after a glossy lobe: its light field convolved over slopes along x (docs/theory.md
-//! (36a)).
+//! The light field of a chain after a glossy lobe. The lobe convolves the field over slopes along x
+//! (docs/theory.md (36a)).
 //!
-//! In flatland a glossy reflection multiplies the spectrum by the spectrum of its lobe, ρ̂'(Ωu),
-//! and the window at the plane is applied last:
+//! In flatland, a glossy reflection multiplies the spectrum by ρ̂'(Ωu), the spectrum of its lobe.
+//! The window at the plane is applied last:
 //!
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is computed as a sum over q. The field under this window is bounded. If the
-//! spacing of the sum is small enough to separate the copies of the field, the sum is exact up to
-//! the lobe's tail. The lobe also blurs slopes along y, which moves a fraction of the light out of
-//! the window. Multiplication by the remaining fraction is exact if the field is the product of a
+//! window. The integral is computed as a sum over q. A sum over q corresponds to periodic copies of
+//! the field over slopes. The field under this window is bounded, so the copies do not overlap if
+//! the spacing of the sum is small enough. Then the sum is exact up to the lobe's tail. The lobe
+//! also blurs slopes along y, which moves a fraction of the light out of the window. The result is
+//! therefore multiplied by the remaining fraction. This is exact if the field is the product of a
 //! function of (x, u) and a function of (y, v), as behind slats along y.
 
 use super::{projection, slices};
@@ -31,8 +32,7 @@ const SEEN_TAIL: f64 = 1e-4;
 const APART: f64 = 1.05;
 /// Lobes whose reach exceeds this angle, in radians, are treated as cut off at a right angle.
 const BROAD: f64 = 1.5;
-/// Maximum number of frequencies on each side of zero. Sums for narrow lobes use this maximum
-/// number.
+/// Maximum number of frequencies on each side of zero. Narrow lobes need this maximum number.
 const MAX_FREQUENCIES: usize = 512;
 
 /// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.
@@ -81,7 +81,7 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
         half: 0,
         spacing: 1.0,
     };
-    // A grid of two azimuths, of which the second is along y.
+    // The grid has two azimuths; the second azimuth is along y.
     let grid = SliceGrid {
         azimuths: 2,
         rho: none,
@@ -193,9 +193,9 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible: the frequency for a
-/// Gaussian with the same reach. For lobes that end at a right angle, whose transforms have tails,
-/// the returned frequency is three times as high.
+/// Returns a frequency beyond which the spectrum of a lobe is negligible. This is the frequency for
+/// a Gaussian with the same reach. Lobes that end at a right angle have transforms with tails, so
+/// for them the frequency is three times as high.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };

@@ -13,8 +13,9 @@ use rayon::prelude::*;
 
 /// The spectrum of a chain at the multiples of a frequency spacing along each of the four axes.
 ///
-/// The spectrum is a sum of products of two factors, one over (Ωx, Ωu) and one over (Ωy, Ωv). So
-/// only tables of the factors are stored, and frequencies are computed from the tables on demand.
+/// The spectrum is a sum of products of two factors, one over (Ωx, Ωu) and one over (Ωy, Ωv).
+/// Therefore only tables of the factors are stored, and the value at a frequency is computed from
+/// the tables when it is needed.
 #[derive(Debug)]
 pub struct Harmonics {
     expansion: Expansion,
@@ -50,9 +51,9 @@ impl Harmonics {
         Self::built(chain, window, (spacing, half), None)
     }
 
-    /// Builds the tables of the expected spectrum of rays that are splatted onto the cells of a
-    /// grid, after division by the assignment spline. The expected spectrum is the spectrum of the
-    /// chain plus aliases from beyond the Nyquist frequency.
+    /// Builds the tables of the spectrum that is expected if rays are assigned to the cells of a
+    /// grid and the spectrum is divided by the transform of the assignment spline. The expected
+    /// spectrum is the spectrum of the chain plus aliases from beyond the Nyquist frequency.
     ///
     /// The expected spectrum is Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in
     /// cycles per cell and p is the order of the spline (docs/theory.md (44); Hockney and Eastwood
@@ -80,8 +81,8 @@ impl Harmonics {
         if path.receiver().is_some() {
             return None;
         }
-        // A spline of order 3 reduces aliases from beyond twice the Nyquist frequency to less than
-        // 1/27.
+        // A spline of order 3 multiplies aliases from beyond twice the Nyquist frequency by less
+        // than 1/27.
         let reach = if folded.is_some() { 2.0 } else { 1.0 };
         let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
@@ -196,7 +197,7 @@ impl HarmonicTable {
     }
 }
 
-/// Number of aliases on either side of a frequency that are added to it.
+/// Number of aliases from each side that are added to a frequency.
 const FOLDS: u32 = 4;
 
 /// The frequencies along an axis of a table, with the aliases that coincide on its grid.

@@ -13,10 +13,10 @@ impl Chain {
     /// `power` x. A thin lens of focal length −1/power applies this map, and a curved mirror at
     /// normal incidence applies it to first order.
     ///
-    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
-    /// with m = 1 + power · h. So the image of the plane is at the distance h/m, and is 1/m times
-    /// as large. Returns `None` if light varies with slope or leaves a surface, because such
-    /// chains have no image.
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, with
+    /// m = 1 + power · h. The image of the plane is therefore at the distance h/m and is 1/m times
+    /// as large. Returns `None` if the light varies with slope or if the chain has a diffuse
+    /// reflection, because such chains have no image.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {

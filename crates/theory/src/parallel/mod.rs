@@ -9,11 +9,11 @@
 //! |---|---|
 //! | the chain as a model, and in words | `chain`, `model`, `describe` |
 //! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `derivative`, `projection`, `harmonics` |
-//! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
-//! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
+//! | terms of the product over masks, as polygons | `expansion`, `weighted_rectangle`, `disc`, `polygon`, `corners` |
+//! | windows, gratings and factors that depend on slopes, as waves | `wave`, `slope`, `row` |
 //! | a diffuse receiver | `receiver` |
 //! | a curved glossy receiver at normal incidence, in flatland | `images`, `gloss` |
-//! | the same light by nets of rays | `sampled` |
+//! | prediction by nets of rays | `sampled` |
 //! | light of finitely many rays | `given` |
 
 mod at;

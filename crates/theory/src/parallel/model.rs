@@ -16,8 +16,8 @@ impl Model for Chain {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        // For a light of finitely many rays, the light that passes an edge has no derivative with
-        // respect to the edge's position.
+        // For a light of finitely many rays, the light that passes an edge changes in jumps when
+        // the edge moves, so it has no derivative with respect to the edge's position.
         if self.given().is_some() {
             return Vec::new();
         }
@@ -85,9 +85,9 @@ impl Model for Chain {
         Some(())
     }
 
-    /// Predicts by closed forms, or by nets of rays if closed forms take too long or do not
-    /// resolve the scene. For a light that is a list of rays, the prediction is a sum over these
-    /// rays.
+    /// Predicts the light field by closed forms. If closed forms take too long or do not resolve
+    /// the scene, nets of rays are used. For a light that is a list of rays, the prediction is a
+    /// sum over these rays.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
             return ray_list::predicted(self, rays, over);
@@ -130,13 +130,13 @@ impl Model for Chain {
     }
 }
 
-/// Maximum number of computing steps of a closed form or a quadrature, which take about ten
-/// seconds on one core. At the same cost, nets of rays would have more noise than the photons, so
-/// a closed form is preferred up to this limit.
+/// Maximum number of computing steps of a closed form or a quadrature. These steps take about ten
+/// seconds on one core. In the same time, nets of rays would give a prediction with more noise than
+/// the photons, so a closed form is preferred up to this limit.
 const MAX_STEPS: f64 = 1e10;
-/// Maximum number of computing steps of a closed form for each ray of the budget. The steps for
-/// each ray take about as long as tracing four photons, and a run has about four photons for each
-/// ray of the budget.
+/// Maximum number of computing steps of a closed form for each ray of the budget. These steps take
+/// about as long as tracing four photons, and a run has about four photons for each ray of the
+/// budget.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
 /// Maximum number of computing steps of a closed form or a quadrature if nets of rays do not fit
 /// into memory.
@@ -261,8 +261,8 @@ mod tests {
         assert!(sampled(20.0));
     }
 
-    /// Tests that nets replace a slow closed form: a narrow spot has a long series of cosines,
-    /// which is multiplied by the terms of each blocker.
+    /// Tests that nets replace a slow closed form. Here a narrow spot has a long series of cosines,
+    /// and this series is multiplied by the terms of each blocker.
     #[test]
     fn closed_forms_that_take_longer_than_photons_are_sampled() {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.5));

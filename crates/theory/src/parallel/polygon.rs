@@ -7,7 +7,7 @@ use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// The largest phase, in radians, for which the power series is used; above this phase the sum
+/// The largest phase, in radians, for which the power series is used. Above this phase, the sum
 /// over edges is accurate to 14 digits.
 const SERIES_PHASE: f64 = 0.2;
 /// Number of terms of the power series; the next term is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the
@@ -27,8 +27,8 @@ pub(crate) struct Vertex {
 /// A convex polygon with corners in counter-clockwise order, or a segment, whose two corners are
 /// in order of increasing slope.
 ///
-/// A segment along (shear, 1) represents δ(position − shear · slope): its integrals are over the
-/// slope.
+/// A segment along (shear, 1) represents δ(position − shear · slope), so integrals along the
+/// segment are over the slope.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygon(Vec<Vertex>);
 
@@ -45,9 +45,9 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// Returns the square |position| < 1, |slope| < 1. `edges` are two indices: that of the
-    /// direction of the sides of constant slope, and that of the direction of the sides of constant
-    /// position.
+    /// Returns the square |position| < 1, |slope| < 1. `edges` contains the indices of two
+    /// directions: first the direction of the sides with constant slope, then the direction of the
+    /// sides with constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
         let corner = |x, u, side: usize| Vertex {
             at: [x, u],
@@ -143,8 +143,8 @@ impl Polygon {
             .clipped([-1.0, shear], -low, edge)
     }
 
-    /// Returns the triangles (a, b, c) that divide the polygon, where a is its first corner, as
-    /// the vectors from a to b and from a to c.
+    /// Divides the polygon into triangles (a, b, c), where a is the first corner of the polygon.
+    /// Returns the vectors from a to b and from a to c for each triangle.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         self.0
             .windows(2)
@@ -177,9 +177,9 @@ impl Polygon {
         }
     }
 
-    /// Returns the transform of a polygon. For a parallelogram with sides a and b and centre c,
-    /// half as many exponentials suffice: the transform is exp(−2πi k·c) sinc(k·a) sinc(k·b) times
-    /// the area.
+    /// Returns the transform of a polygon. For a parallelogram with sides a and b and centre c, the
+    /// transform is exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area. This formula needs half as
+    /// many exponentials as [`transform`](Self::transform).
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
         let [p, q, r, s] = &self.0[..] else {
             return self.transform(k);
@@ -193,8 +193,8 @@ impl Polygon {
         cis(-TAU * dot(k, center)) * size
     }
 
-    /// Returns the transform of a segment e with midpoint c: exp(−2πi k·c) sinc(k·e) times the
-    /// range of slopes.
+    /// Returns the transform of a segment e with midpoint c, which is exp(−2πi k·c) sinc(k·e) times
+    /// the range of slopes.
     fn segment_transform(&self, k: [f64; 2]) -> Complex {
         let [a, b] = [self.0[0].at, self.0[1].at];
         let e = minus(b, a);
@@ -215,9 +215,9 @@ impl Polygon {
         sum * Complex::new(0.0, 1.0 / (TAU * dot(k, k)))
     }
 
-    /// Returns the transform about the first corner as a power series in the phases β, γ of the
-    /// other two corners of each triangle: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!, hₙ = βⁿ + βⁿ⁻¹γ + … +
-    /// γⁿ.
+    /// Returns the transform about the first corner. For each triangle, the transform is a power
+    /// series in the phases β and γ of the other two corners: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!,
+    /// where hₙ = βⁿ + βⁿ⁻¹γ + … + γⁿ.
     fn series(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for [b, c] in self.triangles() {

@@ -19,16 +19,16 @@ use std::f64::consts::TAU;
 const NODES: usize = 5;
 /// Number of nodes that are added for each cycle of a grating in a cell.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// Maximum number of nodes along each direction of a triangle; if a cell contains dozens of
-/// periods of a grating, the grating is undersampled.
+/// Maximum number of nodes along each direction of a triangle. If a cell contains dozens of periods
+/// of a grating, this number is too small, and the grating is undersampled.
 const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
-/// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at
-/// frequency zero. Each polygon is clipped to each cell, where the window is integrated by a Gauss
-/// rule, so edges cause no aliasing. Discs are split into strips of a twentieth of a cell or
-/// wider. Unit: W m⁻² sr⁻¹ · m.
+/// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at frequency
+/// zero. Each polygon is clipped to each cell, and the window is integrated over the clipped
+/// polygon by a Gauss rule. Edges therefore cause no aliasing. Discs are split into strips of a
+/// twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -108,7 +108,7 @@ struct Cells<'a> {
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
-    /// Half-widths of the grid in units of the window's half-widths; they are 1 if the grid covers
+    /// Half-widths of the grid in units of the window's half-widths. They are 1 if the grid covers
     /// exactly the window.
     half: [f64; 2],
     /// Nodes and weights of a Gauss rule on (0, 1).
@@ -166,8 +166,8 @@ impl<'a> Cells<'a> {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Returns, for each position bin, the integral of density · W over its cell in slope bin `j`,
-    /// summed over polygons.
+    /// Returns a value for each position bin: the integral of density · W over the cell of this bin
+    /// in slope bin `j`, summed over polygons.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];
@@ -201,7 +201,7 @@ impl<'a> Cells<'a> {
         let low = bins.clone().fold(n, f64::min);
         let high = bins.fold(0.0, f64::max);
         let first = whole(low);
-        // A segment on an edge between two cells belongs to the upper one.
+        // A segment on the edge between two cells belongs to the upper cell.
         first..whole(high.ceil()).max((first + 1).min(self.bins))
     }
 
@@ -284,7 +284,7 @@ mod tests {
         };
         for (window, bins, close) in [
             (window(Profile::Hann(0.5), Profile::Hann(0.3)), 64, 1e-13), // rounding
-            (window(Profile::Hann(0.5), Profile::Hann(0.3)), 8, 1e-11),  // as said at NODES
+            (window(Profile::Hann(0.5), Profile::Hann(0.3)), 8, 1e-11),  // stated at NODES
             (window(gaussian, Profile::Box(0.3)), 37, 1e-13),            // rounding
         ] {
             let grid = ProjectionGrid::new(&window, bins);
@@ -313,8 +313,8 @@ mod tests {
         shaded.operators.push(cosine());
         let round = chain_of(spot(disc([0.05, 0.0], 0.2), 0.0), masks.clone());
         for (chain, close) in [
-            (chain_of(square, masks.clone()), 1e-11), // as said at NODES
-            (chain_of(point.clone(), masks.clone()), 1e-11), // as said at NODES
+            (chain_of(square, masks.clone()), 1e-11), // stated at NODES
+            (chain_of(point.clone(), masks.clone()), 1e-11), // stated at NODES
             (chain_of(point, [(0.0, None)]), 1e-11),  // on an edge between cells
             (chain_of(spot(oblong, 20.0), masks), 1e-11), // the same series on both sides
             (shaded, 1e-11),                          // the same series on both sides
@@ -389,7 +389,7 @@ mod tests {
             let expected = mean(200, center, cell, |x, u| {
                 weight(x, u) * (all - met(x, u) * behind)
             });
-            // An edge across a grid of n × n points causes an error of less than 1/n of the
+            // If an edge crosses a grid of n × n points, the error is less than 1/n of the
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }

@@ -1,9 +1,9 @@
-//! Predictions for lights that are finite lists of rays, whose windowed spectrum is a sum over the
-//! rays (docs/theory.md, section 2).
+//! Predictions for lights that are finite lists of rays. The windowed spectrum of such a light is a
+//! sum over the rays (docs/theory.md, section 2).
 //!
 //! Each ray is followed through the chain: travel changes the ray's position, masks attenuate the
-//! ray, and the window multiplies its weight. So the only error of the prediction is that of the
-//! transform. The prediction and the tracer share neither random numbers nor code for
+//! ray, and the window multiplies its weight. The only error of the prediction is therefore the
+//! error of the transform. The prediction and the tracer share neither random numbers nor code for
 //! intersections.
 
 use crate::barrier::Barrier;
@@ -101,8 +101,8 @@ impl RayNets for GivenRays<'_> {
     }
 }
 
-/// Estimates the work of [`predicted`]: spreading a ray over 8 × 8 cells of each azimuth, and the
-/// transform.
+/// Estimates the work of [`predicted`], which is to spread each ray over 8 × 8 cells of each
+/// azimuth and to transform the grids.
 pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, columns] = grid.half_shape().map(|n| n as f64);
     let spread = 100.0 * azimuths * rays.rays().len() as f64;

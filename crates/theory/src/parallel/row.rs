@@ -39,8 +39,8 @@ impl FrequencyRow {
         [self.position, (n as f64 - self.half as f64) * self.step]
     }
 
-    /// Writes scale · exp(−2πi k·p) along the row to `to`, by powers of a constant factor from the
-    /// middle outward.
+    /// Writes scale · exp(−2πi k·p) along the row to `to`. Starting at the middle of the row, each
+    /// value is the previous value times a constant factor.
     pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut ComplexRow) {
         let middle = cis(-TAU * self.position * p[0]) * scale.into();
         let up = cis(-TAU * self.step * p[1]);

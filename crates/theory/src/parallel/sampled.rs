@@ -1,5 +1,5 @@
-//! Predictions by nets of rays for chains whose closed form takes too long, or does not resolve a
-//! pattern.
+//! Predictions by nets of rays. They are used for chains whose closed form takes too long or does
+//! not resolve a pattern.
 
 use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets};

@@ -11,8 +11,8 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
-/// If the absolute cosine or sine of an azimuth is below this threshold, it is treated as exactly
-/// zero (azimuths of π/2 and 0 up to rounding error).
+/// If the absolute value of the cosine or sine of an azimuth is below this threshold, it is treated
+/// as exactly zero. Up to rounding errors, such azimuths are π/2 and 0.
 const ORTHOGONAL: f64 = 1e-15;
 
 /// Returns the slices of the spectrum on a grid.
@@ -247,8 +247,9 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // The tolerance is a thousand rounding errors, for two directions in which corners
-                // nearly cancel, divided by 1/20, the fraction of the window that is lit.
+                // If corners nearly cancel in two directions, the error is a thousand rounding
+                // errors. The tolerance is this error divided by 1/20, which is the fraction of the
+                // window that is lit.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }

@@ -1,5 +1,5 @@
-//! The factor (1 + u² + v²)^p times the slope profiles of a window, as a short sum of products of
-//! cosine series (docs/theory.md (5d)).
+//! Expands the factor (1 + u² + v²)^p times the slope profiles of a window in a short sum of
+//! products of cosine series (docs/theory.md (5d)).
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
 //! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted by cosines
@@ -10,29 +10,29 @@ use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
 use std::f64::consts::{PI, TAU};
 
-/// Residual at which the elimination stops, relative to the largest value of the function.
+/// The elimination stops at this residual, relative to the largest value of the function.
 const RANK_RESIDUAL: f64 = 6e-9;
-/// Residual at which the fits of a(u) and of b(v) stop, relative to the largest value.
+/// The fits of a(u) and b(v) stop at this residual, relative to the largest value.
 const FIT_RESIDUAL: f64 = 2e-9;
 /// Number of nodes along half of a window's width.
 const NODES: usize = 192;
 /// Maximum number of terms of a cosine series.
 const MOST_TERMS: usize = 120;
-/// Half periods of the cosine series that are tried, in half-widths of the window; if the factor
+/// Half periods of the cosine series that are tried, in half-widths of the window. If the factor
 /// varies slowly, longer periods need fewer terms.
 const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
-/// The largest coefficient allowed in a cosine series; larger coefficients would cause larger
-/// rounding errors by cancellation.
+/// The largest allowed coefficient of a cosine series. Terms with larger coefficients would nearly
+/// cancel, which amplifies rounding errors.
 const LARGEST_COEFFICIENT: f64 = 30.0;
 
 /// The function W(u) W(v) (1 + u² + v²)^p inside a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Slope {
-    /// The summands: each is a product of a cosine series along u and a cosine series along v,
-    /// with frequencies in cycles per unit slope.
+    /// The summands. Each is a product of a cosine series along u and a cosine series along v,
+    /// whose frequencies are in cycles per unit slope.
     pub(crate) parts: Vec<[Vec<CosineTerm>; 2]>,
-    /// Root mean square error over the window, divided by the root mean square of the function; 0
-    /// for p = 0.
+    /// Root mean square error over the window, divided by the root mean square of the function. The
+    /// residual is 0 if p = 0.
     pub(crate) residual: f64,
     /// Whether the power p is 0.
     pub(crate) is_profile: bool,
@@ -112,8 +112,8 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
     }
 }
 
-/// Returns the row, the column and the absolute value of the element of a matrix with the largest
-/// absolute value.
+/// Finds the element of a matrix that has the largest absolute value. Returns the row, the column
+/// and the absolute value of this element.
 fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     let mut best = (0, 0, 0.0);
     for (i, row) in matrix.iter().enumerate() {
@@ -158,8 +158,8 @@ impl CosineFit {
         let largest = functions.iter().map(|f| peak(f)).fold(0.0, f64::max);
         let mut rests = functions.to_vec();
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        // The upper triangular matrix of the basis, column by column, and the projections of the
-        // functions.
+        // `triangle` is the upper triangular matrix of the basis, column by column. The projections
+        // of the functions are stored separately.
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let mut projections = vec![Vec::new(); functions.len()];
         for n in 0..most {
@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn profiles_may_differ() {
         let (worst, ..) = check([Profile::Hann(0.3), Profile::Box(1.1)], -2.0);
-        assert!(worst < 2e-8); // as above
+        assert!(worst < 2e-8); // the same residuals
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub(crate) struct Shift {
     /// The weight without the factor for the phase of the wave.
     pub(crate) amplitude: f64,
     /// The sign, +1 or −1, in the exponential exp(−i sign (2π s·p + phase)), where s is the
-    /// frequency of its wave.
+    /// frequency of the wave.
     pub(crate) sign: f64,
     pub(crate) weight: Complex,
 }
@@ -56,8 +56,8 @@ impl SectionWave {
         Self::products(&along(0), &along(1))
     }
 
-    /// Returns a grating ½ (1 + m cos(2π f t + p)), t = x − `distance` · u, in the coordinates of
-    /// the plane (docs/theory.md (5c)).
+    /// Returns the grating ½ (1 + m cos(2π f t + p)) with t = x − `distance` · u, in the
+    /// coordinates of the plane (docs/theory.md (5c)).
     pub(crate) fn of_grating(grating: &Grating, distance: f64, half: [f64; 2]) -> [Self; 2] {
         let f = grating.frequency;
         let frequency = [f * half[0], -f * distance * half[1]];
@@ -92,8 +92,8 @@ impl SectionWave {
         is_zero(self.frequency)
     }
 
-    /// Returns the complex exponentials of the wave: two for a cosine, and a single one for a
-    /// constant.
+    /// Returns the complex exponentials of the wave. A cosine has two of them, and a constant has
+    /// one.
     pub(crate) fn shifts(&self) -> impl Iterator<Item = Shift> {
         let (signs, amplitude) = if self.is_constant() {
             (&[1.0][..], self.amplitude)

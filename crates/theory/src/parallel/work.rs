@@ -1,4 +1,4 @@
-//! Estimates of the work of a prediction before it is made.
+//! Estimates the work of a prediction before the prediction is computed.
 //!
 //! The estimate counts the corners, nodes, shapes and frequencies that the prediction uses. With
 //! the estimate, a scene whose prediction would take days can be refused immediately. Each kind of
@@ -15,7 +15,7 @@ use crate::parallel::slope::Slope;
 use crate::work::PredictionWork;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
-/// Maximum number of products of shapes in different planes that are counted; with more products
+/// Maximum number of products of shapes in different planes that are counted. With more products,
 /// the prediction would take far too long.
 pub(crate) const MOST_PARTS: usize = 500_000;
 
@@ -47,7 +47,7 @@ pub(crate) fn work(
         Some(None) => return too_many(),
     };
     let waves = [0, 1].map(|axis| waves(&path, window, &slope, axis));
-    // The finer rule over discs, for the error estimate, has (5/4)⁴ times as many terms.
+    // For the error estimate, a finer rule splits discs into (5/4)⁴ times as many terms.
     let finer = if path.has_discs() { 2.5 } else { 0.0 };
     of_slices(slices, waves, slope.parts.len() as f64, grid)
         .times(1.0 + derivatives + finer)
@@ -60,7 +60,7 @@ fn too_many() -> PredictionWork {
     ))
 }
 
-/// Returns the number of waves that multiply the polygons of a section in one product of waves.
+/// Returns the number of waves of a section in one product of waves.
 fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     let position: &Profile = [&window.x, &window.y][axis];
     let position = position.cosine_terms().len() as f64;

@@ -1,4 +1,4 @@
-//! Exact backward rays: a ray at a plane is followed back to the light through the real geometry.
+//! Follows rays at a plane back to the light through the exact geometry.
 
 use super::trace::LegRay;
 use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
@@ -56,9 +56,9 @@ impl Back {
     }
 
     /// Returns the backward ray that leaves the last surface, for the ray `last` of the last leg.
-    /// The line of `last` starts beyond all its possible intersections with the last surface,
-    /// because half of a plane at an oblique surface lies behind the surface. If the plane is on
-    /// the last surface, the point where the ray leaves this surface is already known.
+    /// The line of `last` starts beyond all its possible intersections with the last surface. This
+    /// is necessary because a plane at an oblique surface may lie partly behind the surface. If the
+    /// plane is on the last surface, the point where the ray leaves this surface is already known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;

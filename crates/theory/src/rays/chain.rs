@@ -23,16 +23,17 @@ pub struct AffineChain {
     /// Distances from the last surface at which rays that left the light parallel to each other
     /// meet, in metres and in ascending order. The distance of a virtual focus behind the surface
     /// is negative. The list has at most two distances. If the plane of incidence is a principal
-    /// plane, one distance is for rays in this plane and the other for rays across it.
+    /// plane, one distance is for rays in this plane, and the other distance is for rays
+    /// perpendicular to this plane.
     pub foci: Vec<f64>,
 }
 
 /// Derives the chain from the distances, angles and curvatures of the geometry along the central
-/// ray. Returns `None` if the ray misses an element or is totally reflected. Returns `None` also
-/// for a plane on a lens itself, which has no side from which to count angles.
+/// ray. Returns `None` if the ray misses an element or is totally reflected. Also returns `None`
+/// for a plane on a lens itself, because no side of a lens is the reference for angles.
 ///
-/// The editions of the paper differ in the steps for incidence, curvature and outgoing angle; the
-/// paper treats neither refraction nor lenses.
+/// The editions differ in the steps for incidence, curvature and outgoing angle. They do not differ
+/// for refraction and lenses, which the paper does not treat.
 #[must_use]
 pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
@@ -103,8 +104,8 @@ struct Walk {
     print: Edition,
     maps: Vec<SpectrumMap<4>>,
     steps: Vec<String>,
-    /// The frame of the current leg; its origin is the start of the leg or the current position
-    /// along it.
+    /// The frame of the current leg. Its origin is the start of the leg or the current position
+    /// along the leg.
     frame: Frame,
     /// Name of the element that light left last.
     at: String,
@@ -244,8 +245,8 @@ impl Walk {
             ..hit.arriving
         };
         if plane.frame.d.dot(n) < 0.0 {
-            // The axes are seen from the other side of the surface as −T, B and −N, and directions
-            // are no longer flipped.
+            // Seen from the other side of the surface, the axes are −T, B and −N. Directions are no
+            // longer flipped.
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
@@ -256,8 +257,8 @@ impl Walk {
         let beside = plane.frame.to_local(at.origin).abs().max_element();
         let lean = plane.frame.vector_to_local(at.d).truncate().length();
         if plane.orientation == Orientation::Tangent && beside.max(lean) > 1e-9 {
-            // If the surface is a mesh, the plane is tangent to the mesh, and the smooth patch
-            // that replaces the mesh deviates slightly from the plane.
+            // If the surface is a mesh, the plane is tangent to the mesh. The smooth patch that
+            // replaces the mesh is slightly tilted relative to this plane.
             let map = onto_leaning(plane, &at, theta1);
             self.step(&map.spectrum_map(), "map  frame of the plane".into());
         } else {
@@ -303,10 +304,10 @@ impl Walk {
         }
     }
 
-    /// Appends the steps from the leg's frame to the frame of a plane perpendicular to the leg;
-    /// the plane may be rotated about D and displaced. Behind a mesh the plane is slightly tilted:
-    /// interpolated normals between vertices differ from those of the smooth patch that replaces
-    /// the mesh.
+    /// Appends the steps from the leg's frame to the frame of a plane perpendicular to the leg. The
+    /// plane may be rotated about D and displaced. Behind a mesh, the plane is slightly tilted,
+    /// because the mesh's interpolated normals differ from the normals of the smooth patch that
+    /// replaces the mesh.
     fn reach_frame(&mut self, plane: &Frame) {
         let towards = plane.vector_to_local(self.frame.d);
         if libm::hypot(towards.x, towards.y) > 1e-9 {
@@ -328,7 +329,8 @@ impl Walk {
     }
 
     /// Returns the distances d at which det(P + d Q) = 0. Here x = P x₀ and u = Q x₀ are the
-    /// positions and slopes of rays that leave position x₀ of the light parallel to each other.
+    /// positions and slopes of rays that leave the light parallel to each other, at the positions
+    /// x₀.
     fn foci(&self) -> Vec<f64> {
         let map = self.map();
         let at = |i: usize, j: usize| map.matrix[j][i];
@@ -351,8 +353,8 @@ impl Walk {
     }
 }
 
-/// Returns the map of a thin lens, from the frame of one leg to that of the next. The map holds to
-/// first order about a central ray, which may cross the lens at any point and slope.
+/// Returns the map of a thin lens, from the frame of one leg to the frame of the next leg. The map
+/// holds to first order about a central ray, which may cross the lens at any point and slope.
 ///
 /// In the lens's own frame positions do not change, and slopes decrease by the position divided by
 /// the focal length. If the central ray passes through the lens's centre along its axis, the map
@@ -373,7 +375,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // The ray's position moves along the ray to the plane; the slopes are those of the
+            // The position moves along the ray to the plane. The slopes are the slopes of the
             // direction D + u X relative to the plane.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;

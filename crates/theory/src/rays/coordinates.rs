@@ -72,8 +72,8 @@ impl Plane {
     }
 
     /// Returns the direction, relative to the normal, that has two given angles at a plane on a
-    /// surface. Returns `None` if an angle exceeds a right angle, where the same direction would
-    /// have two pairs of angles.
+    /// surface. Returns `None` if an angle exceeds a right angle, because the same direction would
+    /// then have two pairs of angles.
     pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.orientation == Orientation::Mirrored {
             -1.0

@@ -5,13 +5,13 @@ use crate::geometry::SpectrumMap;
 use crate::model::Observed;
 use etendue_field::Window;
 
-/// Returns the error of a chain of affine maps, such as that of [`chain`](super::chain()), in the
-/// limit of a small neighbourhood of the central ray.
+/// Returns the error of a chain of affine maps in the limit of a small neighbourhood of the central
+/// ray. [`chain`](super::chain()) returns such a chain.
 ///
 /// The maps of a chain must be the derivatives of rays through the real geometry. If the maps are
 /// these derivatives, the chain's error falls linearly or quadratically with the size of the
 /// neighbourhood, and the limit is zero except for 10⁻⁹ from finite differences and rounding
-/// errors. If any map has a wrong sign, cosine or factor, the returned limit is not zero: it is the
+/// errors. If any map has a wrong sign, cosine or factor, the limit is not zero. It is then the
 /// error of rays in half-widths of the window, or the relative error of radiance.
 ///
 /// Returns `None` if the central ray does not arrive.
@@ -28,8 +28,8 @@ pub fn defect(
     Some(off.max(radiance_defect(view, map)?.abs()))
 }
 
-/// Returns the contribution of the chain's factor to [`defect`]: the ratio of the central ray's
-/// radiance according to the chain to its actual radiance, minus 1.
+/// Returns the contribution of the chain's factor to [`defect`]. It is the radiance that the chain
+/// predicts for the central ray, divided by the actual radiance, minus 1.
 #[must_use]
 pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;

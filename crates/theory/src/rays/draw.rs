@@ -1,11 +1,12 @@
 //! Sampling of the light's rays, either by the light's emission or by target points at the plane.
 //!
-//! To first order a ray of the light lands where the linearisation about the central ray maps it.
-//! So a target position or slope in the window determines which ray of the light to follow. The
-//! ray is then followed to its actual landing point. The sampling density of rays is known
-//! exactly, wherever the rays land. If the window is narrower than the error of the linearisation,
-//! few rays sampled by targets land in the window. For a narrow window all four coordinates of rays
-//! are therefore sampled in the window, and the rays are followed back through the exact geometry.
+//! To first order, the linearisation about the central ray maps a ray of the light to its landing
+//! point. A target position or slope in the window therefore determines which ray of the light to
+//! follow. The ray is then followed to its actual landing point. The sampling density of rays is
+//! known exactly, wherever the rays land. If the window is narrower than the error of the
+//! linearisation, only few rays that are sampled by targets land in the window. For a narrow window
+//! all four coordinates of rays are therefore sampled in the window, and the rays are followed back
+//! through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -25,8 +26,8 @@ pub(super) enum RayStrategy {
     /// Rays are sampled by positions at the plane. The rays of an area light are also sampled by
     /// points of the light, and the rays of an environment by directions.
     Positions,
-    /// Rays are sampled by slopes at the plane and, as for [`Self::Positions`], by points of an
-    /// area light or by directions of an environment.
+    /// Rays are sampled by slopes at the plane. As for [`Self::Positions`], the rays of an area
+    /// light are also sampled by points of the light, and the rays of an environment by directions.
     Slopes,
     /// Rays of a light with extent are sampled by positions and slopes at the plane.
     Plane,
@@ -48,7 +49,7 @@ pub(super) struct RaySampler<'a> {
 /// coordinates of its emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
-    /// The two additional coordinates are not sampled: all rays have the same values of them.
+    /// The two additional coordinates are not sampled, because they are the same for all rays.
     Center,
     /// Positions on an area light.
     Shape(Shape),

@@ -6,26 +6,27 @@ use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The ray coordinates that parametrise a light's emission: two of x, y, u and v, and for a light
-/// with extent the other two as well.
+/// The ray coordinates that parametrise a light's emission. The two inner coordinates are two of x,
+/// y, u and v. For a light with extent, the other two coordinates are also needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMeasure {
     /// Indices, among x, y, u and v, of the two inner coordinates.
     pub(super) inner: [usize; 2],
-    /// The largest absolute value of each inner coordinate at which rays are sought.
+    /// Rays are sought up to this absolute value of each inner coordinate.
     pub(super) reach: [f64; 2],
     /// Number of cycles of the light's picture per unit of each inner coordinate.
     pub(super) cycles: [f64; 2],
 }
 
-/// Half-width outside which a Gaussian picture is treated as dark, in units of its width: exp(−π
-/// 3.6²) = 2·10⁻¹⁸.
+/// Half-width outside which a Gaussian picture is treated as dark, in units of the picture's width.
+/// At this half-width, the picture is exp(−π 3.6²) = 2·10⁻¹⁸.
 const GAUSSIAN: f64 = 3.6;
 /// The largest slope for which rays are sought, if the light has no picture.
 const STEEPEST: f64 = 30.0;
 
 impl EmissionMeasure {
-    /// Returns the indices, among x, y, u and v, of the two coordinates that are not inner ones.
+    /// Returns the indices, among x, y, u and v, of the two coordinates that are not inner
+    /// coordinates.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
     }
@@ -41,7 +42,7 @@ impl SpecularSystem {
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
-            // The transform of a Gaussian of width w is below 10⁻⁵ from the frequency 2/w on.
+            // Above the frequency 2/w, the transform of a Gaussian of width w is below 10⁻⁵.
             cycles = image.width.map(|w| 2.0 / w);
             if let Some(grating) = image.grating {
                 cycles[grating.axis] += grating.frequency.abs();

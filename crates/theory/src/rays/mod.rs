@@ -6,16 +6,16 @@
 //! a [`Model`](crate::Model). The model follows rays through the real geometry and sums them, by a
 //! quadrature rule if the rule converges and over scrambled nets otherwise. The function
 //! [`chain`](chain()) derives the chain of first-order maps ([`geometry`](crate::geometry)) from
-//! the same system, and [`linear()`] returns the prediction of such a chain. With both predictions,
-//! a difference between a measurement and the first-order chain splits into noise, the error of
-//! linearisation, and faults.
+//! the same system, and [`linear()`] returns the prediction of such a chain. A measurement may
+//! differ from the first-order chain because of noise, of linearisation, or of faults. A comparison
+//! with both predictions separates these causes.
 //!
-//! All coordinates are in the frame at the light: the central ray starts at the origin along Z,
-//! and (x, y) are along X and Y. A ray carries flux; `emission.rs` defines the flux of the rays of
-//! each light. Flux is conserved at every surface. A ray is lost if it misses a patch, is totally
-//! reflected, or would have to travel backward. Flux Φ corresponds to Φ (1 + u² + v²)² in radiance
-//! space at a plane perpendicular to the central ray, and to Φ/(cos θ cos² φ) on a surface
-//! (docs/theory.md, section 8).
+//! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
+//! (x, y) are along X and Y. A ray carries flux; `emission.rs` defines the flux of the rays of each
+//! light. Flux is conserved at every surface. A ray is lost if it misses a patch, if it is totally
+//! reflected, or if the next patch or the plane is behind it. Flux Φ corresponds to Φ (1 + u² +
+//! v²)² in radiance space at a plane perpendicular to the central ray, and to Φ/(cos θ cos² φ) on a
+//! surface (docs/theory.md, section 8).
 //!
 //! For a plane on a surface itself (`LocalNormals`), the integral over positions is over the
 //! surface's area.
@@ -111,12 +111,12 @@ pub struct SpecularSystem {
 /// A specular surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecularSurface {
-    /// Name, for messages.
+    /// The name of the surface, which messages use.
     pub name: String,
     /// The geometry of the surface.
     pub patch: Patch,
     /// The event at the surface. A refracted ray goes from the side of the incident ray to the
-    /// other side of the surface. A thin lens is flat, and slopes at a lens are relative to the
-    /// patch's frame (X, Y and the normal on the side to which light goes).
+    /// other side of the surface. A thin lens is flat. Slopes at a lens are relative to X and Y of
+    /// the patch's frame and to the normal on the side to which light goes.
     pub event: Specular,
 }

@@ -1,5 +1,5 @@
-//! Implements the model of a system of specular surfaces and a plane behind it: its parameters and
-//! its prediction.
+//! Implements the model of a system of specular surfaces and a plane behind the system. The model
+//! has parameters and a prediction.
 
 use super::central::CentralHit;
 use super::{SpecularSystem, predict, with_rays};
@@ -11,8 +11,8 @@ use crate::work::PredictionWork;
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 
-/// Values below this threshold, in metres or in the unit of a parameter, are zero up to rounding
-/// error.
+/// Values below this threshold, in metres or in the unit of a parameter, are treated as zero,
+/// because they may be rounding errors.
 const ROUNDING_OF_ZERO: f64 = 1e-9;
 
 impl Model for Observed<SpecularSystem> {
@@ -20,9 +20,9 @@ impl Model for Observed<SpecularSystem> {
         &self.system.light
     }
 
-    /// Distances of zero are not parameters: for example, light does not travel from a surface to
-    /// a plane on this surface. If an environment is unobstructed, the distance to the plane is
-    /// not a parameter either, because its light is the same everywhere.
+    /// Distances of zero are not parameters. For example, light does not travel from a surface to a
+    /// plane on this surface. If an environment is unobstructed, the distance to the plane is not a
+    /// parameter either, because the light of the environment is the same everywhere.
     fn parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Parameter::of_light(&system.light);
@@ -153,8 +153,9 @@ impl Observed<SpecularSystem> {
 }
 
 impl SpecularSystem {
-    /// Returns the system with a light `factor` times as large. The factor scales the widths of
-    /// the light's picture in slopes or positions, or the light's shape about the central ray.
+    /// Returns the system with a light `factor` times as large. If the light has a picture, the
+    /// factor scales the picture's widths. Otherwise the factor scales the light's shape about the
+    /// central ray.
     ///
     /// If the light and the windows are scaled by a factor and the frequencies by its reciprocal,
     /// the error of first-order maps falls with the factor (docs/theory.md, section 7).

@@ -13,7 +13,7 @@ use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
-/// The budget of rays in nets if neither a projection picture nor moments are requested.
+/// The budget of rays in nets if no projection picture and no moments are requested.
 const NO_PICTURES: RayBudget = RayBudget {
     nodes: 0.0,
     error: f64::INFINITY,
@@ -28,8 +28,8 @@ const FOR_PICTURES: RayBudget = RayBudget {
 /// Returns the prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.
 ///
-/// For a projector, point or beam this function uses a midpoint rule if no sharp edge cuts the
-/// light and the rule converges; otherwise it uses nets of rays. Derivatives are central
+/// For a projector, point or beam, this function uses a midpoint rule if no sharp edge cuts the
+/// light and the rule converges. In all other cases, it uses nets of rays. Derivatives are central
 /// differences between two predictions from the same sampled rays, so the derivatives are accurate
 /// to about a per cent. The result is bitwise identical on any number of threads.
 pub(crate) fn predict(
@@ -76,14 +76,14 @@ pub(crate) fn with_rays(
     }
 }
 
-/// Returns the prediction of a first-order chain, such as that of [`chain`](super::chain()), over
-/// the same rays.
+/// Returns the prediction of a first-order chain over the same rays. [`chain`](super::chain())
+/// returns such a chain.
 ///
 /// The map moves the radiance of ray z at the light to A z + t, where A is the transpose of the
 /// map's matrix and t is the map's phase. The map also multiplies the spectrum by the map's factor,
-/// so F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact;
-/// obstacles are tested with the first-order rays of each leg. For a plane on a surface that is lit
-/// by an environment, z contains angles instead of slopes.
+/// so F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are treated
+/// exactly, and obstacles are tested with the first-order rays of each leg. For a plane on a
+/// surface that is lit by an environment, z contains angles instead of slopes.
 #[must_use]
 pub fn linear(
     view: &Observed<SpecularSystem>,
@@ -92,7 +92,7 @@ pub fn linear(
     budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
-    // In the first-order chain, a ray lands at the point to which the map takes it.
+    // In the first-order chain, the map gives the landing point of each ray.
     let mapped = (system, None);
     let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();
@@ -189,10 +189,10 @@ fn linear_field<'a>(
     }
 }
 
-/// Converts a ray's slopes to angles, and shifts its position such that travel by these angles
-/// over `distance` leads to the ray's real landing point. Angles are used for an environment's
-/// light arriving on a surface, because its slopes are not small. Also returns dθ dφ divided by du
-/// dv.
+/// Converts a ray's slopes to angles. The ray's position is shifted such that first-order travel
+/// over `distance` with these angles leads to the ray's real landing point. Angles are used if
+/// light of an environment arrives on a surface, because the slopes of this light are not small.
+/// Also returns dθ dφ divided by du dv.
 fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     let across = (1.0 + u * u).sqrt();
     let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
@@ -206,7 +206,7 @@ fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     ([start[0], start[1], longitude, latitude], per_slope)
 }
 
-/// The first-order map about the central ray from the light's rays to positions on a leg.
+/// A leg with its first-order map about the central ray, which maps the light's rays to this leg.
 struct AffineLeg {
     /// The map from (x, y, u, v) at the light to the coordinates in the leg's frame at the start
     /// of the leg.

@@ -1,11 +1,11 @@
-//! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a
-//! beam.
+//! A midpoint rule over the rays of a projector, a point or a beam. The rays of these lights have
+//! two coordinates.
 //!
-//! The rule sums the rays of the region of the emission whose rays land in the window. If the
-//! border of the region is dark, the only error is aliasing, which vanishes if the rule has more
-//! nodes than the integrand has cycles. If an edge of a window or of a surface cuts light, the rule
-//! misplaces this edge by up to half the spacing of nodes. Light that an edge cuts is summed over
-//! nets, because two rules may agree on the light by chance.
+//! The rule sums the rays of a region of the emission. The region contains all rays that land in
+//! the window. If the border of the region is dark, the only error is aliasing, which vanishes if
+//! the rule has more nodes than the integrand has cycles. If an edge of a window or of a surface
+//! cuts light, the rule misplaces this edge by up to half the spacing of nodes. If an edge cuts the
+//! light, nets are used instead, because two rules may agree by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
@@ -23,19 +23,20 @@ const MAX_ERROR: f64 = 1e-4;
 /// frequency.
 const RAY: f64 = 300.0;
 const FREQUENCY: f64 = 0.5;
-/// The relative error at which a rule is not refined further. This error is below the error 2·10⁻⁷
-/// of the transform of photons, so it cannot be detected with any number of photons.
+/// A rule is not refined further if its relative error is below this number. The transform of
+/// photons has an error of 2·10⁻⁷, so a smaller error of the rule cannot be detected with any
+/// number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// Bound on the error of the finer of two rules, divided by the difference between the two rules.
-/// With a Hann window the error falls as n⁻³ beyond the window's frequencies, and (5/4)³ is about
-/// 2.
+/// A bound on the error of the finer of two rules, divided by the difference between the two rules.
+/// Beyond the frequencies of a Hann window, the error falls as n⁻³. The error of the coarser rule
+/// is then (5/4)³ times, or about twice, the error of the finer rule.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖. The error includes the change of two slices at right
-    /// angles by the last refinement, and a bound on the error from edges. The rule is refined
-    /// until its error is below 10⁻⁷ or the next rule would take more than `max_steps`. Returns
-    /// `None` if the error stays above 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖. The error is the sum of two parts: the change of two
+    /// slices at right angles by the last refinement, and a bound on the error that edges cause.
+    /// The rule is refined until its error is below 10⁻⁷ or the next rule would take more than
+    /// `max_steps`. Returns `None` if the error stays above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -82,8 +83,8 @@ impl<F: RayField> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule is
-    /// exact for functions with fewer cycles than nodes.
+    /// Returns the number of nodes along each coordinate that should suffice. It exceeds the number
+    /// of cycles, because a midpoint rule is exact for functions with fewer cycles than nodes.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Search for the region of the emission's inner coordinates whose rays land in a window.
+//! Searches the emission's inner coordinates for the region whose rays land in a window.
 
 use super::emission::EmissionMeasure;
 use super::{Plane, SpecularSystem};
@@ -6,7 +6,7 @@ use crate::geometry::Matrix;
 use crate::nets::RayNode;
 use etendue_field::{TwoPlane, Window};
 
-/// A box in two coordinates: the lowest and highest value along each.
+/// A box in two coordinates, given by the lowest and highest value of each coordinate.
 pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light. It
@@ -19,9 +19,10 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 const CELLS: usize = 32;
 /// Rays with less than this fraction of the strongest ray's contribution are ignored.
 const MIN_SHARE: f64 = 1e-13;
-/// Number of bisections of a cell after which an edge is located up to rounding error.
+/// Number of bisections that locate an edge in a cell up to rounding error.
 const HALVINGS: usize = 40;
-/// Maximum number of boxes that the search tries; it then returns the last box.
+/// Maximum number of boxes that the search tries. After this number, the search returns the last
+/// box.
 const ROUNDS: usize = 24;
 /// Width of the first box relative to the window.
 const MARGIN: f64 = 1.5;
@@ -248,7 +249,7 @@ fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     })
 }
 
-/// Returns the region of the lit cells with a margin of one cell on each side.
+/// Returns the region that contains the lit cells and a margin of one cell on each side.
 fn narrowed(region: &Region, lit: &[[usize; 2]; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];

@@ -2,7 +2,7 @@
 //!
 //! On the slice of one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the
 //! product of a factor for ρ and a factor for ν. The sum over rays is a matrix product of the real
-//! and imaginary parts of the factors. One product gives the sums for + ν and for − ν.
+//! and imaginary parts of the factors. One matrix product gives the sums both for + ν and for − ν.
 
 use crate::nets::RayNode;
 use etendue_field::{Complex, SliceGrid, Slices, cis};
@@ -16,8 +16,8 @@ const BLOCK: usize = 256;
 /// Maximum number of partial sums over rays; partial sums are computed in parallel and added in
 /// order.
 const PARTS: usize = 16;
-/// Number of powers of a phase factor that are computed by repeated multiplication from one exact
-/// power. Each multiplication adds a rounding error.
+/// From one exact power of a phase factor, this number of powers is computed by repeated
+/// multiplication. The number is limited because each multiplication adds a rounding error.
 const POWERS: usize = 32;
 /// Number of powers of e^(i angle) that are computed in parallel. The power n + `LANES` is the
 /// power n multiplied by e^(i `LANES` angle).
@@ -51,8 +51,9 @@ pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     slices
 }
 
-/// Returns sums over rays of the products of the factors for ρ and ν. Entry [2m + i, 2n + j] has
-/// the real (0) or imaginary (1) part i of the factor for ρ and part j of the factor for ν.
+/// Returns sums over rays of the products of the factors for ρ and ν. Entry [2m + i, 2n + j] is for
+/// part i of the factor for ρ and part j of the factor for ν, where part 0 is real and part 1 is
+/// imaginary.
 fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));

@@ -168,9 +168,9 @@ pub(crate) struct Tilted {
 }
 
 /// Returns the spectra of a field without a blocker, with x < 0 blocked, and with x > 0 blocked.
-/// The first spectrum is F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), with 1/a² = α − β²/γ and Ω' =
-/// Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π times F₀ without its last exponential times
-/// Dawson(√π a Ω') (docs/theory.md (22)).
+/// The first spectrum is F₀ = A exp(−πa²Ω'²) with A = γ^(−1/2) exp(−πΩv²/γ) a, 1/a² = α − β²/γ and
+/// Ω' = Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π · A · Dawson(√π a Ω') (docs/theory.md
+/// (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;
@@ -207,9 +207,9 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// Returns the windowed spectrum of the light that a strip blocks; `strip` holds its lowest and
-/// highest coordinate in metres. The spectrum is a double integral over strip and light, with v =
-/// (y − y₀)/d₁ and x = y + d₂ v.
+/// Returns the windowed spectrum of the light that a strip blocks. `strip` contains the strip's
+/// lowest and highest coordinate in metres. The spectrum is a double integral over the position y
+/// on the strip and the position y₀ on the light, with v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,
@@ -234,9 +234,9 @@ pub(crate) fn blocked_by_strip(
     sum / bench.to_blockers
 }
 
-/// Returns the spectrum of a field times g(v) = (1 + v²)^(−3/2), from spectra of the field under
-/// other Gaussian windows. In g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds, the factor exp(−s²v²)
-/// adds s²/π to 1/b² (docs/theory.md (8)).
+/// Returns the spectrum of a field times g(v) = (1 + v²)^(−3/2). It is computed from spectra of the
+/// field under other Gaussian windows. In g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds, the factor
+/// exp(−s²v²) adds s²/π to 1/b² (docs/theory.md (8)).
 ///
 /// The integrand is even and analytic in s, so the trapezoid rule converges exponentially.
 #[must_use]
@@ -244,8 +244,8 @@ pub(crate) fn shaded(
     window: &GaussianWindow,
     field: impl Fn(&GaussianWindow) -> Complex,
 ) -> Complex {
-    // The step of 0.25 causes an error of exp(−π²/0.25²) = 1e-69, and the end at 6.5 causes an
-    // error of exp(−6.5²) = 5e-19.
+    // The step of 0.25 causes an error of exp(−π²/0.25²) = 1e-69. The sum ends at 6.5, which causes
+    // an error of exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
     let sum: Complex = nodes

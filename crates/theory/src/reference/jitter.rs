@@ -20,7 +20,7 @@ pub(crate) struct JitteredArray {
 /// array, in m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ)
 /// (docs/theory.md (10)).
 ///
-/// The first term is the noise that the offsets cause; the second term is what remains of the
+/// The first term is the noise that the offsets cause. The second term is the remainder of the
 /// spectral lines of a regular array.
 #[must_use]
 pub(crate) fn jittered_array_power(array: &JitteredArray, omega: f64) -> f64 {

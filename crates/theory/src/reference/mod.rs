@@ -1,5 +1,5 @@
-//! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, independently
-//! of this crate.
+//! Checks against the numbers in `tests/reference.json`, which are computed with mpmath at 25
+//! digits, independently of this crate.
 //!
 //! For each block of the file with an untruncated Gaussian window, the closed form is checked. If
 //! the light field of the block consists of polygons, the polygon code is checked too, with the

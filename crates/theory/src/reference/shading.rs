@@ -241,8 +241,8 @@ fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     )
 }
 
-/// Computes step 7 by the trapezoid rule over arc length, local incident and local outgoing angle,
-/// with rays that leave the exact circle.
+/// Computes step 7 with rays that leave the exact circle. The integrals over arc length, local
+/// incident angle and local outgoing angle are computed by the trapezoid rule.
 fn traced(
     parameters: &Value,
     bells: &[GaussianField],
@@ -305,8 +305,8 @@ fn rays_off_the_circle() {
         // Both values are from quadratures; the value in the file is accurate to 1e-6.
         assert!(off < 1e-6, "{name}: {off:e}");
         println!("{name}, traced: {off:.1e} of the largest value");
-        // The chain holds to first order; at this size of the neighbourhood it has a detectable
-        // error of a few per cent.
+        // The chain holds to first order. At this size of the neighbourhood, the chain has a
+        // detectable error of a few per cent.
         let light = |w: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(w)).sum() };
         let lobe = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         let chain = reflection(parameters, Factor::Cosine, lobe);

@@ -1,4 +1,4 @@
-//! The two coordinates by which the rays of a leg are aimed: they parametrise directions away from
+//! The two coordinates by which the rays of a leg are aimed. They parametrise directions away from
 //! a point.
 //!
 //! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
@@ -19,8 +19,8 @@ use std::f64::consts::FRAC_PI_2;
 /// The coordinates that parametrise directions of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectionCoordinates {
-    /// Longitude and latitude at the surface on which the leg begins, minus those of the central
-    /// ray.
+    /// Longitude and latitude at the surface on which the leg begins, minus the longitude and
+    /// latitude of the central ray.
     Angles,
     /// A position on the next scattering surface, along X and Y of its patch.
     Patch {
@@ -35,8 +35,8 @@ pub(super) enum DirectionCoordinates {
     Plane(Frame),
 }
 
-/// The smallest distance from a surface to a plane at which the surface's rays may be aimed, in
-/// widths of the surface. At this distance no part of the surface lies beyond the plane.
+/// Rays from a surface may be aimed at a plane only if the plane's distance is at least this number
+/// times the width of the surface. At such distances, no part of the surface lies beyond the plane.
 const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {
@@ -81,8 +81,8 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Converts a Gaussian of angles at a point of the surface to these coordinates; `map` leads to
-    /// the end of the leg.
+    /// Converts a Gaussian of angles at a point of the surface to these coordinates. `map` is the
+    /// map to the end of the leg.
     pub(super) fn seen(
         &self,
         angles: &Gaussian<2>,
@@ -140,9 +140,9 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns the direction with these coordinates from a point, and steradians per unit of the
-    /// coordinates. Angles are measured about the normal in `local`, in the axes of the scatterer
-    /// in `local`.
+    /// Returns the direction from a point that has these coordinates, and the solid angle in
+    /// steradians per unit of the coordinates. `local` contains the normal about which angles are
+    /// measured and the axes of the scatterer.
     pub(super) fn direction(
         &self,
         point: DVec3,

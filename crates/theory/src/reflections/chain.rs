@@ -1,4 +1,5 @@
-//! The first-order chain: affine maps between scattering surfaces, with their lobes between them.
+//! The first-order chain, which consists of affine maps between scattering surfaces and the lobes
+//! of these surfaces.
 
 use super::{Interaction, PathSurface, ReflectionSystem};
 use crate::geometry::{AffineMap, Matrix};
@@ -20,8 +21,9 @@ pub struct ReflectionChain {
     pub scatterers: Vec<ScatteringSurface>,
     /// The affine maps, one more than there are scatterers. The first map takes (x, y, u, v) at the
     /// light to local coordinates of the direction of incidence at the first scatterer. Each later
-    /// map takes local coordinates of the outgoing direction at a scatterer, minus those of the
-    /// central ray, to the next scatterer. The last map leads to the coordinates of the plane.
+    /// map takes local coordinates of the outgoing direction at a scatterer to the next scatterer;
+    /// these coordinates are relative to the central ray. The last map leads to the coordinates of
+    /// the plane.
     pub maps: Vec<AffineMap<4>>,
     /// Descriptions of the steps, in the order of propagation.
     pub steps: Vec<String>,
@@ -156,8 +158,8 @@ fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
 }
 
 impl ScatteringSurface {
-    /// Returns the ray that leaves a surface, given its local coordinates relative to those of the
-    /// central ray.
+    /// Returns the ray that leaves a surface with the given local coordinates, which are relative
+    /// to the central ray.
     fn ray(&self, surface: &PathSurface, [s, t, theta, phi]: [f64; 4]) -> Option<LegRay> {
         let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
         let down = LegRay::back(&surface.patch, foot, self.frame.d);

@@ -1,9 +1,9 @@
-//! Sampled directions away from a scattering surface.
+//! Samples directions away from a scattering surface.
 //!
 //! Most directions are aimed at positions at the end of the leg. If the next surface is near, as in
-//! a corner, the solid angle per unit area of this surface is unbounded. So some directions are
-//! sampled by the angles of the lobe, independently of the next surface, which bounds the weights
-//! of all paths.
+//! a corner, the solid angle per unit area of this surface is unbounded, and so would be the
+//! weights of paths. Therefore some directions are sampled by the angles of the lobe, independently
+//! of the next surface. This bounds the weights of all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;
@@ -105,7 +105,7 @@ impl OutgoingDirections<'_> {
         GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])
     }
 
-    /// Returns the longitude and latitude of a direction, minus those of the central ray.
+    /// Returns the longitude and latitude of a direction relative to the central ray.
     fn angles(&self, direction: DVec3) -> [f64; 2] {
         let ScatteringSurface {
             frame, outgoing, ..
@@ -114,8 +114,8 @@ impl OutgoingDirections<'_> {
         [longitude - outgoing[0], latitude - outgoing[1]]
     }
 
-    /// Returns the point where a ray along a direction ends the leg, in the coordinates of the aim;
-    /// `None` if the ray misses the end of the leg.
+    /// Returns the point where a ray along a direction ends the leg, in the coordinates of the aim.
+    /// Returns `None` if the ray misses the end of the leg.
     fn end(&self, direction: DVec3) -> Option<[f64; 2]> {
         let DirectionCoordinates::Patch { patch, .. } = self.aim else {
             return self.aim.end(self.point, direction);

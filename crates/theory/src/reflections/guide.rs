@@ -1,4 +1,4 @@
-//! Gaussians that guide light into the window, and the sampling of rays by these Gaussians.
+//! Gaussians that guide light into the window. Rays are sampled by these Gaussians.
 //!
 //! The window is approximated by a Gaussian with the same variances. An affine map takes this
 //! Gaussian back to the previous leg. A lobe blurs the Gaussian's angles, and the edge of a surface
@@ -79,7 +79,7 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the marginal Gaussian of two coordinates, with the other two arbitrary.
+    /// Returns the marginal Gaussian of two coordinates; the other two coordinates are arbitrary.
     pub(super) fn marginal(&self, of: [usize; 2]) -> Gaussian<2> {
         Gaussian {
             mean: of.map(|i| self.mean[i]),
@@ -88,7 +88,7 @@ impl Gaussian<4> {
     }
 
     /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two
-    /// coordinates; `None` if the Gaussian has zero width along them.
+    /// coordinates. Returns `None` if the Gaussian has zero width along the other two coordinates.
     pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {
         let others = match a {
             0 => [2, 3],
@@ -156,8 +156,8 @@ impl Gaussian<2> {
     }
 }
 
-/// A density of two coordinates as wide as a Gaussian, with tails long enough to bound the weights
-/// of rays.
+/// A density of two coordinates that is as wide as a Gaussian and has longer tails, which bound the
+/// weights of rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeavyTailedGaussian {
     mean: [f64; 2],

@@ -1,5 +1,5 @@
-//! Implements the model of several surfaces in sequence and a plane behind them: its parameters and
-//! its prediction.
+//! Implements the model of several surfaces in sequence and a plane behind them. The model has
+//! parameters and a prediction.
 
 use super::{Interaction, PathSurface, ReflectionSystem, predict};
 use crate::model::{Model, Observed, Over, ShiftedModels};
@@ -70,8 +70,8 @@ impl PathSurface {
     }
 }
 
-/// The parameters albedo and lobe are those of the last surface that scatters light, since the
-/// light field determines only the product of all albedos.
+/// The parameters albedo and lobe belong to the last surface that scatters light. Other albedos are
+/// not parameters, because the light field determines only the product of all albedos.
 impl Model for Observed<ReflectionSystem> {
     fn light(&self) -> &Light {
         &self.system.light

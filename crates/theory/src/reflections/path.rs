@@ -1,4 +1,4 @@
-//! One path from the light to the plane, sampled from a point of the unit cube.
+//! Samples a path from the light to the plane, for a point of the unit cube.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ReflectionChain, ScatteringSurface, chain};
@@ -43,7 +43,7 @@ enum Start<'a> {
 
 impl<'a> Start<'a> {
     /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
-    /// window; `aim` holds the coordinates of the leg from the light.
+    /// window. `aim` contains the coordinates of the leg from the light.
     fn new(
         view: &'a Observed<ReflectionSystem>,
         chain: &ReflectionChain,
@@ -186,8 +186,8 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Returns the point where light meets the surface at the end of a leg; `None` if the light
-    /// misses it.
+    /// Returns the point where light meets the surface at the end of a leg. Returns `None` if the
+    /// light misses this surface.
     fn arrive(&self, leg: usize, going: &mut Going) -> Option<DVec3> {
         let Going { ray, .. } = going;
         let surfaces = &self.view.system.surfaces;
@@ -200,8 +200,8 @@ impl<'a> FieldPaths<'a> {
         going.flux *= passes;
         going.radiance *= passes;
         let point = ray.point + end * ray.direction;
-        // A ray that meets a surface at two points counts only if the ray was aimed at the first
-        // point.
+        // If a ray meets the surface at two points, the ray counts only if it was aimed at the
+        // first point.
         let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
         let is_second = going.target.take().is_some_and(beside);
         (passes > 0.0 && !is_second).then_some(point)
@@ -316,7 +316,7 @@ fn on_surface(
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // The variance of positions along an axis, for a rectangle or a disc.
+    // This is the variance of positions along an axis of a rectangle or a disc.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,

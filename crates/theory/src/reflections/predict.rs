@@ -1,4 +1,5 @@
-//! Predicted slices of light that several surfaces reflect in turn, over scrambled nets of paths.
+//! Predicts the slices of light that several surfaces reflect in turn, by sums over scrambled nets
+//! of paths.
 
 use super::ReflectionSystem;
 use super::path::FieldPaths;
@@ -10,8 +11,9 @@ use etendue_field::Slices;
 /// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
 /// is bitwise identical on any number of threads.
 ///
-/// The chain's difference from the exact prediction, and the derivatives, are sums of differences
-/// over the same paths. These sums are accurate to about a per cent of their values.
+/// The difference between the chain and the exact prediction is a sum of differences over the same
+/// paths. The derivatives are also such sums. These sums are accurate to about a per cent of their
+/// values.
 pub(crate) fn predict(
     view: &Observed<ReflectionSystem>,
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],

@@ -1,9 +1,9 @@
-//! Rays of an environment, sampled by the environment's radiance and by the window.
+//! Samples rays of an environment by the environment's radiance and by the window.
 //!
 //! A direction is sampled first, then a position. If the first surface scatters light, the position
 //! is on this surface; otherwise the position is at the light. Some directions are sampled by the
-//! radiance of the environment, and the other directions by the guide. So neither a bright lobe of
-//! the environment nor a narrow lobe of a BRDF is missed.
+//! radiance of the environment, so no bright lobe of the environment is missed. The other
+//! directions are sampled by the guide, so no narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};
@@ -25,8 +25,8 @@ pub(super) struct SkyRays<'a> {
     radiance: SkyDensity<'a>,
     /// Directions that reach the window, if the guide determines any.
     guide: Option<HeavyTailedGaussian>,
-    /// Positions from which light reaches the window: for a given direction, and for all
-    /// directions.
+    /// Two Gaussians of the positions from which light reaches the window: the first for a given
+    /// direction, the second for all directions.
     positions: (Conditional, Option<Gaussian<2>>),
     coordinates: Coordinates,
     aim: DirectionCoordinates,
@@ -143,8 +143,9 @@ impl Coordinates {
         }
     }
 
-    /// Returns the coordinates of a direction of light, and steradians per unit of the coordinates.
-    /// The light may come from behind, since a diffuse surface scatters it too.
+    /// Returns the coordinates of a direction of light, and the solid angle in steradians per unit
+    /// of the coordinates. The light may come from behind, because a diffuse surface also scatters
+    /// light from behind.
     fn of(&self, direction: DVec3) -> ([f64; 2], f64) {
         match self {
             Self::Angles(frame) => {

@@ -53,8 +53,8 @@ impl PathSurface {
         Some(LegRay { point, direction })
     }
 
-    /// Returns the normal on the side from which light arriving along a direction is scattered;
-    /// `None` on a black side.
+    /// Returns the normal on the side where light arrives along a direction and is scattered.
+    /// Returns `None` if this side is black.
     pub(super) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
         let normal = self.normal(point)?;
         let faces = normal.dot(direction) < 0.0;
@@ -64,8 +64,8 @@ impl PathSurface {
         }
     }
 
-    /// Returns the sum of the function `of` over the BRDFs of a scattering surface, weighted by
-    /// their weights at a point.
+    /// Returns the sum of the function `of` over the BRDFs of a scattering surface. Each BRDF is
+    /// multiplied by its weight at a point.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
             Interaction::Specular(_) => 0.0,
@@ -79,13 +79,14 @@ impl PathSurface {
         }
     }
 
-    /// Returns the BRDF of light from `from` to `to`, unit vectors away from the surface; sr⁻¹.
+    /// Returns the BRDF in sr⁻¹ for light that arrives from `from` and leaves towards `to`. Both
+    /// are unit vectors away from the surface.
     pub(super) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
-    /// Returns the BRDF that the chain uses, for light that arrives from one pair of longitude and
-    /// latitude and leaves towards another.
+    /// Returns the BRDF that the chain uses. `angles` contains the longitude and latitude from
+    /// which light arrives, and those towards which it leaves.
     pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
         let [from, to] = angles;
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))

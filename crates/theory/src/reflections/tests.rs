@@ -1,4 +1,5 @@
-//! Tests of light that several surfaces reflect in turn, against other theories and separate sums.
+//! Tests of light that several surfaces reflect in turn, against other predictions and separate
+//! sums.
 
 use super::*;
 use crate::obstacle::ObstacleForm;
@@ -60,7 +61,7 @@ fn lamp(side: f64) -> Light {
 }
 
 /// Returns an environment of two lobes beside the central ray, or a map of nearly the same
-/// radiance; `y` is −1 for the mirror image, and otherwise 1.
+/// radiance. `y` is −1 for the mirror image of the environment, and 1 otherwise.
 fn sky(as_map: bool, y: f64) -> Light {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
         from: from.normalize(),
@@ -129,8 +130,8 @@ fn apart(a: &Predicted, b: &Predicted) -> f64 {
 /// all frequencies of a grid exceeds 1.3 in one of a thousand tests.
 const CLOSE: f64 = 1.3;
 
-/// Compares the paths for a single surface with rays that are sampled from the plane back to the
-/// light.
+/// Tests that for a single surface, the sum over paths from the light equals the prediction of the
+/// module `scattering`, which samples rays at the plane and follows them back to the light.
 #[test]
 fn one_surface_is_that_of_scattering() {
     let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
@@ -196,8 +197,8 @@ fn one_surface_is_that_of_scattering() {
     }
 }
 
-/// A flat mirror before a surface and a flat mirror behind it are compared with the light and the
-/// plane at their mirror images.
+/// Tests flat mirrors before and behind a surface. The prediction must not change if the mirrors
+/// are removed and the light and the plane are moved to their mirror images.
 #[test]
 fn flat_mirrors_unfold() {
     let mirror = || Interaction::Specular(Specular::Mirror);
@@ -209,7 +210,7 @@ fn flat_mirrors_unfold() {
     let at = z + x;
     let gloss_after = surface(patch(at, -x - z, 0.0), gloss());
     let mut wide = before;
-    wide.aperture = 20.0; // a sky lights the edge of the mirror
+    wide.aperture = 20.0; // light of a sky reaches the edge of the mirror
     // The mirror exchanges Z and X, which reverses the y axis of a plane.
     let skies = [sky(false, 1.0), sky(false, -1.0)];
     for ([light, mirrored], before) in [([lamp(0.2), lamp(0.2)], before), (skies, wide)] {
@@ -236,8 +237,8 @@ fn flat_mirrors_unfold() {
     assert!(off < CLOSE, "behind: {off}");
 }
 
-/// Compares the radiance of a floor, lit by a diffuse wall in the light of a projector, with a sum
-/// over the wall.
+/// Compares the radiance of a floor with a sum over a diffuse wall. A projector lights the wall,
+/// and the wall lights the floor.
 #[test]
 fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -289,8 +290,8 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 
-/// Tests that paths in a corner, where the next surface may be arbitrarily near, have bounded
-/// weights, so the stated error of their sum is correct and as small as elsewhere.
+/// Tests that paths in a corner have bounded weights, although the next surface may be arbitrarily
+/// near. The stated error of the sum over paths must be correct and as small as without a corner.
 #[test]
 fn a_corner_has_no_heavy_paths() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -311,7 +312,7 @@ fn a_corner_has_no_heavy_paths() {
     assert!(stated < 0.02, "{stated}"); // 2·10⁶ paths; 0.038 if all are aimed at positions
 }
 
-/// Tests that occluders between two surfaces block light, and that surfaces of the path do so too.
+/// Tests that light is blocked by occluders between two surfaces, and by surfaces of the path.
 #[test]
 fn surfaces_and_masks_hide_later_legs() {
     let (x, z) = (DVec3::X, DVec3::Z);

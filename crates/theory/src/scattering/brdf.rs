@@ -29,8 +29,8 @@ pub(super) fn factors(brdf: &Brdf, cos_from: f64, cos_to: f64) -> f64 {
     factor(&brdf.incoming, cos_from) * factor(&brdf.outgoing, cos_to)
 }
 
-/// Interpolates a table linearly at the angle with the given cosine, as a sum of hat functions
-/// about the table's nodes.
+/// Interpolates a table linearly at the angle with the given cosine. The interpolation is a sum of
+/// hat functions about the table's nodes.
 fn between(table: &AngleTable, cos: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;
     let at = libm::acos(cos.clamp(0.0, 1.0)) * steps / FRAC_PI_2;
@@ -129,8 +129,8 @@ fn microfacets(
         / (4.0 * cos_from * cos_to)
 }
 
-/// Smith's shadowing of Beckmann slopes: 2/(1 + erf a + e^(−a²)/(a√π)), a = 1/(α tan θ) (Walter et
-/// al. 2007, Eq. 26).
+/// Returns Smith's shadowing of Beckmann slopes, 2/(1 + erf a + e^(−a²)/(a√π)) with a = 1/(α tan θ)
+/// (Walter et al. 2007, Eq. 26).
 fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     let sine = (1.0 - cos * cos).max(0.0).sqrt();
     if sine <= 0.0 {
@@ -173,8 +173,8 @@ mod tests {
         assert!((inside - 1.0).abs() < 1e-14); // rounding
     }
 
-    /// Tests ∫ D cos dω = 1 by the lobe at normal incidence, where f = D G₁/(4 cos): the weak
-    /// white furnace test without shadowing.
+    /// Tests ∫ D cos dω = 1 by the albedo of each lobe at normal incidence, where f = D G₁/(4 cos).
+    /// This is the weak white furnace test for lobes with almost no shadowing.
     #[test]
     fn lobes_hold_what_they_say() {
         let normal = DVec3::Z;
@@ -189,7 +189,7 @@ mod tests {
         };
         let phong = total(Lobe::Phong { exponent: 40.0 }, false);
         assert!((phong - 1.0).abs() < 1e-12); // quadrature of a polynomial in cos θ
-        assert!((total(Lobe::Lambertian, true) - 1.0).abs() < 1e-12); // as above
+        assert!((total(Lobe::Lambertian, true) - 1.0).abs() < 1e-12); // the same quadrature
         for lobe in [
             Lobe::Beckmann { roughness: 0.1 },
             Lobe::Ggx { roughness: 0.02 },

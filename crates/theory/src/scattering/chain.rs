@@ -1,4 +1,5 @@
-//! The first-order chain: affine maps onto the surface and off it, with the lobe between them.
+//! The first-order chain, which consists of an affine map onto the surface, the lobe, and an affine
+//! map off the surface.
 
 use super::ScatteringSystem;
 use crate::geometry::{AffineMap, Matrix};
@@ -12,8 +13,8 @@ use glam::DVec3;
 
 /// The path of the central ray, and the first-order maps of neighbouring rays.
 ///
-/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals. T lies
-/// in the plane of incidence.
+/// Local coordinates are (s, t, θ, φ), which are positions along T and B and angles to the local
+/// normals. T lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
     /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence.
@@ -26,8 +27,8 @@ pub struct ScatteringChain {
     pub incidence: f64,
     /// Longitude θ₁ and latitude of the direction in which the central ray leaves.
     pub outgoing: [f64; 2],
-    /// The surface's shape operator along (T, B) where the central ray hits, per metre; positive
-    /// for convex surfaces.
+    /// The surface's shape operator along (T, B) at the point that the central ray hits, per metre.
+    /// The operator is positive for convex surfaces.
     pub curvature: Matrix<2>,
     /// Distance of the surface from the light, metres.
     pub distance: f64,
@@ -183,8 +184,8 @@ fn steps(
     steps
 }
 
-/// Describes the BRDFs as text, with a line for each step of a single BRDF or for each term of a
-/// sum of BRDFs.
+/// Describes the BRDFs as text. A single BRDF has a line for each step, and a sum of BRDFs has a
+/// line for each term.
 pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     let terms = &reflectance.terms;
     let sum = terms.iter().enumerate().map(|(i, term)| {

@@ -1,4 +1,5 @@
-//! Importance sampling of rays at a plane, and of the light that shines on their starting points.
+//! Importance sampling of rays at a plane and of the light. The light is sampled for the point
+//! where each ray leaves the surface.
 //!
 //! Any density that is non-zero wherever there is light gives the same integral. These densities
 //! follow the window, the lobe of the BRDF and the light. If two densities are suitable, half of
@@ -48,7 +49,7 @@ impl LightStrategy {
         ]
     }
 
-    /// Returns this strategy without the choices that make no difference for a system.
+    /// Returns this strategy without the choices that have no effect for a system.
     pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
@@ -60,8 +61,8 @@ impl LightStrategy {
         }
     }
 
-    /// Returns the approximate computing time of a ray with this strategy, relative to a ray that
-    /// is sampled by the window with a single part of the light.
+    /// Returns the approximate computing time of a ray with this strategy. The time is relative to
+    /// the time of a ray that is sampled by the window and has a single part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }
@@ -70,7 +71,7 @@ impl LightStrategy {
 /// Samples rays at a plane.
 #[derive(Clone, Debug)]
 pub(super) struct PlaneRaySampler {
-    /// Densities over x, y, u and v, from the window.
+    /// Densities over x, y, u and v that follow the window.
     window: [LinearDensity; 4],
     /// Slopes towards the mirror image of the light's centre.
     mirrored: Option<Mirrored>,
@@ -80,8 +81,8 @@ pub(super) struct PlaneRaySampler {
 /// position.
 #[derive(Clone, Copy, Debug)]
 struct Mirrored {
-    /// Constant part of the angles between a ray and the mirror direction; these angles are first +
-    /// at (x, y) + by (u, v).
+    /// Constant part of the angles between a ray and the mirror direction. The angles are `first`
+    /// plus `at` (x, y) plus `by` (u, v).
     first: [f64; 2],
     at: Matrix<2>,
     by: Matrix<2>,
@@ -204,7 +205,8 @@ pub(super) struct Lights<'a> {
 }
 
 impl<'a> Lights<'a> {
-    /// Builds the sampler for a surface with the given normal where the central ray hits.
+    /// Builds the sampler for a surface. `normal` is the surface's normal at the point that the
+    /// central ray hits.
     pub(super) fn new(
         system: &'a ScatteringSystem,
         normal: DVec3,
@@ -248,9 +250,9 @@ impl<'a> Lights<'a> {
         self.by_lobe
     }
 
-    /// Returns the sampled parts of the light for a point of the surface: a single part, or a part
-    /// in each quarter of the unit square. Each part's density is multiplied by the number of
-    /// parts, so that the parts' contributions add up to a mean.
+    /// Returns the sampled parts of the light for a point of the surface. There is a single part,
+    /// or there is one part in each quarter of the unit square. Each part's density is multiplied
+    /// by the number of parts, so that the parts' contributions add up to a mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,
@@ -312,8 +314,8 @@ impl<'a> Lights<'a> {
         Some((LightPart::Sky { slopes, radiance }, density))
     }
 
-    /// Returns the part of the light that is seen in a direction `wi` from the surface, and its
-    /// density if parts are sampled independently of the surface.
+    /// Returns the part of the light that is seen in a direction `wi` from the surface. Also
+    /// returns the density of this part if parts are sampled independently of the surface.
     fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -390,8 +392,8 @@ impl LobeDensity {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];
-        // The density per steradian of normals is divided by four times the cosine between normal
-        // and direction, which gives the density of incident directions.
+        // The density of incident directions is the density per steradian of normals, divided by
+        // four times the cosine of the angle between normal and direction.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
     }
@@ -419,8 +421,8 @@ pub(crate) fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     [r * cos, r * sin]
 }
 
-/// Returns the density 1/(π w² (1 + r²/w²)²), r² = p² + q², which is as wide as a lobe and has
-/// longer tails than any lobe.
+/// Returns the density 1/(π w² (1 + r²/w²)²) with r² = p² + q². The density is as wide as a lobe
+/// and has longer tails than any lobe.
 pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     let squared = width * width;
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))

@@ -1,4 +1,4 @@
-//! The radiance of a ray at a plane according to the first-order chain.
+//! The radiance of a ray at a plane in the first-order chain.
 
 use super::ScatteringSystem;
 use super::brdf;
@@ -17,13 +17,13 @@ pub(super) struct Linear<'a> {
     chain: &'a ScatteringChain,
     /// The map from the plane to local coordinates of the outgoing direction.
     off: AffineMap<4>,
-    /// The matrix from positions on the surface to positions perpendicular to the light's axis at
-    /// the distance of the surface.
+    /// The matrix that converts positions on the surface to positions in the plane perpendicular to
+    /// the light's axis at the distance of the surface.
     across: [[f64; 2]; 2],
-    /// The matrix from angles to the light's axis to angles on the surface, at a point of the
-    /// surface.
+    /// The matrix that converts angles to the light's axis to angles on the surface, at a point of
+    /// the surface.
     angles: Matrix<2>,
-    /// The frame (T, B, N) in the frame of the patch, for BRDF lookups.
+    /// The frame (T, B, N), given in the frame of the patch. It is used to look up BRDFs.
     frame: Frame,
 }
 
@@ -47,8 +47,8 @@ impl<'a> Linear<'a> {
         })
     }
 
-    /// Returns the point, in the plane perpendicular to the light's axis, that represents a
-    /// position (s, t) on the surface.
+    /// Returns the point that represents a position (s, t) on the surface. The point is in the
+    /// plane perpendicular to the light's axis.
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
         let [offset_s, offset_t, ..] = self.chain.onto.offset;
         let (s, t) = (s - offset_s, t - offset_t);
@@ -93,10 +93,11 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// Returns the BRDF that the chain uses, for light that arrives from one pair of longitude and
-/// latitude and leaves towards another. The lobe is the BRDF's lobe for the central ray, which
-/// arrives at the angle `incidence`, as a function of the angles from the mirror direction. The
-/// factors f and h depend on the actual angles of incidence and departure.
+/// Returns the BRDF that the chain uses. Each of the last two arguments is a longitude and a
+/// latitude: first of the direction from which light arrives, then of the direction towards which
+/// it leaves. The lobe is the BRDF's lobe for the central ray, which arrives at the angle
+/// `incidence`; it is a function of the angles from the mirror direction. The factors f and h
+/// depend on the actual angles of incidence and departure.
 pub(crate) fn kernel(
     brdf: &Brdf,
     incidence: f64,

@@ -1,18 +1,19 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
 //! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
-//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over
-//! the surface. The plane is on the surface or perpendicular to the path of light that leaves the
+//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over the
+//! surface. The plane is on the surface or perpendicular to the path of light that leaves the
 //! surface. A system and a plane together are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets. For each ray the
-//! model also samples a part of the light that shines on the ray's starting point:
+//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets. For each ray, the
+//! model also samples a part of the light that shines on the point where the ray leaves the
+//! surface:
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
 //! The function [`chain`](chain()) returns the chain of first-order operators (Durand et al. 2005,
 //! section 4). This chain consists of affine maps onto the surface and off the surface, a product
 //! with the clamped cosine, and a convolution with the lobe of the BRDF at the central ray. The
-//! error of the chain, and the derivatives, are sums over the same rays.
+//! error of the chain and the derivatives are computed as sums over the same rays.
 //!
 //! This module and the tracers share no code for intersection, BRDF evaluation or sampling. The
 //! theory and the tracers share only the variation of a BRDF over a surface, in `etendue_field`.
@@ -51,7 +52,7 @@ pub struct ScatteringSystem {
     pub layers: Vec<(f64, Mask)>,
     /// Occluders other than the masks, on the paths before and after the surface.
     pub obstacles: Vec<Obstacle>,
-    /// Name of the surface, for messages.
+    /// The name of the surface, which messages use.
     pub name: String,
     /// The shape of the surface, which faces along D of its frame and is black on the other side.
     pub patch: Patch,

@@ -1,5 +1,5 @@
-//! Implements the model of a surface with a BRDF and a plane behind it: its parameters and its
-//! prediction.
+//! Implements the model of a surface with a BRDF and a plane behind it. The model has parameters
+//! and a prediction.
 
 use super::{ScatteringSystem, chain, predict, with_rays};
 use crate::model::{Model, Observed, Over, ShiftedModels};
@@ -49,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// For a sum of BRDFs, the parameters albedo and lobe are those of the first BRDF.
+    /// For a sum of BRDFs, the parameters albedo and lobe belong to the first BRDF.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,

@@ -1,4 +1,4 @@
-//! The effect of a weighted sum of BRDFs on spectra, as one operator.
+//! One operator for the effect of a weighted sum of BRDFs on spectra.
 
 use crate::shading::cosine_power_hat;
 use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 ///
 /// The result holds to first order, like the chain. The result includes light at all angles; a
 /// window over positions must be included in `before`. `axes` are the axes X and Y of the surface's
-/// patch in the coordinates (x, y). Returns `None` if a lobe is not Phong's or has a factor of an
-/// angle of its own, or if a weight or a texture is not a cosine.
+/// patch in the coordinates (x, y). Returns `None` if a lobe is not a Phong lobe, if a BRDF has a
+/// factor that depends on an angle, or if a weight or a texture is not a cosine.
 #[must_use]
 pub fn semi_convolution(
     reflectance: &Reflectance,

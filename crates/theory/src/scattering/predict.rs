@@ -1,4 +1,4 @@
-//! Predicted slices of scattered light, over scrambled nets of rays.
+//! Predicts the slices of scattered light by sums over scrambled nets of rays.
 
 use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
@@ -16,17 +16,17 @@ use glam::DVec3;
 /// Returns the windowed spectrum of the light that a surface scatters, and its derivatives with
 /// respect to given parameters.
 ///
-/// Rays are sampled at the plane. For each ray, one or four parts of the light that shines on its
-/// starting point are sampled (docs/theory.md (40)). `chain` is the chain returned by
-/// [`chain`](super::chain()), which guides the sampling. The result is bitwise identical on any
-/// number of threads.
+/// Rays are sampled at the plane. For each ray, one or four parts of the light are sampled that
+/// shine on the point where the ray leaves the surface (docs/theory.md (40)). `chain` is the chain
+/// returned by [`chain`](super::chain()), which guides the sampling. The result is bitwise
+/// identical on any number of threads.
 ///
-/// The difference between the chain and the exact prediction, and the derivatives, are sums over
-/// rays of differences between two radiances of the same ray. These sums are accurate to about a
-/// per cent of their values. Sampled parts of the light move with the light, so the edges of the
-/// light cause no edges in a difference. Sampled parts do not move with the shadows of masks, so
-/// points that are lit in only one of the two radiances add noise, which decreases with the step
-/// of the difference.
+/// The difference between the chain and the exact prediction is a sum over rays of differences
+/// between two radiances of the same ray. The derivatives are also such sums. These sums are
+/// accurate to about a per cent of their values. Sampled parts of the light move with the light, so
+/// the edges of the light cause no edges in a difference. However, sampled parts do not move with
+/// the shadows of masks. Points that are lit in only one of the two radiances therefore add noise,
+/// which decreases with the step of the difference.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -83,8 +83,8 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// Returns the exact prediction together with the difference between a given chain and this
-/// prediction; the chain may differ from the result of [`chain`](super::chain()).
+/// Returns the exact prediction, and the difference between a given chain and this prediction. The
+/// chain may differ from the result of [`chain`](super::chain()).
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,
@@ -107,7 +107,7 @@ fn cost(system: &ScatteringSystem) -> f64 {
     }
 }
 
-/// Returns the strategy with the smallest cost in a greedy search that tries each of the choices
+/// Returns the strategy with the smallest cost. The search is greedy and tries each of the choices
 /// once.
 fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
@@ -237,7 +237,7 @@ impl Integrand for ScatteredField<'_> {
 /// sampled.
 type DrawnPart = Option<(LightPart, f64)>;
 
-/// A light field with a parameter changed.
+/// A light field in which a parameter is changed.
 ///
 /// If the change does not affect rays or the light, their values are taken from the original light
 /// field.
@@ -268,8 +268,8 @@ impl<'a> VariedField<'a> {
     }
 
     /// Returns the radiance of a ray due to a part of the light, divided by the density with which
-    /// this part was sampled. `own` contains the ray's starting point and part of the light in the
-    /// original light field.
+    /// this part was sampled. `own` contains two values of the original light field: the point
+    /// where the ray leaves the surface, and the sampled part of the light.
     fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, DrawnPart)) -> Option<f64> {
         let Observed { system, plane } = self.view;
         let (mut leaving, mut drawn) = *own;
@@ -285,7 +285,8 @@ impl<'a> VariedField<'a> {
     }
 }
 
-/// Variants of a light field: the first-order chain's field, and fields with a parameter changed.
+/// Variants of a light field: the field of the first-order chain, and fields in which a parameter
+/// is changed.
 struct VariedFields<'a> {
     field: &'a ScatteredField<'a>,
     linear: Option<Linear<'a>>,

@@ -1,4 +1,5 @@
-//! The sampling criteria of glossy reflections: how fast a reflection varies across an image.
+//! The sampling criteria of glossy reflections, which say how fast a reflection varies across an
+//! image.
 
 /// The frequency below which 99 % of the energy of [`cosine_hat`](super::cosine_hat) lies, in
 /// cycles per radian.
@@ -7,8 +8,8 @@ pub const COSINE_CUTOFF: f64 = 0.376;
 /// The parameters that determine the bandwidth of a glossy surface's image in an environment
 /// (Durand et al. 2005, section 6.2).
 ///
-/// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope at the eye.
-/// Except where d is zero, bandwidths assume a distant eye and neglect the blur by the cosine,
+/// A bandwidth is the largest |Ωv| at a fixed point, the eye, in cycles per unit slope at the eye.
+/// Unless d is zero, the formulas assume a distant eye and neglect the blur by the cosine,
 /// [`COSINE_CUTOFF`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
@@ -31,14 +32,14 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Returns the bandwidth by Eq. 20 of Durand et al. 2005, extended to any distance, which is
-    /// Ω_ρ |1 + 2kd/cos θ₁|. The environment is assumed to have light at all frequencies.
+    /// Returns the bandwidth Ω_ρ |1 + 2kd/cos θ₁|, which is Eq. 20 of Durand et al. 2005 extended
+    /// to any distance. The environment is assumed to have light at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Returns the bandwidth by Eq. 20 at any distance, for an environment with the cutoff Ω_e; the
+    /// Returns the bandwidth by Eq. 20 at any distance, for an environment with the cutoff Ω_e. The
     /// lower of Ω_ρ and Ω_e replaces Ω_ρ.
     #[must_use]
     pub fn limited_environment(&self) -> f64 {
@@ -55,16 +56,16 @@ impl Criterion {
     /// Returns an upper bound on the bandwidth of an edge before an environment with the cutoff
     /// Ω_e, which is Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
     ///
-    /// [`blocker`](Self::blocker) does not cover a small bright light behind an edge, which causes
-    /// sharp shadows with any BRDF.
+    /// A small bright light behind an edge causes sharp shadows with any BRDF.
+    /// [`blocker`](Self::blocker) does not cover this case.
     #[must_use]
     pub fn combined(&self) -> f64 {
         self.environment() + self.edge() * (self.lobe_cutoff + self.environment_cutoff)
     }
 
-    /// Returns the largest |Ωx| of the light that leaves the surface, perpendicular to the ray and
-    /// in cycles per metre, including the blur by the cosine: [cos θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k|
-    /// Ω_ρ + |k| Ω_cos]/cos θ₁.
+    /// Returns the largest |Ωx| of the light that leaves the surface, where x is perpendicular to
+    /// the ray and Ωx is in cycles per metre. With the blur by the cosine, this frequency is [cos
+    /// θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k| Ω_ρ + |k| Ω_cos]/cos θ₁.
     #[must_use]
     pub fn surface(&self) -> f64 {
         let behind = self.lobe_cutoff + COSINE_CUTOFF + self.environment_cutoff;
@@ -73,16 +74,16 @@ impl Criterion {
     }
 
     /// Returns the absolute value of Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ. The printed equation is an
-    /// approximation for a distant eye that omits the term 1, and requires a large |2kd/cos θ₁|;
-    /// the paper requires d ≫ 1.
+    /// approximation for a distant eye, which omits the term 1. The approximation requires a large
+    /// |2kd/cos θ₁|, whereas the paper requires d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Returns the bandwidth by Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k| for k, as in
-    /// the paper's text. The printed equation is an approximation for a distant eye and light along
-    /// the normal, and omits the term 1 and cos θ₀.
+    /// Returns the bandwidth by Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ. As in the paper's
+    /// text, |k| replaces k. The printed equation is an approximation for a distant eye and for
+    /// light along the normal, so it omits the term 1 and the factor cos θ₀.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);
@@ -96,7 +97,8 @@ impl Criterion {
         1.0 + 2.0 * self.curvature * self.distance / libm::cos(self.outgoing)
     }
 
-    /// Returns cos θ₀/d': the slope of the spectrum of an edge on the surface, without curvature.
+    /// Returns cos θ₀/d', which is the slope of the spectrum of an edge on a surface without
+    /// curvature.
     fn nearness(&self) -> f64 {
         self.blocker_distance
             .map_or(0.0, |distance| libm::cos(self.incidence) / distance)
@@ -112,10 +114,10 @@ impl Criterion {
 mod tests {
     use super::*;
 
-    /// Compares, on a sphere, the samples per metre by Eq. 21, divided by Ω_ρ, with the error per
-    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988). Both formulas add a
-    /// multiple of the curvature to the inverse harmonic mean distance: 2k in Eq. 21, and k/√2 in
-    /// irradiance caching.
+    /// Compares two numbers on a sphere: the samples per metre by Eq. 21, divided by Ω_ρ, and the
+    /// error per metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988). Both formulas
+    /// add a multiple of the curvature to the inverse harmonic mean distance: 2k in Eq. 21, and
+    /// k/√2 in irradiance caching.
     #[test]
     fn eq_21_spaces_samples_as_irradiance_caching_does() {
         let step: f64 = 1e-3;

@@ -5,10 +5,10 @@ use crate::numerics::sinc::sinc;
 use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Returns the transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2
-/// cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
+/// Returns the transform of the clamped cosine, which is cos θ for |θ| < π/2 and 0 elsewhere. The
+/// transform is 2 cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
-/// The transform is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ. This form is
+/// The transform is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)] with w = 2πΩ. This form is
 /// accurate also at Ω = 1/2π, where the quotient is 0/0 and the transform is π/2. The transform is
 /// 2 at zero and falls as 1/Ω², because the cosine has a corner at π/2. 99 % of the transform's
 /// energy lies below 0.376. The coefficients of a Fourier series differ from the transform by a
@@ -76,7 +76,7 @@ mod tests {
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
             // The limit is three times the rounding error of ln Γ for arguments up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
-            assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
+            assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // rounding
         }
     }
 
@@ -88,7 +88,8 @@ mod tests {
             // The tolerance covers the omitted coefficients beyond 4000, which fall as 1/n² and add
             // up to less than 2/π/4000.
             assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // The test detects that the transform is 2π times too large for a coefficient.
+            // The transform itself is 2π times too large for a coefficient, and the test detects
+            // this.
             assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }

@@ -1,10 +1,10 @@
-//! Spectra of environment light, which depends on direction alone, on a curved surface.
+//! Spectra of environment light on a curved surface. Environment light depends only on direction.
 //!
 //! The light ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx). After the curvature step the
 //! spectrum is on the line Ωx = kΩθ. On this line each Ωx has a single value, so the convolution
-//! with the cosine becomes a product (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the
-//! curvature in 1/m, convex positive. Angles are those on the surface, for directions towards the
-//! light. `environment` is env^.
+//! with the cosine becomes a product (Durand et al. 2005, section 6.1 and Fig. 14). In the
+//! functions of this module, k ≠ 0 is the curvature in 1/m, which is positive for convex surfaces,
+//! and `environment` is env^. Angles are angles on the surface, for directions towards the light.
 
 use super::cosine_hat;
 use etendue_field::{Complex, cis};
@@ -26,8 +26,7 @@ pub fn differential_irradiance(
 /// env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
 ///
 /// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺^(Ωx/k − Ωθ). The printed formula
-/// lacks the hat of ℓ_i and the factor 1/|k|, and has the sign that is correct before the mirror
-/// step.
+/// lacks the hat of ℓ_i and the factor 1/|k|. Its sign is correct only before the mirror step.
 #[must_use]
 pub fn mirrored_differential_irradiance(
     k: f64,
@@ -41,8 +40,8 @@ pub fn mirrored_differential_irradiance(
 /// Returns the spectrum 1/|k| env^(Ωx/k) cos⁺^(Ωx/k) of the irradiance along the surface, E(s) = ∫
 /// env(θ) cos⁺(θ − k s) dθ.
 ///
-/// The irradiance is a product of spectra, and so a convolution in the primal domain (Ramamoorthi
-/// and Hanrahan 2001). Section 6.1 of Durand et al. 2005 omits 1/|k|.
+/// This spectrum is a product of spectra, so the irradiance is a convolution in the primal domain
+/// (Ramamoorthi and Hanrahan 2001). Section 6.1 of Durand et al. 2005 omits 1/|k|.
 #[must_use]
 pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) -> Complex {
     differential_irradiance(k, [omega_x, 0.0], environment)

@@ -43,7 +43,7 @@ const NODES: usize = 1024;
 
 impl Flatland {
     /// Returns the spectrum of the windowed light field after a step, as an array [ρ, ν] with
-    /// ascending ρ and ν; profiles and axes are those of (x, v).
+    /// ascending ρ and ν. The profiles and axes are for x and v.
     ///
     /// The integral over positions is in closed form, and the integral over slopes is a midpoint
     /// rule that is accurate to 10⁻⁵ of the value at zero frequency.
@@ -90,8 +90,8 @@ impl Flatland {
         open(beam, strips.map(|strip| strip.map(|edge| edge + moved)))
     }
 
-    /// Returns ½ ∫ ℓ g dv at a position of the receiver: half the difference between the sines of
-    /// the bounding angles of the light.
+    /// Returns ½ ∫ ℓ g dv at a position of the receiver. For each visible part of the light, this
+    /// is half of the difference between the sines of its bounding angles.
     fn radiosity(&self, x: f64) -> f64 {
         let below = self.to_receiver - self.to_strips;
         let light = [self.half_light, -self.half_light];
@@ -151,8 +151,8 @@ fn midpoints(profile: &Profile) -> impl Iterator<Item = (f64, f64)> {
     (0..NODES).map(move |i| ((i as f64 + 0.5) * step - half, step))
 }
 
-/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval, in closed form, since the profile is a sum of
-/// cosines.
+/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval. The integral has a closed form, because the
+/// profile is a sum of cosines.
 fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
     let half = profile.half_width();
     let (from, to) = (from.max(-half), to.min(half));
@@ -170,7 +170,8 @@ fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
         .sum()
 }
 
-/// Returns, for each ρ and ν, the sum over slopes v of a value for ρ times e^(−2πi ν v).
+/// Returns a sum over slopes v for each ρ and ν. Each summand is a value for ρ and v, times e^(−2πi
+/// ν v).
 fn product(
     rows: impl Iterator<Item = (f64, Vec<Complex>)>,
     [rho, nu]: [&FrequencyAxis; 2],

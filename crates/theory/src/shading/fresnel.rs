@@ -12,15 +12,15 @@ const GRAZING: i32 = 12;
 /// as a square root.
 const CRITICAL: i32 = 40;
 
-/// The reflectance of an interface for unpolarised light, as a function of the angle of incidence:
-/// the factor f(θ) of a separable BRDF.
+/// The reflectance of an interface for unpolarised light, as a function of the angle of incidence.
+/// It is the factor f(θ) of a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FresnelFactor {
-    /// A transparent medium. An index below 1 describes light inside a denser medium, all of which
-    /// is reflected beyond asin(index).
+    /// A transparent medium. An index below 1 describes light that arrives inside a denser medium.
+    /// All of this light is reflected if the angle of incidence exceeds asin(index).
     Dielectric {
-        /// Refractive index of the medium beyond the interface, divided by that of the medium
-        /// before it.
+        /// Refractive index of the medium beyond the interface, divided by the index of the medium
+        /// before the interface.
         index: f64,
     },
     /// A metal, with the complex index n + ik.
@@ -53,9 +53,9 @@ impl FresnelFactor {
         unpolarised_reflectance(index, cosine, sine * sine)
     }
 
-    /// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian: the combined kernel of
-    /// Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005 plot it in
-    /// Fig. 12-b, but give no formula.
+    /// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian. It is the combined
+    /// kernel of Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005
+    /// plot it in Fig. 12-b, but give no formula.
     ///
     /// The transform is computed by quadrature to 10⁻¹². For Schlick's approximation it has the
     /// closed form F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁, with the transforms Cₙ of cosⁿ.
@@ -94,8 +94,8 @@ impl FresnelFactor {
 }
 
 /// Returns the share of unpolarised radiance that an interface of complex index reflects, at an
-/// angle with the given cosine and squared sine: the mean over both polarisations (Born and Wolf
-/// 1999, section 1.5).
+/// angle with the given cosine and squared sine. The share is the mean over both polarisations
+/// (Born and Wolf 1999, section 1.5).
 pub(crate) fn unpolarised_reflectance(index: Complex, cosine: f64, squared_sine: f64) -> f64 {
     let square = index * index;
     // The refractive index times the cosine of the refracted angle.
@@ -132,7 +132,7 @@ mod tests {
             2.0 * t * inside.reflectance(theta) * libm::cos(theta)
         });
         let expected = 2.0 * (below + 1.0 - 1.0 / 1.5);
-        assert!((inside.cosine_hat(0.0) - expected).abs() < 1e-12); // as promised
+        assert!((inside.cosine_hat(0.0) - expected).abs() < 1e-12); // the stated error
     }
 
     #[test]
@@ -142,7 +142,7 @@ mod tests {
             let halved = (1..=40).map(|n| FRAC_PI_2 * (1.0 - 0.5_f64.powi(n)));
             let ends: Vec<f64> = [0.0].into_iter().chain(halved).chain([FRAC_PI_2]).collect();
             let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * libm::cos(t));
-            assert!((metal.cosine_hat(0.7) - finer).abs() < 1e-12, "{index}"); // as promised
+            assert!((metal.cosine_hat(0.7) - finer).abs() < 1e-12, "{index}"); // the stated error
         }
     }
 }

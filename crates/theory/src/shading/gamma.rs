@@ -3,8 +3,8 @@
 use libm::lgamma as ln_gamma;
 use std::f64::consts::PI;
 
-/// Returns 1/Γ(z) for every real z, as a signed factor and the logarithm of another factor; the
-/// first factor is 0 at z = 0, −1, −2, …
+/// Returns 1/Γ(z) for every real z as a product of two factors: a signed factor, and a factor that
+/// is given by its logarithm. The first factor is 0 at z = 0, −1, −2, …
 ///
 /// Below zero the function uses the reflection formula: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
 pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {

@@ -8,11 +8,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D,
 /// in radians (Durand et al. 2005, Eq. 15, which misprints θ_o' as θ_o).
 ///
-/// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
-/// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
-/// shadowing of a microfacet BRDF are omitted, because they are not functions of δ alone. The
-/// Fresnel factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same reason. The
-/// distributions D are slices of the 3D distributions through the plane of incidence.
+/// Beckmann and GGX are models of narrow lobes. They are ρ' ∝ D(δ/2), where D is the distribution
+/// of microfacet normals, because the tilt of a microfacet is half of δ. The factor 1/(4 cos θ_i'
+/// cos θ_o') and the shadowing of a microfacet BRDF are omitted, because they are not functions of
+/// δ alone. The Fresnel factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same
+/// reason. The distributions D are slices of the 3D distributions through the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarLobe {
     /// The lobe cosⁿ δ on |δ| < π/2.
@@ -76,9 +76,9 @@ impl PlanarLobe {
     /// Returns the spectrum ρ̂'(Ω) of the lobe, with Ω in cycles per radian (Durand et al. 2005,
     /// Eq. 16). The spectrum is real and even, and 1 at zero.
     ///
-    /// The spectrum of a Phong lobe is Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)), and that of a
-    /// Gaussian lobe is exp(−2π²σ²Ω²). The spectra of Beckmann and GGX lobes are computed by
-    /// quadrature, to 10⁻¹².
+    /// The spectrum of a Phong lobe is Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)), and the
+    /// spectrum of a Gaussian lobe is exp(−2π²σ²Ω²). The spectra of Beckmann and GGX lobes are
+    /// computed by quadrature, to 10⁻¹².
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> f64 {
         match *self {
@@ -93,12 +93,13 @@ impl PlanarLobe {
     }
 
     /// Returns the frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
-    /// radian; `fraction` is this share, in (0, 1).
+    /// radian. `fraction` is this share and is in (0, 1).
     ///
     /// For a Gaussian lobe the frequency is 0.2899/σ for 99 % and 0.2206/σ for 95 %. Durand et al.
     /// 2005, section 6.2, call this frequency Ω_ρ and choose it by hand. The frequency is computed
     /// by summation, to 10⁻⁹. A lobe with a discontinuity, such as GGX at its end, may have a
-    /// millionth of its energy beyond the searched range; for higher shares the result is NaN.
+    /// millionth of its energy beyond the searched range. If the requested share includes this
+    /// energy, the result is NaN.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -183,7 +184,7 @@ mod tests {
     #[test]
     fn unit_integrals_and_transforms() {
         for lobe in LOBES {
-            assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
+            assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // the stated error
             for omega in [0.0, 0.3, 2.0, 11.0] {
                 // The trapezoid rule converges exponentially for functions that vanish at the ends,
                 // and for functions that are periodic because 2πΩ is an integer.
@@ -219,7 +220,7 @@ mod tests {
             let n = f64::from(n);
             let expected = libm::pow((p - root) / q, n) * (1.0 + n * root / p);
             let got = lobe.spectrum(n / (2.0 * PI));
-            assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // as promised
+            assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // the stated error
         }
     }
 
@@ -230,7 +231,7 @@ mod tests {
         // divided by 2√2 πσ.
         for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
             let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
-            assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised
+            assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // the stated error
         }
         // A Phong lobe is nearly a Gaussian of σ² = 1/n.
         let phong = PlanarLobe::Phong { exponent: 400.0 }.cutoff(0.99);

@@ -1,16 +1,16 @@
-//! Shading in 2D: the effect of the cosine, the BRDF, a texture and an environment on spectra
-//! (docs/theory.md, section 9).
+//! Shading in 2D. This module computes the effect of the cosine, the BRDF, a texture and an
+//! environment on spectra (docs/theory.md, section 9).
 //!
-//! Angles follow the [geometry](crate::geometry): on a surface, directions point away from it, θ is
+//! Angles follow the [geometry](crate::geometry): directions point away from the surface, θ is
 //! counted from the normal towards T, and a mirror has θ_o = −θ_i. Frequencies are in cycles per
-//! metre and per radian. A product of a light field with a factor is a convolution of their
-//! spectra, and a convolution over angles is a product of spectra; no constant factors are needed:
+//! metre and per radian. The spectrum of a product is a convolution of spectra, and the spectrum of
+//! a convolution over angles is a product of spectra. No constant factors are needed:
 //!
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|
 //! | cosine | [`cosine_hat`] | Eq. 12, 13 |
 //! | Fresnel factor | [`FresnelFactor`] | section 4.3 |
-//! | factor by a list of values | [`table_hat`] | section 4.3 |
+//! | factor given by a table of values | [`table_hat`] | section 4.3 |
 //! | BRDF lobe about the mirror direction | [`PlanarLobe`] | Eq. 15, 16 |
 //! | separable BRDFs and their weighted sums | [`SeparableTerm`] | Eq. 17, section 4.5 |
 //! | texture, BRDF that varies in space | [`texture`], [`semi_convolution`] | Eq. 18, section 4.5 |

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 const NODES: usize = 24;
 const CYCLES: f64 = 2.0;
 
-/// Returns 2 ∫ f(θ) cos(2πΩθ) dθ over the panels between `ends`, which is the transform of an even
-/// function given for θ > 0.
+/// Returns 2 ∫ f(θ) cos(2πΩθ) dθ over the panels between `ends`. This is the transform of an even
+/// function that is given for θ > 0.
 pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rule = gauss_legendre(NODES);
     let panel = |ends: &[f64]| {

@@ -1,15 +1,15 @@
-//! Products in the primal domain, computed as convolutions of spectra: sums on a lattice of
-//! frequencies.
+//! Products in the primal domain. They are computed as convolutions of spectra, which are sums over
+//! a lattice of frequencies.
 
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
 /// The frequencies n·`spacing`, up to `reach` on both sides of zero, over which spectra are summed.
 ///
-/// The error of the sum has two parts. The first part is the product of the factor with copies of
-/// the light, displaced by 1/`spacing` along the axis (Poisson's formula). This part is zero if the
-/// spacing is fine and light and factor have bounded support. The second part is the spectrum of
-/// the light beyond `reach`.
+/// The error of the sum has two parts. The first part is the product of the factor and copies of
+/// the light that are displaced by multiples of 1/`spacing` along the axis (Poisson's formula).
+/// This part is zero if the light and the factor have bounded support and the spacing is small
+/// enough. The second part is due to the spectrum of the light beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Distance between two frequencies, in cycles per unit of the axis.
@@ -84,8 +84,8 @@ pub fn texture(
 }
 
 /// Returns the spectrum at Ω after reflection by a BRDF ρ(s, δ) that varies in space. The spectrum
-/// is ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, a convolution along Ωx alone (the "semi-convolution" of Durand
-/// et al. 2005, section 4.5).
+/// is ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, which is a convolution only along Ωx (the "semi-convolution" of
+/// Durand et al. 2005, section 4.5).
 ///
 /// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. If
 /// `brdf` does not depend on Ωθ, it represents a texture.

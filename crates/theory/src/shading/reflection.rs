@@ -42,7 +42,7 @@ impl ReflectionStep {
     ];
 }
 
-/// A factor that depends on the local direction, given by its transform.
+/// A factor that depends on the local direction and is given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
     /// The constant 1, which does not cut off light at the horizon. Without a [`PlanarLobe`], a
@@ -103,7 +103,7 @@ pub struct SeparableTerm<'a> {
     pub before: Factor<'a>,
     /// The lobe ρ'; `None` represents a Dirac.
     pub lobe: Option<PlanarLobe>,
-    /// h(θ_o').
+    /// The factor h(θ_o').
     pub after: Factor<'a>,
     /// The weight w(s), as a sum of waves; `None` represents the weight 1.
     pub weight: Option<&'a [TextureWave]>,
@@ -115,8 +115,8 @@ pub struct SeparableTerm<'a> {
 pub struct PlanarReflection<'a> {
     /// θ₀, the direction from which the central ray comes, in radians from the normal.
     pub incidence: f64,
-    /// θ₁, the direction in which the central ray leaves, in radians from the normal; −θ₀ for a
-    /// mirror.
+    /// θ₁, the direction in which the central ray leaves, in radians from the normal. For a mirror,
+    /// θ₁ is −θ₀.
     pub outgoing: f64,
     /// Curvature k, in 1/m, convex positive.
     pub curvature: f64,
@@ -131,10 +131,10 @@ impl PlanarReflection<'_> {
     /// Returns the spectrum at Ω after a step, for light with the spectrum `before` in the light
     /// frame.
     ///
-    /// The spectrum holds to first order in the size of the neighbourhood, like the
-    /// [maps](crate::geometry); the effects of cosine, lobe and factors are exact. If the BRDF has
-    /// several terms, the spectrum between the cosine and the BRDF is the sum of the differential
-    /// irradiances of all terms.
+    /// Like the [maps](crate::geometry), the spectrum holds to first order in the size of the
+    /// neighbourhood. The effects of the cosine, the lobe and the factors are exact. If the BRDF
+    /// has several terms, the spectrum between the cosine and the BRDF is the sum of the
+    /// differential irradiances of all terms.
     ///
     /// For one term without h, the spectrum after step 6 is L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q,
     /// q) f̂(−Ωθ − q) dq (docs/theory.md (36)). If f is asymmetric, the sign of −Ωθ affects the

@@ -5,9 +5,9 @@ use etendue_field::AngleTable;
 use std::f64::consts::FRAC_PI_2;
 
 /// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
-/// in cycles per radian. This is the transform of the factor f(θi) or h(θo) of a separable BRDF
-/// (Durand et al. 2005, section 4.3), where g is the cosine if the factor includes it. The
-/// transform is real and even.
+/// in cycles per radian. The product is the factor f(θi) or h(θo) of a separable BRDF (Durand et
+/// al. 2005, section 4.3). If the factor includes the cosine, g is the cosine. The transform is
+/// real and even.
 ///
 /// The transform is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth
 /// g.
@@ -36,7 +36,7 @@ mod tests {
         };
         for omega in [0.0, 0.3, 2.0, 11.0] {
             let constant = table_hat(&of(&[1.0, 1.0, 1.0]), libm::cos, omega);
-            assert!((constant - cosine_hat(omega)).abs() < 1e-12); // as promised
+            assert!((constant - cosine_hat(omega)).abs() < 1e-12); // the stated error
             // The factor 1 − |θ|/(π/2) has the transform π/2 sinc²(Ω π/2).
             let half = 0.5 * PI * omega * 0.5 * TAU;
             let sinc = if omega > 0.0 {
@@ -48,7 +48,7 @@ mod tests {
             assert!(
                 (triangle - FRAC_PI_2 * sinc * sinc).abs() < 1e-12,
                 "{omega}"
-            ); // as promised
+            ); // the stated error
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use etendue_field::TwoPlane;
 
-/// Number of rays that are spread in one go: coordinates and positions are computed for a group,
-/// then added.
+/// Number of rays in a group. The positions and weights of all rays of a group are computed first,
+/// and then the rays are added to the grid.
 pub(crate) const GROUP: usize = 32;
 
-/// Number of rays of a full block. The block is read once for each azimuth while the azimuth's fine
-/// grid stays in the cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks
-/// of 4096.
+/// Number of rays of a full block. The block is read once for each azimuth, while the fine grid of
+/// this azimuth stays in the cache. With four planes in turn, blocks of 16384 rays were 8 % faster
+/// than blocks of 4096 rays.
 const CAPACITY: usize = 16384;
 
 /// Rays waiting to be spread, one array for each coordinate, in order of arrival.

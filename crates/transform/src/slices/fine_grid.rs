@@ -8,12 +8,12 @@ use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// Number of rows of the fine grid that are transformed together: one column of them fills a cache
-/// line.
+/// Number of rows of the fine grid that are transformed together. One column of this many rows
+/// fills a cache line.
 const ROWS: usize = 4;
 
-/// Turns padded fine grids into slices: wraps, transforms, keeps the wanted frequencies, and
-/// divides by the transform of the spreading kernel.
+/// Computes slices from padded fine grids. It wraps and transforms the grids, keeps the wanted
+/// frequencies, and divides by the transform of the spreading kernel.
 pub(crate) struct FineTransform {
     placement: Placement,
     grid: SliceGrid,
@@ -131,10 +131,10 @@ impl FineTransform {
         }
     }
 
-    /// Computes row `index` of the period: the sum of the padded cells that map to it, some from a
-    /// period away.
+    /// Computes row `index` of the period. Each cell of the row is the sum of the padded cells that
+    /// map to it; some of these cells are a period away.
     fn wrap(&self, fine: &[f64], index: usize, row: &mut [f64]) {
-        /// The number of cells before a point's own cell over which the point is spread: three.
+        /// A point is spread over three cells before its own cell.
         const BEFORE: usize = WIDTH / 2 - 1;
         let Placement { rows, columns, .. } = self.placement;
         let [padded, stride] = self.placement.padded();
@@ -212,8 +212,8 @@ mod tests {
                 let scale = at(m as f64, rows) * at(nu, columns) / 2.0;
                 let period = (n + columns - grid.nu.half) % columns;
                 let off = found * scale - plain(&fine, placement, [m, period]);
-                // The limit covers the rounding errors of sums of up to 56 numbers, about 4 in
-                // total, and of 38 numbers, about 13 in total.
+                // The limit covers the rounding errors of sums of up to 56 numbers with a total of
+                // about 4, and of 38 numbers with a total of about 13.
                 assert!(modulus(off) < 5e-14, "{rows} × {columns}, {m}, {nu}: {off}");
             }
         }

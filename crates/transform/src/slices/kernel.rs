@@ -7,15 +7,16 @@ use std::f64::consts::{PI, TAU};
 /// Number of cells of the fine grid that a point is spread over, along each axis.
 pub(crate) const WIDTH: usize = 8;
 
-/// Half the width: the kernel is even, so four taps give all eight.
+/// Half of the width. The kernel is even, so four taps determine all eight taps.
 const HALF: usize = WIDTH / 2;
 
-/// Cells of a period for each frequency step from zero to the largest: an upsampling of 2.5.
+/// Number of cells of a period for each frequency step from zero to the largest frequency. Five
+/// cells are an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// The parameter β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling.
-/// The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point; at an upsampling of
-/// 2 it would be 4·10⁻⁷.
+/// The parameter β of the kernel. At this upsampling, 2.35 per cell of width is the best of the
+/// values 2.30, 2.35, …. The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point;
+/// at an upsampling of 2 it would be 4·10⁻⁷.
 const BETA: f64 = 2.35 * WIDTH as f64;
 
 /// Number of coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
@@ -25,14 +26,17 @@ const TERMS: usize = 4;
 /// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, *SIAM Journal on
 /// Scientific Computing* 41(5)).
 ///
-/// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
-/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
-/// − 1 that interpolates the kernel at Chebyshev nodes; its error is below 5·10⁻⁸ of the kernel's
-/// peak. The spectrum is divided by the transform of these polynomials, so only their roughness
-/// matters: a higher degree, or the kernel itself, gives the same error to two digits.
+/// A point is spread over eight cells. If the point lies a fraction f of a cell beyond a cell of
+/// the fine grid, the weight of cell j, called tap j, is the kernel at z = (j − 3 − f)/4. Each tap
+/// is a polynomial in t = 2f − 1 that interpolates the kernel at Chebyshev nodes, with an error
+/// below 5·10⁻⁸ of the kernel's peak. The spectrum is divided by the transform of these
+/// polynomials, so their deviation from the kernel does not matter, except where it makes them less
+/// smooth. A higher degree, or the kernel itself, gives the same error of the spectrum to two
+/// digits.
 ///
-/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products
-/// and sums are rounded separately, never fused, so every SIMD level gives bitwise the same result.
+/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps determine all eight taps.
+/// Products and sums are rounded separately and never fused, so every SIMD level gives bitwise the
+/// same result.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Coefficients of t⁰, t², t⁴… of taps 0 to 3.
@@ -58,8 +62,8 @@ impl Kernel {
         kernel
     }
 
-    /// Computes the eight taps of eight points, each a fraction `f` of a cell beyond its cell: lane
-    /// i of tap j belongs to point i.
+    /// Computes the eight taps of eight points. Each point lies a fraction `f` of a cell beyond its
+    /// cell, and lane i of each tap belongs to point i.
     #[inline(always)]
     pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64x8<S>) -> [f64x8<S>; WIDTH] {
         let t = f * 2.0 - 1.0;
@@ -79,7 +83,7 @@ impl Kernel {
         taps
     }
 
-    /// Computes tap `tap`, 0 to 3, for a single number: for the plan and for tests.
+    /// Computes tap `tap`, 0 to 3, for a single number. The plan and the tests use this function.
     fn tap(&self, tap: usize, f: f64) -> f64 {
         let t = 2.0 * f - 1.0;
         let horner = |terms: &[[f64; HALF]]| {
@@ -92,14 +96,15 @@ impl Kernel {
     /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
     /// cycles per cell.
     ///
-    /// The result is the transform of the polynomials that are used for spreading. A Gauss–Legendre
-    /// rule on each cell computes it, exactly for |ξ| ≤ 1/2 apart from rounding errors.
+    /// The result is the transform of the polynomials that are used for spreading. It is computed
+    /// by a Gauss–Legendre rule on each cell. For |ξ| ≤ 1/2, the rule is exact apart from rounding
+    /// errors.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
             let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
             for tap in 0..HALF {
-                // Taps 4 to 7 mirror taps 3 to 0, which gives twice the cosine.
+                // Taps 4 to 7 mirror taps 3 to 0, so each pair of taps contributes twice a cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);
                 sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
             }
@@ -108,8 +113,8 @@ impl Kernel {
     }
 }
 
-/// Transposes eight rows of eight by three perfect shuffles, each of which moves the last of six
-/// index bits to the front.
+/// Transposes eight rows of eight numbers by three perfect shuffles. The index of a number has six
+/// bits, and each shuffle moves the last bit to the front.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {
     for _ in 0..3 {
@@ -172,7 +177,7 @@ mod tests {
                 worst = worst.max((tap - exact(j, f)).abs());
             }
             for (j, tap) in each[0][..HALF].iter().enumerate() {
-                // The formula has the same sums, with a zero added first.
+                // The formula computes the same sums, but starts from zero.
                 assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
             let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));

@@ -1,8 +1,8 @@
 //! The sum of weighted rays on all slices, by a non-uniform fast Fourier transform.
 //!
-//! The transform sums both the photons of the tracer and the nodes of theory's nets. The tests of
-//! tracer and theory compare the transform with the plain sum, so an error is noticed although both
-//! share the transform.
+//! The tracer sums photons by this transform, and theory sums the nodes of its nets by this
+//! transform. An error of the transform would therefore not appear in a comparison of the two. For
+//! this reason, the tests of the tracer and of theory compare the transform with the plain sum.
 
 mod block;
 mod fine_grid;
@@ -27,9 +27,9 @@ use std::fmt;
 /// × 8 cells of a grid 2.5 times as fine as the frequencies require, transforms the grid, and
 /// divides by the transform of the spreading kernel.
 ///
-/// The error is below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
-/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used
-/// as given.
+/// The error is below 2·10⁻⁷ Σ|w| at every frequency. A single ray reaches this bound; with many
+/// scattered rays, errors average out. The weight `w` is used as given, so the caller applies the
+/// window and the factor of radiance space.
 ///
 /// The bits of the result depend on the rays, their order, and the kind of processor: the FFTs
 /// (`rustfft`, `realfft`) use the best instructions available. Spreading gives the same bits on all
@@ -108,8 +108,8 @@ impl SliceTransform {
     }
 }
 
-/// Returns the number of cells of a period: 2.5 for each frequency, at least two widths of the
-/// kernel, a product of 2, 3 and 5.
+/// Returns the number of cells of a period. There are 2.5 cells for each frequency and at least two
+/// widths of the kernel. The number has no prime factors other than 2, 3 and 5.
 fn cells(axis: &FrequencyAxis) -> usize {
     let mut count = usize::max(UPSAMPLING * axis.half, 2 * WIDTH);
     while !is_smooth(count) {
@@ -165,8 +165,8 @@ impl Accumulator<'_> {
         slices
     }
 
-    /// Spreads the waiting rays. The azimuth is the outer loop: one fine grid at a time is in the
-    /// cache.
+    /// Spreads the waiting rays. The outer loop is over azimuths, so that only one fine grid at a
+    /// time is in the cache.
     fn flush(&mut self) {
         self.block.pad();
         let SliceTransform {

@@ -6,13 +6,13 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The mapping of rays to the fine grid of one azimuth φ, a period of `rows` × `columns` cells.
 ///
-/// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the conjugate of ρ; columns divide
-/// that of q = u cos φ + v sin φ, the conjugate of ν.
+/// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the coordinate of the frequency ρ.
+/// Columns divide the period of q = u cos φ + v sin φ, the coordinate of the frequency ν.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
-    /// cos φ and sin φ times the spacing of ρ: periods per metre.
+    /// cos φ and sin φ times the spacing of ρ, in periods per metre.
     pub(crate) rho: [f64; 2],
-    /// cos φ and sin φ times the spacing of ν: periods per unit slope.
+    /// cos φ and sin φ times the spacing of ν, in periods per unit slope.
     pub(crate) nu: [f64; 2],
     /// Number of cells in a period of p.
     pub(crate) rows: usize,
@@ -48,8 +48,8 @@ struct Group {
 
 /// Adds the rays of a padded block to the padded fine grid of one azimuth, row by row.
 ///
-/// Uses three short loops over a group instead of one long one: a processor then has several rays
-/// in flight at a time, which is 1.8 times as fast.
+/// The function uses three short loops over a group instead of one long loop. A processor can then
+/// work on several rays at the same time, which is 1.8 times as fast.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(
     simd: S,
@@ -90,12 +90,12 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
 /// Returns the cell of a point among the `count` of a period, and the fraction of a cell by which
 /// the point lies beyond it.
 ///
-/// A point outside the period is moved into it by whole periods. This move is exact: at frequencies
-/// m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
+/// A point outside the period is moved into it by whole periods. The sum does not change, because
+/// at the frequencies m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p.
 #[inline(always)]
 fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// The number 2⁵². If 2⁵² is added to a smaller whole number, the low bits hold that number,
-    /// which is faster than a checked cast.
+    /// The number 2⁵². If 2⁵² is added to a smaller whole number, the low bits of the sum hold the
+    /// smaller number. This conversion is faster than a checked cast.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let periods = a * along[0] + b * along[1];
     let cells = (periods - periods.floor()) * count as f64;

@@ -1,4 +1,4 @@
-//! Tests of covariance along chains, against quadrature.
+//! Tests of covariance tracing along chains, against quadrature.
 
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
@@ -85,8 +85,8 @@ fn a_receiver_leaves_the_irradiance_even_over_slopes() {
     assert_eq!([c[2], c[3]], [[0.0; 4]; 2]);
 }
 
-/// Builds a surface 1 m from the light that the central ray meets at 0.4 rad, with principal axes
-/// turned about the surface's normal.
+/// Builds a surface 1 m from the light. The central ray meets the surface at 0.4 rad, and the
+/// surface's principal axes are turned about its normal.
 fn patch() -> Patch {
     let leg = Frame::IDENTITY.travelled(1.0);
     let (sin, cos) = libm::sincos(0.4);
@@ -173,7 +173,7 @@ fn behind_a_textured_lobe() {
     let left = sum(&mirrored, &diagonal([0.0, 0.0, 0.01, 0.01]));
     let expected = windowed(&chain.off.covariance(&left));
     let plain = of(&view(None));
-    assert!(apart(&plain, &expected) < 1e-10); // rounding; maps are of differences, alike in both
+    assert!(apart(&plain, &expected) < 1e-10); // rounding; both have the same difference maps
     // The grating adds the variance of its spectral lines along the axis of the patch on which its
     // transmission varies.
     let textured = of(&view(Some(Pattern::Cosine(lines))));
@@ -185,7 +185,7 @@ fn behind_a_textured_lobe() {
         }
     }
     let added = chain.off.spectral_covariance(&along).unwrap();
-    assert!(apart(&textured, &sum(&plain, &added)) < 1e-10); // the same
+    assert!(apart(&textured, &sum(&plain, &added)) < 1e-10); // rounding
     let squares = Pattern::Checkerboard { period: 0.1 };
     let untraced = view(Some(squares)).spectral_covariance();
     assert_eq!(untraced, Err(Untraced::Reflectance));

@@ -154,8 +154,7 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
     let determinant = field[0][0] * field[1][1] - field[0][1] * field[1][0];
     let expected = field[1][1] / determinant / (8.0 * PI * PI);
     assert!((diffuse[0][0] / expected - 1.0).abs() < 1e-12); // rounding of inverses
-    // Light that is already uniform stays uniform; light from a point arrives uniform over the
-    // receiver.
+    // Light that is already uniform stays uniform. Light from a point is uniform over the receiver.
     let flat = SpectralCovariance::new([f64::INFINITY; 4]);
     assert_eq!(flat.diffused().matrix(), Some([[0.0; 4]; 4]));
     let lamp = SpectralCovariance::new([0.0, 0.0, f64::INFINITY, f64::INFINITY]);

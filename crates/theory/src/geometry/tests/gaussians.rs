@@ -102,7 +102,7 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
-    // The covariance of light from a point is singular, also after a window, but the windowed
+    // The covariance of light from a point is singular before and after a window. The windowed
     // variance along x = D u is finite: 1/σ² = 1/σu² + D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();

@@ -116,8 +116,8 @@ fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
             })
         };
         let through = side(1.0) + side(-1.0);
-        // The tolerance is the error of a rule with 200 nodes for s⁵ ln s, which remains of the
-        // kink; the coefficients of this function fall as n^−12.
+        // After the substitution, the kink becomes s⁵ ln s. The tolerance is the error of a rule
+        // with 200 nodes for this function, whose coefficients fall as n^−12.
         assert!(
             (through - direct).abs() < 1e-12,
             "{theta}: {}",

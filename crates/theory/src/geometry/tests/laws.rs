@@ -58,8 +58,8 @@ fn thin_lens_between_travels() {
         .then(&AffineMap::travel(b));
     let abcd = [[1.0 - b / f, a + b - a * b / f], [-1.0 / f, 1.0 - a / f]];
     assert!(apart(&system, &AffineMap::linear(abcd)) < ROUNDING);
-    // Where 1/a + 1/b = 1/f there is an image: positions do not depend on directions, and are
-    // magnified by b/a and inverted.
+    // If 1/a + 1/b = 1/f, there is an image. Positions in the image do not depend on directions;
+    // they are magnified by b/a and inverted.
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let image = AffineMap::<4>::travel(a)
         .then(&AffineMap::thin_lens(f))
@@ -106,7 +106,7 @@ fn lensmaker() {
     // This is Eq. 6.2 of Hecht, Optics, with a negative second radius.
     let thick = power - (n - 1.0).powi(2) * thickness / (n * r1 * r2);
     assert!((lens(thickness).matrix[1][0] + thick).abs() < ROUNDING);
-    assert!((power - thick).abs() > 0.005); // thickness is seen
+    assert!((power - thick).abs() > 0.005); // the test detects the thickness
 }
 
 #[test]

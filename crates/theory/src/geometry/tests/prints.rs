@@ -120,8 +120,8 @@ fn planar_mirrors_keep_magnitudes() {
         let cos = libm::cos(THETA0);
         let rounding = 1e-14;
         assert!((size(Edition::Corrected) - expected).abs() < rounding);
-        // On a flat mirror the two wrong arguments of Table 1 cancel; the factors of Eqs. 9 and 10
-        // do not.
+        // On a flat mirror, the two wrong arguments of Table 1 cancel, but the factors of Eqs. 9
+        // and 10 do not cancel.
         assert!((size(Edition::Table) - expected).abs() < rounding);
         assert!((size(Edition::Equations) - cos * cos * expected).abs() < rounding);
     }
@@ -129,7 +129,7 @@ fn planar_mirrors_keep_magnitudes() {
 
 #[test]
 fn constant_fields_keep_their_value() {
-    // A step with the factor f and a Ωx in place of Ωx turns δ(Ωx) S(Ωθ) into f/|a| times itself.
+    // A step that has the factor f and replaces Ωx by a Ωx multiplies δ(Ωx) S(Ωθ) by f/|a|.
     let value = |step: SpectrumMap<2>| step.factor / step.matrix[0][0].abs();
     let cos = libm::cos(THETA0);
     let close = |a: f64, b: f64| (a - b).abs() < 1e-15; // rounding

@@ -99,9 +99,8 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
     let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
     let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
-    // Four mistakes are tested: latitudes refracted by the rule for longitudes; no refraction
-    // across the plane of incidence; the cosine of the incident side on the way back; and no
-    // cosines.
+    // Four mistakes are tested: latitudes are refracted by the rule for longitudes, latitudes are
+    // not refracted, the way back uses the cosine of the incident side, or all cosines are omitted.
     let wrong = [
         (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
         (AffineMap::identity(), theta0, theta2),

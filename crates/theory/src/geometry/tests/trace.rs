@@ -62,8 +62,8 @@ impl LightAxes {
     }
 }
 
-/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1,
-/// otherwise a graph with the shape operator M.
+/// The surface 2 N·p + pᵀ Q p = 0 through the origin. If Q is k times the identity, the surface is
+/// a sphere of curvature k. Otherwise it is a graph with the shape operator M.
 #[derive(Clone, Copy)]
 pub(super) struct GraphSurface([Vector; 3]);
 
@@ -93,7 +93,8 @@ impl GraphSurface {
     }
 }
 
-/// Traces a ray reflected by a surface met at θ₀, in the frames before and after.
+/// Traces a ray that a surface at the angle of incidence θ₀ reflects. The ray is given in the frame
+/// before the reflection and returned in the frame after it.
 pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
     let ray = LightAxes::coming(theta0).ray(z);
     let [point, n] = surface.hit(ray);
@@ -101,7 +102,8 @@ pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64
     LightAxes::leaving(-theta0).coordinates([point, direction])
 }
 
-/// Traces a ray refracted by a surface met at θ₀, in the frames before and after.
+/// Traces a ray that a surface at the angle of incidence θ₀ refracts. The ray is given in the frame
+/// before the refraction and returned in the frame after it.
 pub(super) fn refracted(
     surface: GraphSurface,
     theta0: f64,

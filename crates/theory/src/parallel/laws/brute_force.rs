@@ -4,7 +4,8 @@ use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain as seen from its end: distances and masks upstream, and the number of factors G.
+/// A chain as seen from its end, with the distances of the masks upstream and the number of factors
+/// G.
 struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,
@@ -40,7 +41,7 @@ impl<'a> WalkedRay<'a> {
     }
 }
 
-/// Computes the transform by quasi-random rays from the light to the final plane.
+/// Computes the transform as a sum over quasi-random rays from the light to the final plane.
 ///
 /// Uses points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, where φ⁵ = φ +
 /// 1.

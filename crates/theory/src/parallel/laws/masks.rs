@@ -63,7 +63,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
     }
 }
 
-/// At the distance h after a grating, the spectrum of the light is ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip)
+/// Tests that the spectrum of light at the distance h after a grating is ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip)
 /// ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)).
 #[test]
 fn a_grating_is_three_copies() {
@@ -86,8 +86,9 @@ fn a_grating_is_three_copies() {
     }
 }
 
-/// Tests that the spectrum behind two gratings is non-zero at (0, f Δh), outside the wedge between
-/// the lines of the two depths, where the spectrum behind either grating alone is zero.
+/// Tests that the spectrum behind two gratings is non-zero at (0, f Δh). This frequency is outside
+/// the wedge between the lines of the two depths, and the spectrum behind each single grating is
+/// zero there.
 #[test]
 fn two_gratings_leave_the_wedge() {
     // The tested frequency is at a zero of the transform of the window, whose half-widths are 0.5
@@ -100,7 +101,7 @@ fn two_gratings_leave_the_wedge() {
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
     // The component at the difference of the two gratings' frequencies divided by the component at
-    // zero is (m/4)² / (½)². Half of the tolerance is for the edge of the window.
+    // zero is (m/4)² / (½)². Half of the tolerance covers the effect of the window's edge.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"

@@ -42,7 +42,7 @@ fn two_layers_agree_with_brute_force() {
     ];
     for (k, truth) in FREQUENCIES.iter().zip(truth) {
         let value = |chain: &Chain| at(chain, &hann(), *k);
-        // For masks with edges, the error of the sum over 400000 quasi-random points is somewhat
+        // For masks with edges, the error of the sum over 400000 quasi-random points is slightly
         // below 1/√400000 = 1.6e-3.
         assert!((value(&both) - truth).norm() < 1e-3 * zero(&open));
     }

@@ -1,5 +1,5 @@
-//! The integrand of irradiance over the slopes of light that arrives at a point: (1 + u² +
-//! v²)^(−p) times the gratings.
+//! The integrand of irradiance, (1 + u² + v²)^(−p) times the gratings. It is a function of the
+//! slopes of light that arrives at a point.
 
 use crate::barrier::Bounds;
 use crate::numerics::quadrature::gauss_legendre;
@@ -11,8 +11,8 @@ const NATS: f64 = 28.0;
 /// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
 /// panels.
 const MAX_NODES: usize = 48;
-/// Number of nodes on an arc in addition to the nodes that the arc's length requires, because the
-/// direction of the arc changes.
+/// Number of additional nodes on an arc, beyond the nodes that the arc's length requires. They are
+/// needed because the direction of the arc changes.
 const ARC: usize = 10;
 /// Number of panel lengths for which numbers of nodes are precomputed; each length is half the
 /// previous one.
@@ -62,7 +62,7 @@ impl SlopePower {
     }
 }
 
-/// The numbers of nodes that intervals of slope require, as a function of the interval's length.
+/// The number of nodes that an interval of slopes requires, as a function of the interval's length.
 #[derive(Debug)]
 struct NodeCounts {
     /// Length of the longest panel; a panel of level k is 2^k times shorter.
@@ -106,8 +106,8 @@ impl NodeCounts {
 /// The error of the rule with n nodes is ρ^(−2n) times the largest value of the integrand on an
 /// ellipse around the interval, where the ellipse extends by b in the imaginary direction and ln ρ
 /// = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
-/// 19.3). The ellipse contains no pole if b < 1, and the smallest result for several values of b
-/// is used.
+/// 19.3). The ellipse contains no pole if b < 1. The number is computed for several values of b,
+/// and the smallest number is used.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -329,7 +329,7 @@ mod tests {
                 [[-3.0, 2.0], [-1.0, 4.0]],
             ] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                assert!(error.abs() < 3e-12, "{power} {sides:?} {error:e}"); // as promised at NATS
+                assert!(error.abs() < 3e-12, "{power} {sides:?} {error:e}"); // see `NATS`
             }
         }
     }

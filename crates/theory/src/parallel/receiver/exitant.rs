@@ -13,8 +13,8 @@ const NODES: [f64; 2] = [96.0, 1024.0];
 /// Minimum number of nodes along an axis for a plain sum at one frequency, which is the reference
 /// for faster sums.
 const OF_PLAIN_SUMS: usize = 384;
-/// Number of nodes for each cycle across the receiver: two for the frequency of the spectrum, and
-/// two more for the frequencies of the incident light.
+/// Number of nodes for each cycle across the receiver. Two nodes are for the frequency of the
+/// spectrum, and two nodes are for the frequencies of the incident light.
 const PER_CYCLE: f64 = 4.0;
 /// Number of nodes across the narrowest penumbra or period on the receiver.
 const ACROSS: f64 = 8.0;
@@ -40,10 +40,10 @@ impl Receiver<'_> {
     /// Returns the slices of the spectrum of the reflected light under a window, after the light
     /// has travelled to the plane of the window.
     ///
-    /// The sum over the receiver is a midpoint rule of second order, whose error
-    /// [`quadrature_error`](Self::quadrature_error) returns; the integral over slopes is exact.
-    /// Rows are computed in parallel, but each row by a single thread, so the result is the same
-    /// for any number of threads. Unit: W m⁻² sr⁻¹ · m².
+    /// The sum over the receiver is a midpoint rule of second order, and
+    /// [`quadrature_error`](Self::quadrature_error) returns its error. The integral over slopes is
+    /// exact. Rows are computed in parallel, but each row by a single thread, so the result is the
+    /// same for any number of threads. Unit: W m⁻² sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
@@ -53,8 +53,8 @@ impl Receiver<'_> {
         self.table(window, nodes).slices(grid)
     }
 
-    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over at least as many
-    /// nodes as for slices.
+    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv). It is a plain sum over at least as
+    /// many nodes as slices use.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
         let highest = libm::hypot(frequency[0], frequency[1]);
         let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
@@ -67,9 +67,9 @@ impl Receiver<'_> {
         self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
-    /// Returns the relative L2 error of slices: the difference between the slices and slices from
-    /// half as many nodes along each axis, divided by 2² − 1, because the error is of second order
-    /// in the spacing. Returns `None` if the slices are zero.
+    /// Returns the relative L2 error of slices. The error is the difference between the slices and
+    /// slices from half as many nodes along each axis, divided by 2² − 1, because the error is of
+    /// second order in the spacing. Returns `None` if the slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,

@@ -1,5 +1,5 @@
-//! The kernel K(t): the contribution of light that leaves the receiver at coordinate t to the
-//! spectrum under a window beyond the receiver.
+//! The kernel K(t). Light that leaves the receiver at coordinate t contributes K(t) to the spectrum
+//! under a window beyond the receiver.
 
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
@@ -61,8 +61,8 @@ impl KernelAxis {
         sum
     }
 
-    /// Returns the spectrum of the window's slope profile, from the profile's cosine terms;
-    /// without travel this spectrum is the slope factor of K.
+    /// Returns the spectrum of the window's slope profile, computed from the profile's cosine
+    /// terms. If light does not travel after the receiver, this spectrum is the slope factor of K.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
@@ -85,7 +85,7 @@ impl KernelAxis {
     }
 
     /// Returns rays from coordinate t of the receiver through the window, one for each node of the
-    /// rule: weight, position and slope.
+    /// rule. Each ray is returned as weight, position and slope.
     fn rays(&self, t: f64, rule: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
         let [low, high] = self.slopes(t);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -107,8 +107,8 @@ impl KernelAxis {
         gauss_legendre(self.nodes(frequency) as usize)
     }
 
-    /// Returns the number of nodes of the rule for a frequency: the number required by the
-    /// oscillations of the integrand, plus a constant for an accuracy of 10⁻¹⁴.
+    /// Returns the number of nodes of the rule for a frequency. It is the number that the
+    /// oscillations of the integrand require, plus a constant for an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
         // Gauss rules begin to converge at π/2 nodes per oscillation of the integrand.

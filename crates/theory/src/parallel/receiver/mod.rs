@@ -1,12 +1,12 @@
-//! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that
-//! leaves it.
+//! Diffuse reflection by quadrature. This module computes the irradiance of a Lambertian receiver
+//! and the light that leaves the receiver.
 //!
-//! The light, the masks and the receiver are in parallel planes perpendicular to the central ray.
-//! A ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h
-//! before the receiver. So as a function of slopes at (x, y), every shape upstream is a scaled
-//! copy of the shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
-//! integrals over rectangles and discs. These shapes are the light and the blockers as seen from
-//! the point (docs/theory.md, section 4b).
+//! The light, the masks and the receiver are in parallel planes perpendicular to the central ray. A
+//! ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h before
+//! the receiver. Therefore the slopes at (x, y) of the rays through a shape form a scaled copy of
+//! this shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
+//! integrals over rectangles and discs, which are these copies of the light and of the blockers
+//! (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -39,8 +39,8 @@ pub(crate) struct Receiver<'a> {
     albedo: f64,
 }
 
-/// The relation between slopes at the receiver and positions at a distance h before the receiver:
-/// position = origin + b · slope.
+/// The relation position = origin + b · slope between slopes at the receiver and positions at a
+/// distance h before the receiver.
 #[derive(Clone, Copy, Debug)]
 enum SlopeProjection {
     /// Rays that arrive at the given point of the receiver: b = −h.
@@ -115,8 +115,8 @@ impl<'a> Receiver<'a> {
     /// Builds a receiver with an albedo, at `distance` from the light, with `layers` between them.
     /// The reflected light travels the distance `after`. All lengths are in metres.
     ///
-    /// If `cosine` is false, radiance is integrated over slopes without the factor (1 + u² +
-    /// v²)⁻², which is deliberately wrong.
+    /// If `cosine` is false, radiance is integrated over slopes without the factor (1 + u² + v²)⁻².
+    /// The result is then wrong, which tests use.
     pub(crate) fn new(
         light: ParallelEmitter,
         layers: &[MaskLayer<'a>],
@@ -189,7 +189,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over those slopes of a region at which no blocker stops the light.
+    /// Returns the integral over those slopes of a region for which no blocker stops the light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
@@ -236,8 +236,8 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the radiance that leaves the receiver, which is the same in all directions: albedo /
-    /// π · E (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
+    /// Returns the radiance that leaves the receiver, albedo / π · E, which is the same in all
+    /// directions. (In the paper's Eq. 6, ρ is the BRDF, albedo / π.)
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }

@@ -1,5 +1,5 @@
-//! Estimates of the work to predict the light that leaves a receiver, from computing steps counted
-//! at a few points of the receiver.
+//! Estimates the work to predict the light that leaves a receiver. Computing steps are counted at a
+//! few points of the receiver.
 
 use super::density::ReceiverDensity;
 use super::kernel::KernelAxis;
@@ -11,8 +11,9 @@ use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Number of points along each axis at which steps are counted.
 const SOME: usize = 4;
-/// Maximum number of computing steps that are counted at a point. If a point takes more steps,
-/// even a table with the minimum number of nodes exceeds all limits.
+/// Maximum number of computing steps that are counted at a point; counting stops at this number. If
+/// each point takes so many steps, even the smallest table takes longer than all limits on the work
+/// of a prediction allow, so the exact number does not matter.
 const MAX_STEPS: f64 = 1e8;
 /// Estimated number of computing steps to test a shape, and to clip a region to a shape that
 /// blocks light.

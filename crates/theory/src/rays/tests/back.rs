@@ -1,4 +1,4 @@
-//! Tests of backward rays: they invert forward rays, and their density is correct.
+//! Tests that backward rays invert forward rays and that their density is correct.
 
 use super::super::backward::Back;
 use super::*;

@@ -79,8 +79,8 @@ fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
     }
 }
 
-/// Computes the light that arrives on a sphere from the definition: the normal is the position
-/// divided by the radius, and directions are relative to this normal. `sign` is −1 for the
+/// Computes the light that arrives on a sphere directly from the definition. The normal is the
+/// position divided by the radius, and directions are relative to this normal. `sign` is −1 for the
 /// curvature of a concave sphere, and `cosine` is the exponent of the cosine factor.
 fn on_sphere_by_hand(environment: &Environment, plane: &Plane, sign: f64, z: [f64; 4]) -> f64 {
     let [x, y, u, v] = z;
@@ -230,7 +230,7 @@ fn the_sky_past_a_grating() {
     }
 }
 
-/// A flat mirror reverses directions, and glass multiplies radiance by n².
+/// Tests that a flat mirror reverses directions, and that glass multiplies radiance by n².
 #[test]
 fn the_sky_behind_a_mirror_and_in_glass() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
@@ -280,7 +280,7 @@ fn the_sky_behind_a_mirror_and_in_glass() {
     }
 }
 
-/// All sampling strategies represent the same light, so their densities are correct.
+/// Tests that all sampling strategies give the same light, which requires correct densities.
 #[test]
 fn all_ways_to_draw_the_sky_agree() {
     let window = window(WINDOW[0], Profile::Hann(0.5));
@@ -292,15 +292,16 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
-    // A small sphere seen from the side; some rays within the window also meet the sphere from
-    // behind.
+    // The plane is on a small sphere that is seen from the side. Some rays within the window also
+    // meet the sphere from behind.
     let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
     if let Some(patch) = &mut aside.patch {
         patch.curvature = [2.5; 3];
     }
     let cases = [
         (&plain, after(&plain, 1.0)),
-        // A plane at the light itself, displaced by about the rounding error of a tilted scene.
+        // The plane is at the light itself, displaced by about the rounding error of a tilted
+        // scene.
         (&plain, after(&plain, -1e-16)),
         (&plain, local),
         (&plain, aside),
@@ -331,9 +332,9 @@ fn all_ways_to_draw_the_sky_agree() {
     }
 }
 
-/// Section 6.1 of Durand et al. 2005: the spectrum of an environment's light on a surface of
-/// curvature k is near the line Ωx = k Ωθ. The spectrum of light from a single direction is
-/// exactly on this line.
+/// Tests a statement of section 6.1 of Durand et al. 2005. On a surface of curvature k, the
+/// spectrum of an environment's light is near the line Ωx = k Ωθ, and the spectrum of light from a
+/// single direction is exactly on this line.
 #[test]
 fn curvature_shears_the_sky_onto_a_line() {
     let narrow = SphericalGaussian {

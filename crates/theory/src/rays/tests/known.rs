@@ -11,7 +11,7 @@ const GOOD: f64 = 1e-6;
 /// Relative error allowed for nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
-/// Returns slices whose values are those of a function of the frequency.
+/// Returns slices whose values are computed by a function of the frequency.
 fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     let mut slices = Slices::zeros(*grid);
     for ((k, m, n), to) in slices.half.indexed_iter_mut() {
@@ -135,7 +135,8 @@ fn area_lights_agree_with_polygons() {
     }
 }
 
-/// Tests the shadows of a rectangle and of a disc, whose edges reduce the advantage of nets.
+/// Tests the errors of the shadows of a rectangle and of a disc. Edges of shadows reduce the
+/// advantage of nets over random points.
 #[test]
 fn shadows_are_as_good_as_stated() {
     let square_light = Shape::Rectangle(square([0.0, 0.05], 0.2));
@@ -205,7 +206,7 @@ fn plane_mirror_is_a_travel() {
         };
     }
     let off = got.slices.relative_difference(&turned);
-    assert!(off < 1e-9, "{off:e}"); // the same lattice of rays, turned over
+    assert!(off < 1e-9, "{off:e}"); // the same lattice of rays, but reversed
     assert!(got.slices.relative_difference(&expected.slices) > 0.01);
 }
 

@@ -3,8 +3,8 @@
 
 use super::*;
 
-/// Returns ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e
-/// times as high.
+/// Returns ‖linear − exact‖/‖exact‖ at a size e, where windows and light are e times as wide, and
+/// frequencies are 1/e times as high.
 fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));
@@ -56,7 +56,7 @@ fn beams_refraction_and_two_mirrors_converge() {
     };
     for system in [oblique, two, glass] {
         let found = order(&system, &after(&system, 0.3), [0.5, 0.5]);
-        assert!((found - 1.0).abs() < 0.25, "{found}"); // as above
+        assert!((found - 1.0).abs() < 0.25, "{found}"); // the next power of e
     }
 }
 

@@ -134,8 +134,8 @@ fn chain_is_the_derivative_of_the_rays() {
 
 #[test]
 fn printed_chains_are_not() {
-    // None of the printed editions gives the correct map onto a surface, and with a curved mirror
-    // none gives the correct map behind the mirror.
+    // None of the printed editions gives the correct map onto a surface. If the mirror is curved,
+    // none of them gives the correct map behind the mirror.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
     for print in [Edition::Equations, Edition::Table] {
@@ -318,8 +318,9 @@ fn a_wrong_map_leaves_a_defect() {
     }
 }
 
-/// Behind a mesh, a plane is perpendicular to the central ray reflected by the mesh's normals, and
-/// slightly tilted relative to the central ray reflected by the mesh's patch.
+/// Tests planes that are slightly tilted relative to the central ray. Behind a mesh, the plane is
+/// perpendicular to the ray that the mesh's normals reflect, and this ray differs slightly from the
+/// ray that the mesh's patch reflects.
 #[test]
 fn a_plane_may_lean_against_the_leg() {
     for system in systems() {

@@ -62,7 +62,7 @@ fn projection_of_an_area_light() {
         .zip(&expected.values)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
-    assert!(worst < 0.02 * most, "{}", worst / most); // as stated
+    assert!(worst < 0.02 * most, "{}", worst / most); // accuracy of pictures from nets
 }
 
 #[test]

@@ -93,8 +93,8 @@ fn white(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// Builds a surface 1 m from the light that the central ray meets at the angle θ₀, in the plane of
-/// X and the ray.
+/// Builds a surface 1 m from the light. The central ray meets the surface at the angle θ₀ in the
+/// plane of X and the ray.
 fn system(
     light: Light,
     theta0: f64,
@@ -173,8 +173,8 @@ fn projector(width: f64) -> Light {
     }
 }
 
-/// Tests that light of a flat Lambertian surface at normal incidence behind blockers equals the
-/// light of a closed-form receiver.
+/// Tests a flat Lambertian surface at normal incidence behind blockers. The light that leaves the
+/// surface must equal the light that a closed-form receiver reflects.
 #[test]
 fn flat_lambertian_surface_is_the_receiver() {
     let blocker = vec![Shape::Rectangle(Rectangle {
@@ -342,8 +342,9 @@ fn weighted_and_separable_brdfs_are_of_first_order() {
     }
 }
 
-/// Tests that three wrong chains have larger errors than the correct chain: with a lobe around the
-/// normal, without the cosine, and with an exponent that is wrong by 5 %.
+/// Tests that three wrong chains have larger errors than the correct chain. The first chain has a
+/// lobe around the normal, the second has no cosine, and the third has an exponent that is wrong by
+/// 5 %.
 #[test]
 fn wrong_operators_are_seen() {
     let theta0 = 0.6;
@@ -453,8 +454,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // The tolerance is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // The tolerance is the error of the net plus the error (1/40)²/24 from kinks between
-        // pixels, which are 0.006 rad apart for a lobe of width 0.25.
+        // The tolerance is the error of the net plus the error (1/40)²/24 that kinks between pixels
+        // cause. Pixels are 0.006 rad apart, and the lobe has a width of 0.25.
         (map([1024, 512]), 1e-4),
         // The map is interpolated bilinearly between pixel centres 0.03 rad apart, which causes an
         // error of (1/8)²/12 of the lobe's curvature.
