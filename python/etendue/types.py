@@ -102,7 +102,7 @@ class Brdf(TypedDict):
     fresnel: NotRequired["Fresnel"]
     """Fresnel factor"""
     incoming: NotRequired[Union[Sequence[float], None]]
-    """Factor that depends on the angle of incidence: values at equal steps from the normal to 90 degrees, interpolated linearly; 1 by default"""
+    """Factor that depends on the angle of incidence. Its values, at equal steps from the normal to 90 degrees, are interpolated linearly; 1 by default"""
     lobe: "Lobe"
     """Lobe of the BRDF"""
     outgoing: NotRequired[Union[Sequence[float], None]]
@@ -339,7 +339,7 @@ class LightProjectorFields(TypedDict):
 
 
 class LightRays(TypedDict):
-    """The rays of a file, at their intersections with the plane through the centre that is perpendicular to `path.direction`; rays that go backwards are omitted."""
+    """The rays of a file. They start where they cross the plane through the centre that is perpendicular to `path.direction`; rays that go backwards are omitted."""
 
     Rays: "LightRaysFields"
 
@@ -350,7 +350,7 @@ class LightRaysFields(TypedDict):
     file: str
     """IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay inside its folder"""
     flux: NotRequired[Union[float, None]]
-    """Flux of all rays of the file, in W. By default, the flux stated in the file, which must be in W, or in lm if the file states the total flux in both W and lm. 1e-9 to 1e9"""
+    """Flux of all rays of the file, in W. By default, the flux that the file states. This flux must be in W, or in lm if the file states the total flux in both W and lm. 1e-9 to 1e9"""
     front: NotRequired[Union[Sequence[float], None]]
     """Direction, of any length, of the file's Z axis; by default, `path.direction`"""
     up: NotRequired[Union[Sequence[float], None]]
@@ -449,7 +449,7 @@ class MeshSourceStarFields(TypedDict):
 
 
 class Path(TypedDict):
-    """The central ray: it leaves the light's centre and travels from surface to surface, each of which sends it towards the centre of the next."""
+    """The central ray. It leaves the light's centre and travels from surface to surface; each surface sends it towards the centre of the next."""
 
     direction: Sequence[float]
     """Direction, of any length, in which the ray leaves the light"""
@@ -499,13 +499,13 @@ class PatternPictureFields(TypedDict):
 
 
 class PlaceAfter(TypedDict):
-    """In the plane of these blockers, after light has passed them; or in the plane of this surface, as light leaves it."""
+    """In the plane of these blockers or this surface; records the light that has passed the blockers or leaves the surface."""
 
     After: str
 
 
 class PlaceBefore(TypedDict):
-    """In the plane of these blockers or this surface, before light meets them."""
+    """In the plane of these blockers or this surface; records the light that arrives there."""
 
     Before: str
 
@@ -565,7 +565,7 @@ class Run(TypedDict):
     """The settings of the measurement."""
 
     alpha: NotRequired[float]
-    """Share of correct scenes that the verdict may reject, for all planes together. 1e-6 to 0.5"""
+    """Probability that the verdict rejects a correct scene, for all planes together. 1e-6 to 0.5"""
     batches: NotRequired[int]
     """Number of independent batches, from which errors are estimated. 32 to 1024: errors are estimated from the spread between batches"""
     emission: NotRequired["Emission"]
@@ -573,7 +573,7 @@ class Run(TypedDict):
     photons: NotRequired[int]
     """Number of emitted photons, which may be written as 1e7. at least one for each batch, at most 10^12"""
     resolution: NotRequired[float]
-    """Noise, as a share of the spectrum, above which a plane does not pass. 0.0001 to 1"""
+    """Largest noise, as a share of the spectrum, with which a plane passes. 0.0001 to 1"""
     sampling: NotRequired["Sampling"]
     """The random numbers from which photons are drawn"""
     seed: NotRequired[int]
@@ -679,7 +679,7 @@ class SurfaceRectangleFields(TypedDict):
     center: Sequence[float]
     """Centre, in world coordinates"""
     facing: NotRequired[Union[Sequence[float], None]]
-    """Normal of the rectangle, of any length; by default, opposite to `path.direction`. One pair of edges is along the part of the path's X axis that is orthogonal to the normal (of the Y axis, if X is along the normal); the other pair is orthogonal to the first"""
+    """Normal of the rectangle, of any length; by default, opposite to `path.direction`. One pair of edges is along the part of the path's X axis that is orthogonal to the normal; if X is along the normal, the Y axis is used. The other pair is orthogonal to the first"""
     name: str
     """Name by which the path and the planes refer to the surface"""
     size: Sequence[float]
@@ -719,12 +719,12 @@ class Term(TypedDict):
 
 
 class Window(TypedDict):
-    """The window: a profile for each coordinate; by default, y has the profile of x, and v has that of u."""
+    """The window, with a profile for each coordinate. By default, y has the profile of x, and v has the profile of u."""
 
     u: "Profile"
-    """Profile along u, as a slope"""
+    """Profile along the slope u"""
     v: NotRequired[Union["Profile", None]]
-    """Profile along v"""
+    """Profile along the slope v"""
     x: "Profile"
     """Profile along x, in metres"""
     y: NotRequired[Union["Profile", None]]
@@ -767,7 +767,7 @@ MeshSource = Union["MeshSourceFile", "MeshSourceParaboloid", "MeshSourceStar"]
 """The source of a mesh."""
 
 Orientation = Union[Literal["Orthogonal"], Literal["Tangent"], Literal["LocalNormals"], Literal["Mirrored"]]
-"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, so the directions of arriving light are reversed. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
+"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md). Directions point away from the surface, so the directions of arriving light are reversed. A direction has the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation."""
 
 Pattern = Union["PatternCosine", "PatternCheckerboard", "PatternPicture"]
 """A number from 0 to 1 at each place of a surface."""
@@ -776,7 +776,7 @@ Place = Union[Literal["Emission"], "PlaceBefore", "PlaceAfter", "PlaceDistance"]
 """A place on the path."""
 
 Profile = Union["ProfileHann", "ProfileBox", "ProfileGaussian"]
-"""One factor of a window: 1 at its centre, zero outside |t| < half-width."""
+"""One factor of a window. The factor is 1 at its centre and zero outside |t| < half-width."""
 
 Quantity = Union[Literal["Radiance"], Literal["DifferentialIrradiance"]]
 """The quantity that a plane records."""

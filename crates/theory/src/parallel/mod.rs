@@ -14,7 +14,7 @@
 //! | a diffuse receiver | `receiver` |
 //! | a curved glossy receiver at normal incidence, in flatland | `images`, `gloss` |
 //! | prediction by nets of rays | `sampled` |
-//! | light of finitely many rays | `given` |
+//! | light of finitely many rays | `ray_list` |
 
 mod at;
 pub(crate) mod chain;
