@@ -1,4 +1,5 @@
-//! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
+//! Draws the pictures of a run: the light field and the spectrum of each plane, and the strip along
+//! the path.
 
 mod chance;
 mod cross_section;
@@ -108,9 +109,9 @@ fn primal(
     .map_err(Failure::cannot_run)
 }
 
-/// The radial spectrum of a plane. Where the window determines the values between the frequencies,
-/// measured and predicted are drawn without visible cells. The difference and the stored numbers
-/// are at the frequencies of the scene.
+/// The radial spectrum of a plane. If the window determines the values between the frequencies, the
+/// measured and the predicted spectrum are drawn without visible cells. The difference and the
+/// stored numbers are at the frequencies of the scene.
 fn spectrum(
     (note, sides): (&str, [&str; 2]),
     at: &VirtualPlane,
@@ -196,7 +197,7 @@ pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// Returns the verdict and its reasons, in lines that are not wider than a picture.
+/// Returns the verdict and its reasons, in lines that are at most as wide as a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);

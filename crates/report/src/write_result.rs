@@ -1,4 +1,4 @@
-//! Writes the result of a run: arrays, pictures, the page, and the summary last.
+//! Writes the result of a run: arrays, pictures and the page, and then the summary.
 
 use crate::{explorer, page, pictures};
 use etendue_field::VirtualPlane;

@@ -32,9 +32,9 @@ impl Scene {
     /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
     /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
     /// of two spectra at the measured frequencies along x and y, both computed where the light hits
-    /// the mesh. The first spectrum is that of the window times f − 1, and the second spectrum is
-    /// that of the window alone. The effects of facets that are finer than the waves of these
-    /// frequencies average out.
+    /// the mesh. The first spectrum is the spectrum of the window times f − 1, and the second is
+    /// the spectrum of the window alone. The effects of facets that are finer than the waves of
+    /// these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);

@@ -1,4 +1,4 @@
-//! Messages that consist of a header in JSON, called words, and bytes.
+//! Encodes messages that consist of a header in JSON, called words, and of bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -45,8 +45,9 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. The function is
-    /// not inlined, which keeps loops over mostly flat shapes short.
+    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. This function
+    /// is not inlined. The machine code of loops over primitives therefore stays small, and most of
+    /// these primitives are flat.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);

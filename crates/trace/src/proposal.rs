@@ -74,7 +74,7 @@ impl ProfileDensity {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
             // One formula is used for both signs of t, because the processor would mispredict a
-            // branch every other time.
+            // branch half of the time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)

@@ -348,7 +348,8 @@ fn view(scene_file: &Value, name: &str) -> Value {
     } else {
         own
     };
-    // By default the profiles along y and v are those along x and u.
+    // By default, the profile along y is the profile along x, and the profile along v is the
+    // profile along u.
     let profile = |name: &str, along: &str| {
         let own = &window[name];
         if own.is_null() {

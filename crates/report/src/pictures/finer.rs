@@ -3,16 +3,16 @@
 //! The window bounds the light field, so the spectrum between given frequencies is determined by
 //! these frequencies. Of all windowed light fields W ℓ with the given spectrum, the one with the
 //! least ∫ ℓ² is drawn. The spectrum of the drawn light field is a weighted sum of the given
-//! values. The weights follow from the covariance of white noise behind the window, K(Ω) = ∫ W²
-//! e^(−2πi Ω z) dz / ∫ W².
+//! values. The weights follow from the covariance of the spectrum of white noise times the window,
+//! K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
 
-/// The number of cells along an axis above which single cells are not visible.
+/// If an axis has more cells than this number, single cells are not visible.
 const SMOOTH: usize = 160;
-/// The largest share of the variance of an intermediate value that the given values may leave
+/// The given values may leave at most this share of the variance of an intermediate value
 /// undetermined.
 const OPEN: f64 = 0.01;
 
@@ -65,8 +65,8 @@ impl Finer {
     }
 }
 
-/// The mean power over azimuths at the finer frequencies. The noise that was removed from `power`,
-/// at the frequencies of the scene, is also removed here.
+/// Returns the mean power over azimuths at the finer frequencies. The noise that was removed from
+/// `power`, at the frequencies of the scene, is also removed here.
 pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
     let noise = slices.radial_power() - power;
     let (from, to) = (&slices.grid, &finer.grid);
@@ -112,7 +112,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     to.values().into_iter().map(place).collect()
 }
 
-/// The covariance, along a slice, of the spectrum of white noise behind a window.
+/// The covariance between frequencies of a slice, for white noise that is multiplied by a window.
 struct WindowCovariance {
     /// Points of the squares of both profiles along the slice, with their weights.
     profiles: [Vec<(f64, f64)>; 2],

@@ -1,10 +1,11 @@
-//! Names of a plane's coordinates, and axes with them.
+//! Names the coordinates of a plane, and returns axes with these names.
 
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{Axis, AxisQuantity};
 use etendue_spectrum::field::FullRadial;
 
-/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
+/// The names of a plane's coordinates. A plane across the central ray has slopes, and a plane on a
+/// surface has angles.
 pub(super) struct CoordinateNames {
     pub(super) along: [&'static str; 2],
     pub(super) across: [&'static str; 2],
