@@ -31,7 +31,7 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // If `progress` unwinds to stop the work, each further row ends here.
+            // If `progress` unwinds to stop the work, this call ends each further row.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();

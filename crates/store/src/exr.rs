@@ -1,5 +1,5 @@
-//! Writes OpenEXR files. A file consists of parts with one channel each, and states the source of
-//! its numbers.
+//! Writes OpenEXR files. Each part of a file has one channel, Y, and a record of the source of its
+//! numbers.
 
 use crate::Failure;
 use exr::prelude::{
