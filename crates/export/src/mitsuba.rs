@@ -1,8 +1,8 @@
 //! Export to Mitsuba's scene format.
 //!
-//! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along
-//! X, Y and D of the central ray. Coordinates are written with so many digits that every f64 is
-//! read back exactly.
+//! The coordinates are the coordinates of [`Scene`], in metres. The centre of the light is at the
+//! origin, and x, y and z are along X, Y and D of the central ray. Coordinates are written with so
+//! many digits that every f64 is read back exactly.
 
 mod id;
 mod light;
@@ -260,8 +260,8 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// The largest coordinate, across the central ray, of light on its straight way to a window or a
-/// surface.
+/// Returns the largest coordinate, across the central ray, of light that goes straight to a window
+/// or a surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends

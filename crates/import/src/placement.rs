@@ -42,8 +42,9 @@ pub(crate) fn is_similarity(map: DMat3) -> bool {
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns the similarity that maps X as a regular map does, maps Y to the same side in the plane
-/// of both axes, and mirrors if the map mirrors.
+/// Returns a similarity that agrees with a regular map in three respects: X is mapped to the same
+/// vector, Y is mapped to the same side of X in the plane of both mapped axes, and the similarity
+/// mirrors if the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);
     let along = x.normalize();

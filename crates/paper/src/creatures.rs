@@ -41,7 +41,8 @@ const SPARSE: usize = 20;
 /// Number of paths per shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// The difference of a pixel, relative to white, beyond which its color no longer changes.
+/// If the difference of a pixel, relative to white, exceeds this limit, the color of the pixel no
+/// longer changes.
 const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
@@ -332,7 +333,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ]))
 }
 
-/// The radiance exceeded by a hundredth of the pixels.
+/// Returns the radiance that a hundredth of the pixels exceed.
 fn bright(radiance: &[f64]) -> f64 {
     let mut sorted = radiance.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -1,5 +1,5 @@
-//! Compares the sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected,
-//! with photons.
+//! Compares the sampling criteria of Durand et al. 2005, section 6.2, with photons. The criteria
+//! are evaluated as printed and with corrections.
 
 use crate::quality::Quality;
 use crate::scene_run::resolved;
@@ -16,8 +16,8 @@ struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// The values of the field at both ends of the lines; photons are also measured at these
-    /// values.
+    /// The values of the field at both ends of the curves. Measurements with photons are also made
+    /// at these values.
     ends: [f64; 2],
     values: &'static [f64],
     /// Converts a value of the field to the quantity on the axis.

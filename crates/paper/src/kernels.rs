@@ -137,7 +137,8 @@ impl KernelFactor {
             .map_or_else(|| cosine_hat(omega), |f| f.cosine_hat(omega))
     }
 
-    /// The frequencies below which the factor has [`SHARES`] of its energy, cycles per radian.
+    /// Returns the frequencies, in cycles per radian, below which the factor has [`SHARES`] of its
+    /// energy.
     fn energy_below(&self) -> [Option<f64>; 3] {
         let nodes = gauss_legendre(200).into_iter();
         let squares = nodes.map(|(t, w)| w * self.value(FRAC_PI_2 * t).powi(2));
@@ -146,8 +147,8 @@ impl KernelFactor {
     }
 }
 
-/// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the
-/// frequencies below which the shares of their energy lie.
+/// Draws cos₊, and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12).
+/// Also states the frequencies below which [`SHARES`] of the energy of each curve lie.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| KernelFactor { name, fresnel };
     let dielectric = |index| Some(FresnelFactor::Dielectric { index });

@@ -1,4 +1,5 @@
-//! Fig. 8: the spectrum at the receiver by slopes, by angles, and the difference of the two.
+//! Draws Fig. 8: the spectrum at the receiver over slopes, the spectrum over angles, and the
+//! difference of both.
 
 use crate::rows::{DECIBEL, Seen, feet, lettered, row};
 use crate::subject::FigureData;
@@ -50,7 +51,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
     })
 }
 
-/// Radial spectra by slopes, by angles with ρ along X, and their difference.
+/// Returns the radial spectra over slopes and over angles, with ρ along X, and their difference.
 fn panels(
     [slopes, angles]: [&Slices; 2],
     [by_slopes, by_angles]: [&Array2<f64>; 2],
@@ -62,9 +63,9 @@ fn panels(
 
 /// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
 ///
-/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. The
-/// slice by slopes at (ρ, ν) and azimuth φ is thus the slice by angles at (−ρ, ν) and azimuth −φ,
-/// or at (ρ, −ν) and azimuth π − φ.
+/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. Therefore
+/// the value over slopes at (ρ, ν) and azimuth φ is the value over angles at (−ρ, ν) and azimuth
+/// −φ, or at (ρ, −ν) and azimuth π − φ.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
     let (azimuths, columns, rows) = by_slopes.dim();

@@ -1,4 +1,5 @@
-//! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
+//! Draws Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy
+//! reflections.
 
 use crate::criteria::criteria;
 use crate::rows::{Seen, compared, feet, lettered};
@@ -29,7 +30,8 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[steps, product(taken, &seen[3])?]))
 }
 
-/// The spectrum at ν = 0, and the product of the spectra of environment and cosine.
+/// Returns the spectrum at ν = 0, and the product of the spectrum of the environment and the
+/// spectrum of the cosine.
 fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
     let scene = &taken.shots[0].scene;
     let k = scene

@@ -1,4 +1,5 @@
-//! Figures of the user's scenes: a single one along its path, or several side by side at a plane.
+//! Draws figures of the user's scenes. A single scene is shown along its path, and several scenes
+//! are shown side by side at a plane.
 
 use crate::request::{FigureRequest, Wanted};
 use crate::rows::{Seen, compared, feet};

@@ -110,7 +110,7 @@ fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f6
     assert_even_with(50_000, world, question, planes, radiance);
 }
 
-/// Makes the checks of [`assert_even`] with a given number of photons per batch.
+/// Makes the checks of `assert_even` with a given number of photons per batch.
 fn assert_even_with(
     photons: u64,
     world: &World,

@@ -193,7 +193,8 @@ fn folders(
     all.scenes.iter().zip(&all.points).map(name).collect()
 }
 
-/// The name of a point: its values, and a hash that is the same for the same scene and method.
+/// Returns the name of a point. It consists of the values of the point, and of a hash of its scene
+/// and method.
 fn name_of(scene: &Scene, point: &SweepPoint, request: &SweepRequest) -> String {
     /// Maximum length of the values in a name.
     const MAX_VALUES: usize = 48;

@@ -24,7 +24,7 @@ pub enum Setting {
 /// A point of a sweep: the value of each swept field.
 pub type SweepPoint = Vec<(String, f64)>;
 
-/// The largest number of values of one sweep, and of points in total.
+/// The largest number of values of one field, and the largest total number of points.
 const MAX_POINTS: usize = 1000;
 
 /// Parses a `--set` argument of a sweep.
@@ -161,8 +161,8 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     tidy(value).parse().unwrap_or(value)
 }
 
-/// The values at all points. Fields vary together, or in all combinations with the last field
-/// varying fastest.
+/// Returns the values at all points. Fields vary together, or in all combinations; in the
+/// combinations, the last field varies fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
@@ -211,7 +211,7 @@ pub fn shown(point: &SweepPoint) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// The shortest end of a path that identifies its field, such as `Ggx` for
+/// Returns the shortest end of a path that still identifies the field, such as `Ggx` for
 /// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());

@@ -17,7 +17,7 @@ pub(crate) enum Primitive {
     Grid(Box<Grid>),
     /// A flat shape in the XY plane of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
-    /// Triangles. A mesh, in which a hit is identified by the number of the triangle.
+    /// A mesh of triangles. A hit is identified by the number of the triangle.
     Mesh(Box<BlockerMesh>),
     /// A smooth surface.
     Smooth(Box<Patch>),

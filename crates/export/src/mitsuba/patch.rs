@@ -1,5 +1,5 @@
-//! Smooth surfaces as fine meshes, because Mitsuba has whole spheres and cylinders, but no pieces
-//! of them around a vertex.
+//! Converts smooth surfaces to fine meshes, because Mitsuba has whole spheres and cylinders, but no
+//! pieces of spheres or cylinders around a vertex.
 
 use etendue_field::Patch;
 use glam::{DVec2, DVec3};
@@ -10,8 +10,8 @@ const RINGS: [usize; 2] = [16, 256];
 /// Maximum distance of the triangles from the surface, relative to the aperture. The distance is
 /// larger for patches that already have the maximum number of rings.
 const NEAR: f64 = 1e-5;
-/// The number of corners of ring i, divided by i. With 6 corners, triangles at the edge are about
-/// as long as wide, because 2π/6 ≈ 1.
+/// The number of corners of ring i, divided by i. With 6 corners, the length of triangles at the
+/// edge is about equal to their width, because 2π/6 ≈ 1.
 const SECTORS: usize = 6;
 /// The number of corners of the edge of a flat patch. The edge deviates from a circle by
 /// (π/512)²/2 = 2·10⁻⁵ of its radius.

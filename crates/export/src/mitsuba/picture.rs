@@ -1,5 +1,5 @@
-//! Pictures as PFM files (Debevec 1998): one 32-bit number per pixel, the precision that Mitsuba
-//! keeps.
+//! Writes pictures as PFM files (Debevec 1998), with one 32-bit number per pixel. Mitsuba keeps the
+//! same precision.
 
 /// Encodes rows from the top, each from the left; the file has the lowest row first.
 pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {

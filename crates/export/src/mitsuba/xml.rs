@@ -4,7 +4,8 @@ use etendue_field::{Disc, Frame, Rectangle, Shape, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// A scene file being written. Numbers are written in Rust's shortest form that reads back exactly.
+/// A scene file that is being written. Each number is written in Rust's shortest form that reads
+/// back exactly.
 pub(super) struct Xml(String);
 
 impl Xml {

@@ -1,4 +1,4 @@
-//! The files written for Mitsuba, read back.
+//! Reads back the files that are written for Mitsuba.
 
 mod smooth;
 

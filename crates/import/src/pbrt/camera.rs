@@ -227,7 +227,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Checks a box filter; a note states if its width is not one pixel.
+    /// Checks the width of a box filter, and adds a note if the width is not one pixel.
     fn check_box(&self, entity: &Entity) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {

@@ -10,8 +10,7 @@
 //!
 //! Three deviations are accepted with a note. The total flux in the header may differ from the sum
 //! over the rays (LightTools writes 1). Directions may have a length other than 1 (in the
-//! [`RaySet`](crate::RaySet) they have length 1). Fields that affect no ray may have values out of
-//! range.
+//! [`RaySet`] they have length 1). Fields that affect no ray may have values out of range.
 
 mod header;
 mod text;

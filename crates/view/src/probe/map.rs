@@ -23,7 +23,7 @@ const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"]
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
     /// The bandwidth of the picture after its mean is subtracted, in cycles per slope, along the
-    /// direction in which the bandwidth is largest.
+    /// direction in which the bandwidth is largest; `error` is its standard error.
     measured: f64,
     error: f64,
     /// The direction of the largest bandwidth, radians from the right, counter-clockwise.
