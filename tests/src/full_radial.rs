@@ -283,7 +283,8 @@ fn faults(photons: u64) -> ReportSection {
     }
 }
 
-/// Predicts the continuous spectrum, without the aliasing of a grid: a planted fault.
+/// Predicts the continuous spectrum, without the aliasing of a grid. This prediction is a planted
+/// fault.
 fn alias_free(scene: &Scene) -> PredictedField {
     use etendue_compare::Theory;
     let plane = &scene.planes[0];

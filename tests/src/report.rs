@@ -1,4 +1,5 @@
-//! Validation results: numbers that are checked against bounds, and the tables that show them.
+//! Defines the results of a validation: numbers that are checked against bounds, and tables that
+//! show these numbers.
 
 use crate::rows::Line;
 use etendue_compare::{PlaneReport, Verdict};
@@ -34,7 +35,8 @@ impl Check {
         }
     }
 
-    /// Returns a check that a fact is true; the checked number is 1 if it is, else 0.
+    /// Returns a check that a fact is true. The checked number is 1 if the fact is true, and 0
+    /// otherwise.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }

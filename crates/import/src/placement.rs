@@ -42,9 +42,9 @@ pub(crate) fn is_similarity(map: DMat3) -> bool {
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns a similarity that agrees with a regular map in three respects: X is mapped to the same
-/// vector, Y is mapped to the same side of X in the plane of both mapped axes, and the similarity
-/// mirrors if the map mirrors.
+/// Returns the similarity that is closest to a regular map in these respects. Both map X to the
+/// same vector. Both map Y to the same half-plane beside the mapped X. The similarity mirrors if
+/// the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);
     let along = x.normalize();

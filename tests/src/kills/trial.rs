@@ -1,4 +1,4 @@
-//! One trial: it starts a command in a folder, disturbs the command, and then checks the folder.
+//! Runs one trial: starts a command in a folder, disturbs the command, and then checks the folder.
 
 use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
@@ -25,8 +25,8 @@ pub(super) enum KillTrouble {
 pub(super) enum Finding {
     TwoWriters,
     FullDisk,
-    /// The index of the folder is that of the earlier result (`Before`), missing (`Between`) or
-    /// new (`After`).
+    /// The index of the folder belongs to the earlier result (`Before`), is missing (`Between`), or
+    /// is new (`After`).
     Before,
     Between,
     After,
@@ -226,8 +226,8 @@ fn is_unfinished(task: &KillTask, name: &str) -> bool {
     name.contains(".etendue") && !is_point
 }
 
-/// Returns the size of a disk with room for the existing files and for a random part of the new
-/// files.
+/// Returns the size of a disk that has space for the existing files and for a random part of the
+/// new files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);

@@ -176,7 +176,7 @@ fn cosine() -> Vec<Statement> {
                 "irradiance of an environment on a convex surface against env ⊗ cos⁺, as spectra"
                     .to_owned(),
             number: off(&|_| 1.0),
-            // The error of the trapezoid rule across the kink of the cosine: step²/12.
+            // The error of the trapezoid rule at the kink of the cosine is step²/12.
             expected: [0.0, 2e-4],
             holds: "holds for light that depends on direction alone",
         },

@@ -1,4 +1,4 @@
-//! Runs of a scene by the program, as a user runs it, in a child process with a time limit.
+//! Runs a scene with the program, as a user does, in a child process with a time limit.
 
 use crate::hostile::child::{self, Ended, Limit};
 use etendue_scene::SceneFile;
