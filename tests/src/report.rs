@@ -123,7 +123,7 @@ impl Row {
         }
     }
 
-    /// Whether the row has checks, and all of them pass.
+    /// Checks whether the row has checks, and all of them pass.
     pub(crate) fn passes(&self) -> bool {
         !self.checks.is_empty() && failed(&self.checks).next().is_none()
     }

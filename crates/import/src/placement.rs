@@ -36,7 +36,7 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Op
     }
 }
 
-/// Whether a map keeps angles, and therefore maps spheres to spheres.
+/// Checks whether a map keeps angles, and therefore maps spheres to spheres.
 pub(crate) fn is_similarity(map: DMat3) -> bool {
     let [x, y, z] = axes(map);
     alike(x, y) && alike(y, z) && is_orthogonal(map)

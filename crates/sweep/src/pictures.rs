@@ -122,7 +122,7 @@ fn panel(
     }
 }
 
-/// Whether there are at least three values, and the values grow by equal factors.
+/// Checks whether there are at least three values, and the values grow by equal factors.
 fn go_by_factors(values: impl Iterator<Item = f64>) -> bool {
     // The relative rounding error of the values of a range, with a margin.
     const ROUNDING: f64 = 1e-6;

@@ -49,7 +49,8 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether a text has a comma outside of parentheses and quotes, which shows that it is a list.
+/// Checks whether a text has a comma outside of parentheses and quotes, which shows that it is a
+/// list.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {

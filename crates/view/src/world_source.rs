@@ -128,7 +128,7 @@ fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, 
     })
 }
 
-/// Whether the scene has a light.
+/// Checks whether the scene has a light.
 pub(crate) fn has_light(world: &World) -> bool {
     let shines = world.shapes.iter().any(|shape| shape.emission.is_some());
     shines || !world.lights.is_empty()

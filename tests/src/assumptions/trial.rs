@@ -126,8 +126,8 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
     }
 }
 
-/// Whether a theory can describe the surfaces on the central ray. The theory of parallel planes
-/// describes at most one surface, which must be Lambertian and lit by a lamp.
+/// Checks whether a theory can describe the surfaces on the central ray. The theory of parallel
+/// planes describes at most one surface, which must be Lambertian and lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;

@@ -134,7 +134,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
         .last()
 }
 
-/// Whether photons and prediction disagree at any plane.
+/// Checks whether photons and prediction disagree at any plane.
 fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let p_value = |(i, plane): (usize, &VirtualPlane)| {

@@ -167,7 +167,7 @@ fn step(
     Ok(ended)
 }
 
-/// Whether a run on the unmutated input also takes a large part of the time limit.
+/// Checks whether a run on the unmutated input also takes a large part of the time limit.
 fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
     let Some(sound) = &attack.sound else {
         return Ok(false);
@@ -232,7 +232,7 @@ fn wrote(
     Ok(names.into_iter().map(str::to_owned).collect())
 }
 
-/// Whether the message gives the position of the fault in the text.
+/// Checks whether the message gives the position of the fault in the text.
 fn is_syntax(stderr: &[u8]) -> bool {
     let message = String::from_utf8_lossy(stderr);
     message.contains(": line ") && message.contains(", column ")

@@ -219,8 +219,8 @@ impl TrialBench<'_> {
     }
 }
 
-/// Whether this file is a remnant of a killed writer. Remnants of a killed writer may stay in the
-/// folder of a sweep's point, because they are removed when the point is run again.
+/// Checks whether this file is a remnant of a killed writer. Remnants of a killed writer may stay
+/// in the folder of a sweep's point, because they are removed when the point is run again.
 fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point

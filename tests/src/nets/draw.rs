@@ -66,7 +66,7 @@ impl BlockerKind {
         }
     }
 
-    /// Whether a closed form exists with which the nets' prediction is compared.
+    /// Checks whether a closed form exists with which the nets' prediction is compared.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,

@@ -78,8 +78,8 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether a measurement with the other tracer (photons or backward rays) replaced theory at
-    /// this plane.
+    /// Checks whether a measurement with the other tracer (photons or backward rays) replaced
+    /// theory at this plane.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }

@@ -222,7 +222,8 @@ impl<'a> Surroundings<'a> {
         Some(Meets::Layer { index, leg })
     }
 
-    /// Whether the prediction includes every place on a leg where light meets these blockers.
+    /// Checks whether the prediction includes every place on a leg where light meets these
+    /// blockers.
     pub(super) fn has_taken(&self, index: usize, leg: usize) -> bool {
         let mut taken = self.taken.iter();
         taken.any(|layer| layer.index == index && layer.from <= leg)

@@ -159,7 +159,7 @@ fn blended(weight: &str, zero: &str, one: &str) -> String {
     format!("<bsdf type=\"blendbsdf\">{weight}{zero}{one}</bsdf>")
 }
 
-/// Whether a picture covers a circle of this radius around its centre.
+/// Checks whether a picture covers a circle of this radius around its centre.
 fn covers(picture: &Picture, radius: f64) -> bool {
     picture.size.iter().all(|side| 0.5 * side >= radius)
 }

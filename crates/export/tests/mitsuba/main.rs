@@ -41,7 +41,7 @@ fn text<'a>(export: &'a Export, name: &str) -> &'a str {
     std::str::from_utf8(file(export, name)).expect("text")
 }
 
-/// Whether a mesh file states these numbers of vertices and faces.
+/// Checks whether a mesh file states these numbers of vertices and faces.
 fn counts(export: &Export, name: &str, [vertices, faces]: [usize; 2]) -> bool {
     let ply = String::from_utf8_lossy(file(export, name));
     ply.contains(&format!("element vertex {vertices}\n"))

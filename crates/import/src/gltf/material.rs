@@ -170,7 +170,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Whether a material emits light.
+/// Checks whether a material emits light.
 fn is_lit(source: &BufferSource) -> bool {
     source.emissive_factor.0.iter().any(|v| *v > 0.0)
 }

@@ -88,7 +88,7 @@ fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     ))
 }
 
-/// Whether a map is rigid, within the rounding of numbers with few digits.
+/// Checks whether a map is rigid, within the rounding of numbers with few digits.
 pub(super) fn is_rigid(map: DAffine3) -> bool {
     let gram = map.matrix3.transpose() * map.matrix3;
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)

@@ -261,7 +261,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Whether a window is smaller than the whole picture.
+/// Checks whether a window is smaller than the whole picture.
 fn is_part(window: [f64; 4], whole: [f64; 4]) -> bool {
     let inward = [1.0, -1.0, 1.0, -1.0];
     (0..4).any(|i| (window[i] - whole[i]) * inward[i] > 0.0)

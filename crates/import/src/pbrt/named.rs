@@ -11,7 +11,7 @@ pub(super) fn index(name: &str) -> Option<[f64; 3]> {
     Some(found.1)
 }
 
-/// Whether a name denotes a standard illuminant.
+/// Checks whether a name denotes a standard illuminant.
 pub(super) fn is_illuminant(name: &str) -> bool {
     let Some(which) = name.strip_prefix("stdillum-") else {
         return false;
