@@ -31,7 +31,7 @@ pub(crate) struct Live {
 #[derive(Default)]
 struct Works {
     begun: u64,
-    /// The nested works in progress, of which the innermost is the last.
+    /// The nested works in progress. The innermost work is the last.
     in_hand: Vec<Arc<Counted>>,
     ended: Option<Arc<Counted>>,
 }

@@ -69,7 +69,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// Returns the scene of the case, without planes other than that of the case.
+    /// Returns the scene of the case with only the plane of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
         let (name, text) = found.expect("a scene of these");

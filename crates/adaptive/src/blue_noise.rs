@@ -53,9 +53,9 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points drawn from the density. The points are drawn independently. Stratified points
-/// would be less crowded in dense regions, so elimination would leave too many points in these
-/// regions.
+/// Returns random points that are drawn from the density. The points are drawn independently.
+/// Stratified points would be less crowded in dense regions, so elimination would leave too many
+/// points in these regions.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,

@@ -61,8 +61,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// Computes the difference from the products of the spectra in a bin. The spectra are those of
-    /// the prediction and those of the groups, whose shares are `a`.
+    /// Computes the difference from the products of the spectra in a bin. The spectra belong to the
+    /// prediction and to the groups, whose shares are `a`.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;
@@ -134,7 +134,7 @@ impl FullRadialComparison {
     /// `seed` is the seed of the random signs of the p-value.
     ///
     /// # Panics
-    /// Panics if the prediction comes in groups that differ from those of the measurement.
+    /// Panics if the prediction comes in groups that differ from the groups of the measurement.
     #[must_use]
     pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
         let bins = RadialBins::new(&measured.grid);

@@ -39,8 +39,8 @@ pub struct PlaneComparison {
     /// Standard deviation of measured minus predicted radial power, [ρ, ν], if the prediction is
     /// true.
     pub radial_sigma: Array2<f64>,
-    /// |S − F₁|², F₁ being the first-order chain's slices, averaged over the azimuths, [ρ, ν]; `None`
-    /// where there is no chain.
+    /// |S − F₁|², averaged over the azimuths, [ρ, ν], where F₁ are the slices of the first-order
+    /// chain; `None` where there is no chain.
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,

@@ -141,7 +141,8 @@ pub struct PlaneReport {
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
-    /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
+    /// 95 % bandwidths of the light after its mean is subtracted. They show how fast the light
+    /// changes.
     pub variation_95: Bandwidth,
     /// Second central moments of the windowed light field over the coordinates of the plane. The
     /// moments are `None` where no light arrived.

@@ -165,7 +165,7 @@ pub struct Estimate {
 /// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²). Also returns the
 /// probability of a pull at least as far from zero, if both estimates have the same true value.
 ///
-/// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
+/// The test follows Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. Returns `None` where neither estimate has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {

@@ -237,7 +237,7 @@ impl Writer {
     }
 }
 
-/// A rectangle as two triangles.
+/// Returns a rectangle as two triangles.
 fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     let [[left, right], [low, high]] = [rectangle.extent(0), rectangle.extent(1)];
     let corner = |x, y| DVec3::new(x, y, distance);
@@ -245,8 +245,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin. Light reaches no coordinate of
-/// modulus `beyond` or more.
+/// Returns the part of a half-plane that light can reach, with a margin. Light reaches no
+/// coordinate of modulus `beyond` or more.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {
@@ -282,7 +282,7 @@ fn reach(scene: &Scene) -> f64 {
     windows.chain(corners).fold(light, f64::max)
 }
 
-/// The name of an object that extends behind the plane of the light.
+/// Returns the name of an object that extends behind the plane of the light.
 fn behind(scene: &Scene) -> Option<String> {
     let mut bodies = bodies(scene);
     let found = bodies.find(|(_, corners)| corners.iter().any(|p| p.z < 0.0));

@@ -106,7 +106,7 @@ fn panel(
     })
 }
 
-/// The bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
+/// Returns the bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
 /// function returns the bandwidth behind the edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
@@ -123,7 +123,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// A measurement with photons: the value on the axis, the bandwidth and its standard error.
+/// Returns a measurement with photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

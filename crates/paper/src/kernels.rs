@@ -43,7 +43,7 @@ fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
     }
 }
 
-/// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
+/// Draws g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
 pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slope = || AxisQuantity::new("*v*", "slope");
     let frequency = || AxisQuantity::new("*Ω*", "cycles/slope");
@@ -75,7 +75,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[curves, solid_slopes(taken)?]))
 }
 
-/// G(u, v) and its transform over both slopes and both frequencies (Fig. 5c).
+/// Draws G(u, v) over both slopes, and its transform over both frequencies (Fig. 5c).
 fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let at = |i: usize, end: f64| end * (2.0 * i as f64 / (CELLS - 1) as f64 - 1.0);
     let map = |end: f64, f: &dyn Fn(f64, f64) -> f64| {

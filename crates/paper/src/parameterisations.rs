@@ -81,7 +81,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// The norm of the difference divided by the norm of the spectrum.
+/// Returns the norm of the difference divided by the norm of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -94,7 +94,7 @@ fn off(angles: &Seen<'_>) -> Vec<String> {
     ]
 }
 
-/// The 95 % bandwidths of a plane.
+/// Returns the 95 % bandwidths of a plane.
 fn bandwidths(seen: &Seen<'_>) -> Vec<String> {
     let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
     let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];

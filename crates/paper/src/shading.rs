@@ -78,7 +78,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
     })
 }
 
-/// The lobes of an environment over longitude, integrated over latitude.
+/// Returns the lobes of an environment over longitude, integrated over latitude.
 fn glows(light: &Light) -> Vec<Glow> {
     let Light::Environment { environment } = light else {
         return Vec::new();
@@ -94,8 +94,8 @@ fn glows(light: &Light) -> Vec<Glow> {
     lobes.iter().map(glow).collect()
 }
 
-/// |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied by the
-/// window and transformed back.
+/// Returns |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied
+/// by the window and transformed back.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
     // The range extends to four times the last frequency, because lobes of a tenth of a radian

@@ -136,7 +136,7 @@ impl Paths {
     }
 
     /// Estimates, by one path, the direct light that base and lobe scatter to the eye, in W m⁻²
-    /// sr⁻¹. The random numbers are those of point `index` of a net, which all calls with the same
+    /// sr⁻¹. The random numbers belong to point `index` of a net, which all calls with the same
     /// `number` share.
     #[must_use]
     pub fn direct(&self, seen: &SurfaceHit, seed: u64, number: u64, index: u32) -> [f64; 2] {

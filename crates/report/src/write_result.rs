@@ -22,7 +22,7 @@ pub struct OutputOptions<'a> {
 /// arrays hold the numbers.
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
-/// The files that a comparison of a scene writes.
+/// Returns the files that a comparison of a scene writes.
 pub fn plan(
     scene: &Scene,
     save: &[Save],

@@ -279,7 +279,7 @@ impl NpzFile {
             .is_some()
     }
 
-    /// Checks that the axes are exactly those of a grid.
+    /// Checks that the axes are exactly the axes of a grid.
     pub fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
         for (name, values) in half_axes(grid) {
             let found: Array1<f64> = self.array(name, [values.len()])?;

@@ -176,8 +176,8 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points. The function checks that these folders are inside the folder of the
-/// sweep.
+/// Returns the folders of the points. The function checks that these folders are inside the folder
+/// of the sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,
@@ -282,7 +282,7 @@ fn undecided(at: &PointResult) -> Vec<String> {
     reasons.collect()
 }
 
-/// The table for the terminal: a row for each plane at each point.
+/// Returns the table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
         (BANDWIDTHS[0], "95 % bandwidth in ρ [cycles/m]"),

@@ -64,7 +64,7 @@ fn is_list(text: &str) -> bool {
     })
 }
 
-/// The argument has the form `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal
+/// Parses an argument of the form `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal
 /// factors) or `PATH=A,B,C`.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
@@ -96,7 +96,7 @@ impl Sweep {
     }
 }
 
-/// The values of a range or a list.
+/// Returns the values of a range or a list.
 fn values_of(text: &str) -> Result<Vec<f64>, String> {
     match text.split_once("..") {
         None => text.split(',').map(number).collect(),
@@ -197,7 +197,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// A message, and the name of the point that it concerns.
+/// Returns a message, and the name of the point that it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
@@ -206,7 +206,7 @@ pub fn message_at(point: &SweepPoint, text: String) -> String {
     }
 }
 
-/// A description of a point.
+/// Returns a description of a point.
 pub fn shown(point: &SweepPoint) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")

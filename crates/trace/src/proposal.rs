@@ -188,7 +188,8 @@ impl Aim {
 /// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
 /// light and cross the window. The position x is drawn second: the window's profile is applied to
 /// the positions in the window that light with the drawn slope reaches. All samples start on the
-/// light and cross the window. For a point light x is fixed, and the density is that of u alone.
+/// light and cross the window. For a point light, x is fixed, and the density is the density of u
+/// alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.

@@ -64,7 +64,8 @@ const FAULTS: [(&str, SizedFault); 7] = [
     ),
 ];
 
-/// Returns a predictor whose windows are wider than those of the scene by the given fractions.
+/// Returns a function that predicts slices with windows that are wider than the windows of the
+/// scene by the given fractions.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut wide = plane.clone();

@@ -28,7 +28,7 @@ fn beyond(distance: f64) -> f64 {
 /// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// Returns all tables, including those of planted faults.
+/// Returns all tables, including the tables of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);

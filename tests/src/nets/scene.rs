@@ -224,13 +224,13 @@ fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     lower
 }
 
-/// The residuals of all replicates (single nets) at one frequency.
+/// Returns the residuals of all replicates (single nets) at one frequency.
 fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
     let replicates = found.replicates.iter();
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
 }
 
-/// Student's t of the real value at zero frequency.
+/// Returns Student's t of the real value at zero frequency.
 fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     let zero = [0, 0, truth.grid.nu.half];
     let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
@@ -238,7 +238,7 @@ fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     mean / error
 }
 
-/// Hotelling's T divided by √2, which for circular noise equals |d|/σ.
+/// Returns Hotelling's T divided by √2, which equals |d|/σ for circular noise.
 fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;

@@ -104,9 +104,9 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Each slope of the microfacets is normally distributed with variance α²/2. The density of
-/// normals per solid angle is the density of slopes times 1/cos⁴ and a constant (Beckmann and
-/// Spizzichino 1963).
+/// Returns Beckmann's density of normals. Each slope of the microfacets is normally distributed
+/// with variance α²/2. The density of normals per solid angle is the density of slopes times 1/cos⁴
+/// and a constant (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = match fault {
         "α² is the variance along an axis" => 2.0 * roughness * roughness,

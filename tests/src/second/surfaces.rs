@@ -164,7 +164,8 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
     }
 }
 
-/// Refraction by Snell's law in angles (Born and Wolf 1999, 1.5.1); `None` for total reflection.
+/// Returns the direction after refraction, by Snell's law in angles (Born and Wolf 1999, 1.5.1);
+/// `None` for total reflection.
 fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
     let is_from_front = dot(along, normal) < 0.0;
     let (ahead, ratio) = if is_from_front {

@@ -163,7 +163,7 @@ fn complementary() -> f64 {
     (product.re - tail - rest).abs() / (size + tail)
 }
 
-/// Two cosine gratings at depths 0 and 1 m.
+/// Tests two cosine gratings at depths 0 and 1 m.
 fn wedge() -> Vec<Statement> {
     let frequency = 2.0;
     let content = |modulation: f64| {

@@ -21,9 +21,10 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// cosⁿ on the half-circle has a discontinuous n-th derivative.
+/// Tests cosⁿ on the half-circle, whose n-th derivative is discontinuous.
 fn discontinuity(n: i32) -> Statement {
-    // The frequencies Ω are chosen such that |sin(π²Ω)| or, for even n, |cos(π²Ω)| equals one.
+    // The frequencies Ω are chosen such that |sin(π²Ω)| equals one for odd n, and |cos(π²Ω)| equals
+    // one for even n.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
     let points: Vec<[f64; 2]> = [20, 28, 40, 56, 80, 113, 160]
         .map(|m| {

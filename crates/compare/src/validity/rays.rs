@@ -192,8 +192,8 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // Rays of a lobe are also drawn far from the centre of the lobe, because perhaps
-                // only light far from the centre travels forward.
+                // Rays of a lobe are also drawn far from the centre of the lobe, because it is
+                // possible that only light far from the centre travels forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);

@@ -17,8 +17,8 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// A picture that samples a function at pixel centres, given in pixels from the left and from the
-/// top.
+/// Returns a picture that samples a function at pixel centres, given in pixels from the left and
+/// from the top.
 pub(super) fn sampled(
     [width, height]: [usize; 2],
     value: impl Fn(f64, f64) -> f64,

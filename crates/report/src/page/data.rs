@@ -212,7 +212,7 @@ impl<'a> PlaneData<'a> {
     }
 }
 
-/// The pictures |S|², |F|² and |S − F|/σ at each azimuth.
+/// Returns the pictures |S|², |F|² and |S − F|/σ at each azimuth.
 fn slices(found: &PlaneComparison) -> Vec<Grids> {
     let measured = found.measured.half.outer_iter();
     let predicted = found.predicted.half.outer_iter();

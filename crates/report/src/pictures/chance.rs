@@ -57,8 +57,8 @@ impl Outliers {
     }
 }
 
-/// The probability that a shifted gamma variable of mean 0, variance 1 and this skewness exceeds
-/// 4 in modulus, by the approximation of Wilson and Hilferty (1931).
+/// Returns the probability that a shifted gamma variable of mean 0, variance 1 and this skewness
+/// exceeds 4 in modulus, by the approximation of Wilson and Hilferty (1931).
 fn beyond(skewness: f64) -> f64 {
     let shape = 4.0 / skewness.max(1e-6).powi(2);
     let tail = |z: f64| {

@@ -24,8 +24,9 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// Finer frequencies over the same range. Returns `None` if the scene's frequencies are fine
-    /// enough for the picture, or too far apart to determine the values between them.
+    /// Returns finer frequencies over the same range. Returns `None` if the scene's frequencies are
+    /// fine enough for the picture, or if they are too far apart to determine the values between
+    /// them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,
@@ -51,7 +52,7 @@ impl Finer {
         })
     }
 
-    /// The spectrum on the finer frequencies.
+    /// Returns the spectrum on the finer frequencies.
     pub(super) fn of(&self, slices: &Slices) -> Slices {
         let mut finer = Slices::zeros(self.grid);
         let full = slices.full();
@@ -84,7 +85,7 @@ pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) 
     finer
 }
 
-/// There is an odd number of finer frequencies for each given frequency, so each given frequency
+/// Returns finer frequencies. Their number for each given frequency is odd, so each given frequency
 /// is also a finer frequency.
 fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     let parts = SMOOTH.div_ceil(axis.count());
@@ -95,7 +96,7 @@ fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     }
 }
 
-/// The two given frequencies around each finer frequency, with their weights.
+/// Returns the two given frequencies around each finer frequency, with their weights.
 fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     let last = from.count() - 1;
     let place = |value: f64| {
@@ -150,8 +151,8 @@ impl WindowCovariance {
     }
 }
 
-/// The weights of given frequencies for finer frequencies, [finer, given]; `None` if the given
-/// frequencies do not determine all intermediate values.
+/// Returns the weights of given frequencies for finer frequencies, [finer, given]; `None` if the
+/// given frequencies do not determine all intermediate values.
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
@@ -222,8 +223,8 @@ impl Cholesky {
     }
 }
 
-/// The product A Bᵀ. The sum is written out, because matrix products of the array library differ
-/// in their bits between processors.
+/// Returns the product A Bᵀ. The sum is written out, because matrix products of the array library
+/// differ in their bits between processors.
 fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
     let sum = |a: ArrayView1<'_, f64>, b: ArrayView1<'_, Complex>| {
         let terms = a.iter().zip(b).map(|(a, b)| b * *a);
@@ -244,7 +245,7 @@ mod tests {
         v: Profile::Hann(0.4),
     };
 
-    /// The slices of a few rays, each with the weight of the window.
+    /// Returns the slices of a few rays, each with the weight of the window.
     fn of_rays(grid: SliceGrid) -> Slices {
         let rays = [
             [0.1, -0.2, 0.3, 0.05],

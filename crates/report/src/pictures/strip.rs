@@ -120,7 +120,7 @@ struct PlaneOnPath<'a> {
     theory: &'a Applicability,
 }
 
-/// The planes in the order in which light meets them.
+/// Returns the planes in the order in which light meets them.
 fn in_order<'a>(
     scene: &'a Scene,
     theories: &'a [Applicability],
@@ -139,7 +139,7 @@ fn in_order<'a>(
 }
 
 impl PlaneOnPath<'_> {
-    /// The measured radial power between the frequencies of the scene.
+    /// Returns the measured radial power between the frequencies of the scene.
     fn finer_power(&self) -> Option<Array2<f64>> {
         let PlaneComparison {
             measured, radial, ..
@@ -214,7 +214,8 @@ impl BothSlices {
     }
 }
 
-/// The differences from the first-order chains, if the map of one chain is wrong.
+/// Returns the differences between the photons and the first-order chains, if the map of one chain
+/// is wrong.
 fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     let fails = along.iter().any(|at| {
         let chain = at.compared.report.first_order.as_ref();
@@ -224,7 +225,7 @@ fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     each.map(|at| off_chain(at.compared)).collect()
 }
 
-/// A description of which spectra of planes are drawn.
+/// Describes which spectra of planes are drawn.
 pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'static str {
     let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
     match counts.iter().filter(|count| **count == 1).count() {
@@ -234,7 +235,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     }
 }
 
-/// A description of the predicted lines of a strip.
+/// Returns a description of the predicted lines of a strip.
 fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
@@ -248,8 +249,8 @@ fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &
     }
 }
 
-/// The difference of the photons from the first-order chain, in percent of the largest measured
-/// |S|, [ρ, ν].
+/// Returns the difference between the photons and the first-order chain, in percent of the largest
+/// measured |S|, [ρ, ν].
 fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     let power = &compared.radial.power;
     let peak = power.iter().copied().fold(0.0, f64::max);
@@ -259,7 +260,7 @@ fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     }
 }
 
-/// The full radial spectrum of a plane, measured and predicted.
+/// Returns the full radial spectrum of a plane, measured and predicted.
 pub fn full_radial<'a>(
     plane: &VirtualPlane,
     compared: &'a FullRadialComparison,
@@ -272,7 +273,7 @@ pub fn full_radial<'a>(
     })
 }
 
-/// The column of pictures under a plane.
+/// Returns the column of pictures under a plane.
 fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColumn<'a> {
     let PlaneOnPath {
         plane,

@@ -194,8 +194,8 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the expected measurement, which is the larger of two bandwidths: that of the criterion
-/// and that of the window.
+/// Returns the expected measurement, which is the larger of two bandwidths: the bandwidth by the
+/// criterion, and the bandwidth of the window.
 fn expected(point: &MapPoint) -> f64 {
     // This comparison is false for NaN, so NaN is returned.
     if point.criterion < point.window {
