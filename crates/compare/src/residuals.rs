@@ -32,7 +32,7 @@ impl Residuals {
     /// statistical error.
     ///
     /// # Panics
-    /// Panics if the plane was measured at other frequencies than the prediction's.
+    /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
         let residual = |batch: &PlaneBatch| {
@@ -53,7 +53,7 @@ impl Residuals {
     /// hold the same number of batches and the same number of replicates.
     ///
     /// # Panics
-    /// Panics if the plane was measured at other frequencies than the prediction's.
+    /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
     #[must_use]
     pub fn between(
         measurement: &Measurement,
