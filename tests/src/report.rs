@@ -48,8 +48,8 @@ impl Check {
     }
 
     /// Returns a check of photons against the exact prediction, judged as in a run. The check
-    /// passes if p passes, and also if the stated error of the prediction is below the resolution
-    /// and may explain the difference.
+    /// passes if p passes. It also passes if the stated error of the prediction is below the
+    /// resolution and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {

@@ -386,9 +386,8 @@ impl ComparedSides<'_> {
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves s
-    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ²
-    /// (Cauchy–Schwarz).
+    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum changes s
+    /// by at most 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();

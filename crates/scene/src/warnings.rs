@@ -6,8 +6,8 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The smallest relative difference between the spectra of photons and of backward rays for which
-/// a mesh causes a warning.
+/// A mesh causes a warning if the relative difference between the spectra of photons and of
+/// backward rays is at least this number.
 const LEVEL: f64 = 0.01;
 /// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.

@@ -1,5 +1,5 @@
-//! A second implementation of the code that theory and both tracers share, and of the BRDFs that
-//! theory and the tracers implement separately.
+//! A second implementation of the code that theory and both tracers share. It also implements the
+//! BRDFs, which theory and the tracers implement separately.
 //!
 //! A comparison of photons with theory cannot reveal a mistake in code that the tracers and theory
 //! share. Therefore this module implements every shared function again, in a slow and plain way. It

@@ -23,7 +23,7 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
 }
 
 /// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
-/// 0; the quadrature panels are finer near θ = 0 and near `end`.
+/// 0. The panels of the quadrature are finer near θ = 0 and near `end`.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;

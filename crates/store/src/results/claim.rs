@@ -46,7 +46,7 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses to write if etendue did not write a file that is in the way; with `force`, refuses
+    /// Refuses to write if a file is in the way that etendue did not write. With `force`, refuses
     /// only if this file is not a regular file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();

@@ -266,7 +266,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
 }
 
 /// Returns, for each plane, the entries of the covariance along x, which lies in the plane of
-/// incidence; the camera also has a row with the propagated covariance.
+/// incidence. The camera also has a row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
     let row = |name: String, of: &MatrixEstimate| {
