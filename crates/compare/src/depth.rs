@@ -11,8 +11,9 @@ use glam::DVec3;
 /// the occluders of its light. Returns `None` if there are no occluders, for planes of later legs,
 /// and for planes on surfaces.
 ///
-/// The frequencies of a blocker at distance d lie on the line ν = −d ρ. Therefore the frequencies of
-/// blockers between two distances fill a wedge (Durand et al. 2005, section 3.2; Egan et al. 2009).
+/// The frequencies of a blocker at distance d lie on the line ν = −d ρ. Therefore the frequencies
+/// of blockers between two distances fill a wedge (Durand et al. 2005, section 3.2; Egan et al.
+/// 2009).
 pub(crate) fn depth(scene: &Scene, plane: &VirtualPlane) -> Option<[f64; 2]> {
     if plane.leg > 0 || plane.orientation != Orientation::Orthogonal {
         return None;
