@@ -5,8 +5,8 @@
 //!
 //! Rank 0 runs the command as `etendue` does. Rank 0 also hands out pieces of work to the other
 //! ranks on request, and works on pieces itself. MPI only transfers bytes and does not sum numbers,
-//! so the result has the same bytes as that of `etendue run`. The arguments are those of `etendue`;
-//! the crate of `etendue` parses them.
+//! so the result has the same bytes as the result of `etendue run`. The arguments are the arguments
+//! of `etendue`, and the crate of `etendue` parses them.
 //!
 //! The crate uses `ferrompi`, because it needs no libclang, its calls return errors instead of
 //! aborting, and it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings

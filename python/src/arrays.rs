@@ -1,4 +1,4 @@
-//! Rust arrays passed to NumPy without a copy: the NumPy array takes ownership of the memory.
+//! Passes Rust arrays to NumPy without a copy. The NumPy array takes ownership of the memory.
 
 use ndarray::{Array, Dimension};
 use numpy::{Element, PyArray};

@@ -1,4 +1,4 @@
-//! Long work with progress reports and cancellation from Python.
+//! Runs long work with progress reports to Python, which can stop the work.
 
 use crate::raised::raised;
 use etendue_pipeline::{Progress, Reporter, Work};
@@ -16,7 +16,8 @@ use std::time::Duration;
 /// Interval at which Python checks for Ctrl-C and reports progress.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Time for stopped work to remove its files before the caller continues without it.
+/// The time that stopped work has to remove its files. After this time, the caller continues even
+/// if the work has not ended.
 const GRACE: Duration = Duration::from_millis(500);
 
 /// State that the working thread shares with the thread that waits for it.
@@ -30,7 +31,7 @@ pub(crate) struct Live {
 #[derive(Default)]
 struct Works {
     begun: u64,
-    /// The nested works in progress, of which the innermost is the last.
+    /// The nested works in progress. The innermost work is the last.
     in_hand: Vec<Arc<Counted>>,
     ended: Option<Arc<Counted>>,
 }
@@ -173,9 +174,10 @@ impl Watch for Tracing<'_> {
 }
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
-/// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C the
-/// work stops at the next block of photons or the next step, and the function returns when the work
-/// has ended or soon after. If the work is not counted, the function returns at once.
+/// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C, the
+/// work stops at the next block of photons or at the next step. The function returns when the work
+/// has ended, but waits only for a short time. If the work is not counted, the function returns at
+/// once.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -191,7 +193,7 @@ pub(crate) fn alive<T: Send + 'static>(
             Ok(pool) => pool.install(|| work(&of_thread)),
             Err(error) => Err(Failure::cannot_run(error)),
         };
-        // Sending fails if the caller has left after Ctrl-C.
+        // Sending fails if the caller no longer waits, because the user has pressed Ctrl-C.
         let _ = tell.send(found);
     });
     let mut told = told;

@@ -1,4 +1,4 @@
-//! The result of a comparison.
+//! Provides the result of a comparison to Python.
 
 use crate::arrays::Arrays;
 use crate::raised::raised;

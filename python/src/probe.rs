@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Measures the light field behind a pixel into a folder; returns the report on it.
+/// Measures the light field behind a pixel, and writes the results to a folder. Returns a report on
+/// the results.
 #[pyfunction]
 pub(crate) fn probe(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Failures as exceptions.
+//! Converts failures to Python exceptions.
 
 use etendue_store::Failure;
 use pyo3::create_exception;
@@ -18,7 +18,7 @@ create_exception!(
     "The request cannot be carried out here: for example, there is too little memory or disk space, or a folder contains something else."
 );
 
-/// Returns the exception for a failure; the command's exit code 2 means bad input.
+/// Returns the exception for a failure. The exit code 2 of a failure means bad input.
 pub(crate) fn raised(py: Python<'_>, failure: Failure) -> PyErr {
     if failure.code != 2 {
         return CannotRun::new_err(failure.message);

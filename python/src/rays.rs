@@ -71,7 +71,7 @@ impl Rays {
 
 impl PhotonSource for Rays {
     fn emitted(&self, _batch: u32) -> u64 {
-        // With one emitted photon, the result of a batch is its sum.
+        // If one photon is emitted, the result of a batch is the sum over its rays.
         1
     }
 

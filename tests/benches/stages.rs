@@ -20,8 +20,8 @@ use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Photons per batch. Each batch of photons is one net, so large that the cost of the net's first
-/// block is negligible.
+/// Photons per batch. Each batch of photons is one net. The net is so large that the cost of its
+/// first block is negligible.
 const PHOTONS: u64 = 1 << 16;
 
 /// Returns a scene of the repository whose batches have [`PHOTONS`] photons each.

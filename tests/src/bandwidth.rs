@@ -5,9 +5,9 @@ use etendue_figures::Style;
 use std::fs;
 use std::process::ExitCode;
 
-/// Measures the bandwidths of glossy reflections and prints them. Unless a number of photons is
-/// given, this function also writes results/bandwidth.md, the picture in that page and the
-/// numbers that the picture plots.
+/// Measures the bandwidths of glossy reflections and prints them. If no number of photons is given,
+/// this function also writes results/bandwidth.md, the picture in this page and the numbers that
+/// the picture plots.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -111,8 +111,8 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
 
-/// Returns a predictor that modifies the chain; the predictor returns `None` if the modification
-/// has no effect.
+/// Returns a function that predicts slices by a modified chain. The function returns `None` if the
+/// modification has no effect.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut tampered = chain(scene, plane);

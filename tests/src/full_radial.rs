@@ -69,7 +69,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// Returns the scene of the case, without planes other than that of the case.
+    /// Returns the scene of the case with only the plane of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
         let (name, text) = found.expect("a scene of these");
@@ -283,7 +283,8 @@ fn faults(photons: u64) -> ReportSection {
     }
 }
 
-/// Predicts the continuous spectrum, without the aliasing of a grid: a planted fault.
+/// Predicts the continuous spectrum, without the aliasing of a grid. This prediction is a planted
+/// fault.
 fn alias_free(scene: &Scene) -> PredictedField {
     use etendue_compare::Theory;
     let plane = &scene.planes[0];

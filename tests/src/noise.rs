@@ -1,4 +1,4 @@
-//! χ², p and the noise floor for increasing numbers of photons.
+//! Measures χ², p and the noise floor for increasing numbers of photons.
 
 use crate::SEED;
 use crate::report::Bound::Below;
@@ -74,8 +74,8 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Returns the ratio, over all frequencies of a plane, of the noise of photons from nets to the
-/// noise of photons from random numbers.
+/// Returns the noise of photons from nets divided by the noise of photons from random numbers, over
+/// all frequencies of a plane.
 pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);

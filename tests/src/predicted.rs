@@ -5,7 +5,8 @@ use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::scattering::{self, ScatteringChain};
 use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
-/// Budget of rays with which the error of a prediction is a fifth of the photons' noise.
+/// Budget of rays. With this budget, the error of a prediction is a fifth of the noise of the
+/// photons.
 const BUDGET: RayBudget = RayBudget {
     nodes: 5e6,
     error: 5e-4,

@@ -1,9 +1,10 @@
-//! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
+//! Measures the pulls of parameters and slopes, and the cost of predictions, over random scenes.
 //!
-//! A pull is a deviation divided by its stated error, converted from Student's distribution to
-//! the normal one. The deviation is the difference between a measured parameter and its value in
-//! the scene, or between a measured slope and the predicted slope. If stated errors are right,
-//! pulls have mean 0, standard deviation 1 and the tails of a normal distribution.
+//! A pull is a deviation divided by its stated error. It is then converted from Student's
+//! distribution to the normal distribution. The deviation is the difference between a measured
+//! parameter and its value in the scene, or between a measured slope and the predicted slope. If
+//! the stated errors are right, pulls have mean 0 and standard deviation 1, and their tails are the
+//! tails of a normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
@@ -45,7 +46,7 @@ const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
 /// Permitted deviation of the pulls' mean from 0 and of their standard deviation from 1, in
 /// addition to the standard errors of both.
 const MAX_DEVIATION: f64 = 0.05;
-/// Maximum permitted deviation of a statistic, in standard errors; one statistic in 400 exceeds
+/// Maximum permitted deviation of a statistic, in standard errors. One statistic in 400 exceeds
 /// this maximum by chance.
 const MAX_ERRORS: f64 = 3.0;
 /// Maximum noise of a plane that is judged, relative to the plane's spectrum.
@@ -107,8 +108,9 @@ pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     ])
 }
 
-/// Draws the scene with this number: even and odd numbers alternate between `wild` and the
-/// generator for nets. Returns `None` if the scene is invalid.
+/// Draws the scene with this number. Scenes with even numbers and scenes with odd numbers come from
+/// different generators: `wild`, and the generator for nets. Returns `None` if the scene is
+/// invalid.
 fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = if number.is_multiple_of(2) {
@@ -174,7 +176,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             0 => measurement.batches().len(),
             replicates => replicates.min(measurement.batches().len()),
         };
-        // A plane whose noise exceeds the resolution is skipped, because with so few photons
+        // A plane is skipped if its noise exceeds the resolution, because with so few photons the
         // errors are not normally distributed.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
@@ -331,7 +333,8 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// Returns the section that lists the largest pulls.
+/// Returns a section of the report with a table of the largest pulls and of the scenes, planes and
+/// parameters to which they belong.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));

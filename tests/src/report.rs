@@ -1,4 +1,5 @@
-//! Validation results: numbers that are checked against bounds, and the tables that show them.
+//! Defines the results of a validation: numbers that are checked against bounds, and tables that
+//! show these numbers.
 
 use crate::rows::Line;
 use etendue_compare::{PlaneReport, Verdict};
@@ -34,7 +35,8 @@ impl Check {
         }
     }
 
-    /// Returns a check that a fact is true; the checked number is 1 if it is, else 0.
+    /// Returns a check that a fact is true. The checked number is 1 if the fact is true, and 0
+    /// otherwise.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }
@@ -46,8 +48,8 @@ impl Check {
     }
 
     /// Returns a check of photons against the exact prediction, judged as in a run. The check
-    /// passes if p passes, and also if the stated error of the prediction is below the resolution
-    /// and may explain the difference.
+    /// passes if p passes. It also passes if the stated error of the prediction is below the
+    /// resolution and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {
@@ -121,7 +123,7 @@ impl Row {
         }
     }
 
-    /// Whether the row has checks, and all of them pass.
+    /// Checks whether the row has checks, and all of them pass.
     pub(crate) fn passes(&self) -> bool {
         !self.checks.is_empty() && failed(&self.checks).next().is_none()
     }

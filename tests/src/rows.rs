@@ -1,4 +1,4 @@
-//! Every row of the paper's Table 1, with the results that a complete validation gives for it.
+//! Collects the results of a complete validation for every row of the paper's Table 1.
 
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};

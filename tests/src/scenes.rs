@@ -12,8 +12,8 @@ macro_rules! scene {
     };
 }
 
-/// Every scene of the repository that `suite` judges, with its text; the scenes of `shading` and
-/// of `table1` are not among them.
+/// Every scene of the repository that `suite` judges, with its text. The scenes of `shading` and of
+/// `table1` are not in this list.
 pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("travel"),
     scene!("fig1"),
@@ -40,11 +40,11 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_glossy"),
 ];
 
-/// Returns a scene of the suite; by default, it keeps the number of photons and the seed of its
-/// file.
+/// Returns a scene of the suite. If no number of photons or no seed is given, the scene keeps the
+/// value in its file.
 ///
 /// # Panics
-/// Panics if there is no such scene, or it is invalid.
+/// Panics if there is no scene of this name, or if the scene is invalid.
 pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scene {
     let text = SUITE.iter().find(|(known, _)| *known == name);
     let (_, text) = text.expect("a scene of the suite");

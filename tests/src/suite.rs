@@ -1,5 +1,4 @@
-//! Comparison, for every scene of the repository, of photons with the prediction and with
-//! backward rays.
+//! Compares photons with the prediction and with backward rays, for every scene of the repository.
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -20,8 +19,8 @@ struct SuiteRun {
 /// False rejection rate over all planes of the suite.
 const ALPHA: f64 = 0.01;
 
-/// Runs all scenes of the suite, each with `photons` photons if given, else with the number in
-/// its file.
+/// Runs all scenes of the suite, each with `photons` photons. If `photons` is `None`, each scene
+/// has the number of photons in its file.
 pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     let scenes: Vec<Scene> = SUITE
         .iter()
@@ -120,8 +119,8 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Checks two occluders that block all light together, but little light alone (Durand et al.
-/// 2005, Fig. 7).
+/// Checks two occluders that together block all light, although each of them blocks little light
+/// (Durand et al. 2005, Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
@@ -136,8 +135,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
-        // At least `least` photons must pass each single occluder, or a quarter of all photons if
-        // a short suite traces too few.
+        // At least `least` photons must pass each single occluder. If a short suite traces too few
+        // photons for this, a quarter of all photons must pass.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
@@ -320,7 +319,8 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
     }
 }
 
-/// Configuration factor of a rectangle x × y (in units of its distance) over a parallel element below its corner.
+/// Returns the configuration factor of a rectangle x × y, in units of its distance, for a parallel
+/// element below its corner.
 fn corner(x: f64, y: f64) -> f64 {
     let (p, q) = (x.hypot(1.0), y.hypot(1.0));
     (x / p * (y / p).atan() + y / q * (x / q).atan()) / TAU

@@ -13,7 +13,8 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
-/// The budget of a prediction, whose error in these tests is a few times that of the photons.
+/// The budget of a prediction. With this budget, the error of a prediction in these tests is a few
+/// times the error of the photons.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-3,

@@ -142,8 +142,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// The scenes have few photons, frequencies and blockers, because the test concerns values of
-/// fields, not numbers of items.
+/// Reduces the numbers of photons, frequencies and blockers of a scene, because the test concerns
+/// values of fields and not numbers of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;
@@ -161,7 +161,7 @@ fn make_small(scene: &mut Scene) {
         let some = mesh.triangles.iter().take(200).copied().collect();
         mesh.triangles = Triangles::new(some, 0.0);
     }
-    // A prediction at a receiver takes seconds, however few frequencies there are.
+    // A prediction at a receiver takes seconds even if there are few frequencies.
     scene.planes.retain(|plane| plane.leg == 0);
 }
 

@@ -1,4 +1,4 @@
-//! Short forms of the attacks on the program from outside: mutated input of every kind, and
+//! Runs short forms of the attacks on the program from outside: mutated input of every kind, and
 //! kills.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]

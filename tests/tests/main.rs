@@ -1,4 +1,4 @@
-//! The tests of `etendue-validation`, one program for all.
+//! The tests of `etendue-validation`, as one program.
 
 #![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
 

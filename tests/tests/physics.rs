@@ -1,4 +1,5 @@
-//! Scenes that must pass and scenes that must fail, end to end: from scene text to verdict.
+//! Tests scenes that must pass and scenes that must fail, from the text of the scene to the
+//! verdict.
 
 use etendue_compare::{
     Applicability, Class, FirstOrderChain, Prediction, Test, Theory, Verdict, compare,
@@ -53,8 +54,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Tests that variants of fig9b pass like fig9b itself: with objects beside or behind the light,
-/// and as large, small, distant, rotated or dark variants.
+/// Tests that variants of fig9b pass, as fig9b itself does. Some variants have objects beside or
+/// behind the light, and others are large, small, distant, rotated or dark.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -133,8 +134,8 @@ fn other_scenes_agree() {
     }
 }
 
-/// A prediction that omits the surface beside the ray is rejected behind that surface, and only
-/// there.
+/// If a prediction omits the surface beside the ray, it is rejected at planes behind that surface,
+/// and at no other plane.
 #[test]
 fn a_forgotten_surface_is_noticed() {
     let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;

@@ -1,5 +1,4 @@
-//! Tests, over many seeds, of the comparison `etendue diff` makes of two measured results of one
-//! scene.
+//! Tests, over many seeds, how `etendue diff` compares two measured results of one scene.
 
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
@@ -62,7 +61,7 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
     for seed in 1..=200 {
         let a = photons(2 * seed);
         let b = photons(2 * seed + 1);
-        // The noise of photons and that of backward rays differ in size and correlation.
+        // The noise of photons and the noise of backward rays differ in size and correlation.
         let c = backward(2 * seed + 1);
         for (i, plane) in planes.iter().enumerate() {
             let test = |other: &Sample| TwoSamples::new(&plane.grid, &a[i], other).p_value;

@@ -1,4 +1,4 @@
-//! Scenes for which theory once was wrong, stated too small an error, or gave no prediction
+//! Tests scenes for which theory once was wrong, stated too small an error, or gave no prediction
 //! (results/wild.md).
 
 #![allow(
@@ -40,8 +40,8 @@ fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// The number of photons in a scene file, and its replacement, which is so large that many rays
-/// of each batch hit a bright pixel through the lobe.
+/// The number of photons in a scene file, and a larger number that replaces it. With the larger
+/// number, many rays of each batch hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
@@ -243,8 +243,8 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("projector_two_occluders", &dark);
 }
 
-/// The first-order chain is computed as the exact prediction plus a difference, and so has the
-/// noise of the exact prediction.
+/// The first-order chain is computed as the exact prediction plus a difference. Therefore it has
+/// the noise of the exact prediction.
 #[test]
 fn the_chain_of_a_small_map_does_not_fail() {
     use Class::FirstOrder;
@@ -330,8 +330,8 @@ fn a_small_disc_in_a_later_leg_is_decided() {
     is_followed_past("corner_disc", &["disc"]);
 }
 
-/// Theory's rays meet a surface only once, so backward rays replace theory for light that meets
-/// the surface twice.
+/// In theory, a ray meets a surface only once. Therefore backward rays replace theory for light
+/// that meets the surface twice.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
@@ -372,8 +372,8 @@ fn decided_by_reference(
     assert_eq!(wrong.verdict, Verdict::Fail);
 }
 
-/// Two half-planes are reported as the cause of a dark plane if there is no gap between them, but
-/// not if there is a gap.
+/// If there is no gap between two half-planes, they are reported as the cause of a dark plane. If
+/// there is a gap, they are not reported.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -459,8 +459,7 @@ fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let declined = Applicability::new(&scene, &scene.planes[0]).declined;
     assert_eq!(declined, ["light that meets glass out of order"]);
-    // A ray of the prediction ends where it meets the glass in an order other than that of the
-    // path.
+    // A ray of the prediction ends if it meets the glass in another order than the path does.
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
@@ -544,7 +543,7 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// Part of a mirror is nearer to the light than the mask, and the window is so narrow that no ray
+/// A part of a mirror is nearer to the light than the mask. The window is so narrow that no ray
 /// sampled from the light hits this part.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
@@ -576,7 +575,7 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Tests that no light is found at angles beyond a right angle, although light exists at these
+/// Tests that no light is found at angles beyond a right angle, although there is light at these
 /// angles minus a full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
@@ -614,8 +613,8 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A discontinuous window cuts the light of a projector. For light cut by a discontinuous window,
-/// two quadratures with few rays may agree by chance.
+/// A discontinuous window cuts the light of a projector. For such light, two quadratures with few
+/// rays may agree by chance.
 #[test]
 fn a_box_before_a_projector_is_decided() {
     let scene = scene("box_before_a_projector");
@@ -639,8 +638,8 @@ fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
 }
 
-/// The chain after a floor uses the coordinates of the path, not those of the wall to which the
-/// path leads.
+/// The chain after a floor uses the coordinates of the path, and not the coordinates of the wall to
+/// which the path leads.
 #[test]
 fn a_plane_on_the_next_wall_is_decided() {
     decided_against_chain("on_the_next_wall", Class::FirstOrder);
@@ -699,8 +698,8 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // If some photons are sampled in proportion to the cosine, noise is 15 %; without such
-    // samples photons find 10⁻⁹ of the light.
+    // If some photons are sampled in proportion to the cosine, the noise is 15 %. Without such
+    // photons, only 10⁻⁹ of the light is found.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
@@ -752,8 +751,8 @@ fn a_coarse_mesh_is_decided() {
     );
 }
 
-/// For a plane on a thin lens no affine chain exists; for a plane beyond the lens an affine chain
-/// exists. Exact rays are correct both on a thin lens and beyond the lens.
+/// A plane on a thin lens has no affine chain, but a plane beyond the lens has one. Exact rays are
+/// correct on the lens and beyond it.
 #[test]
 fn a_plane_on_a_lens_is_decided() {
     let scene = scene("on_a_lens");

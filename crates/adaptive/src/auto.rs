@@ -1,12 +1,13 @@
-//! The default distribution of samples: the criteria, calibrated by the errors of even samples.
+//! The default distribution of samples. It follows the criteria, which are calibrated by the errors
+//! of evenly distributed samples.
 //!
-//! A criterion bounds how fast light may change, but not how much of the light changes. Therefore
-//! the first samples are evenly distributed, and planes fitted to one half of them are compared
-//! with the other half. If the criterion is right up to a factor k, the squared error e² at a
-//! density n is k n_c²/n², where n_c is the density that the criterion gives. The factor k is
-//! measured for each object, and the best density is (k n_c²)^(1/3). Half of the remaining samples
-//! have this density, and half follow the measured errors, which also show light that the criterion
-//! misses, such as shadows.
+//! A criterion limits how fast light may change, but does not tell how much of the light changes.
+//! Therefore the first samples are evenly distributed. Planes are fitted to one half of these
+//! samples, and are compared with the other half. If the criterion is right up to a factor k, the
+//! squared error e² at a density n is k n_c²/n², where n_c is the density that the criterion gives.
+//! The factor k is measured for each object, and the best density is (k n_c²)^(1/3). Half of the
+//! remaining samples have this density. The other half follow the measured errors, which also show
+//! light that the criterion misses, such as shadows.
 
 use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
@@ -88,8 +89,8 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// The ratios k of measured squared errors to predicted ones, up to a common factor, from sums of
-/// e² n² and n_c².
+/// The ratios k of measured to predicted squared errors, up to a common factor. They are computed
+/// from sums of e² n² and of n_c².
 #[derive(Debug, Default)]
 struct Factors(ObjectSums<2>);
 

@@ -1,5 +1,5 @@
-//! The nearness of blockers, measured at sparse points of the picture and reconstructed between
-//! them.
+//! Measures the nearness of blockers at sparse points of the picture, and interpolates it between
+//! these points.
 
 use crate::criterion::shaded;
 use crate::cutoffs::Cutoffs;
@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// 2005.
 const STEP: usize = 4;
 
-/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, which would
-/// take most of the time.
+/// Default number of rays per point. Durand et al. 2005 use a hundred rays, six times as many,
+/// which would take most of the time.
 pub const BLOCKER_RAYS: u32 = 16;
 
 /// Returns the nearness of blockers at each pixel. From each of the sparse points, `rays` rays go

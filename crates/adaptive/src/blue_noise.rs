@@ -1,9 +1,9 @@
-//! Blue noise with a given density: random points that keep their distance (Yuksel 2015, *Sample
-//! Elimination for Generating Poisson Disk Sample Sets*).
+//! Generates blue noise with a given density, which consists of random points that are not close to
+//! each other (Yuksel 2015, *Sample Elimination for Generating Poisson Disk Sample Sets*).
 //!
 //! More candidates than needed are drawn from the density. The candidate most crowded by its
-//! neighbours is removed repeatedly until the required number is left. Distances are measured with
-//! the metric in which the density is 1 everywhere.
+//! neighbours is removed repeatedly until the required number is left. Distances are measured in
+//! the metric for which the density is 1 everywhere.
 
 use crate::metric::Metric;
 use etendue_sampling::DiscreteDistribution;
@@ -53,8 +53,9 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points drawn from the density. The points are drawn independently, because stratified
-/// points would be less crowded in dense regions, and elimination would leave too many there.
+/// Returns random points that are drawn from the density. The points are drawn independently.
+/// Stratified points would be less crowded in dense regions, so elimination would leave too many
+/// points in these regions.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -273,7 +274,7 @@ mod tests {
     }
 
     /// At frequencies below the inverse distance of neighbours, blue noise has almost no power,
-    /// whereas random points have the power 1.
+    /// while the power of random points is 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];

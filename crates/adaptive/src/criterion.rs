@@ -1,15 +1,15 @@
-//! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
-//! 21, corrected.
+//! Computes the bandwidth of light across the picture by the criteria of Durand et al. 2005, Eqs.
+//! 20 and 21, with corrections.
 //!
 //! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
 //! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
 //! relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth along a
 //! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
 //! sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel. This
-//! bandwidth is that of Eq. 21 with its missing factors. Without the term in d' this bandwidth is
-//! that of Eq. 20. Finite differences on the screen include the angle of view, the distance and
-//! both curvatures, as the paper states. The equations as printed use the larger curvature alone,
-//! and are isotropic.
+//! formula is Eq. 21 with the factors that are missing in the paper. Without the term in d', it is
+//! Eq. 20. Finite differences on the screen include the angle of view, the distance and both
+//! curvatures, as the paper states. The printed equations use only the larger curvature, and are
+//! isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -34,7 +34,7 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// Returns the squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the
+/// Returns the squared bandwidth, as seen from `eye`, by the printed Eqs. 20 and 21; `None` if the
 /// surface has no lobe.
 pub(crate) fn printed(
     visible: &Visible,
@@ -200,8 +200,8 @@ mod tests {
         (Paths::new(&world), camera)
     }
 
-    /// Theory's Eqs. 20 and 21 in the plane of incidence, compared with finite differences over one
-    /// pixel.
+    /// Compares the formulas of the theory crate for Eqs. 20 and 21, in the plane of incidence,
+    /// with finite differences over one pixel.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn screen_differences_are_the_criteria() {
@@ -257,8 +257,8 @@ mod tests {
                     theory.printed_environment()
                 };
                 farthest = farthest.max((found / printed - 1.0).abs());
-                // The printed criterion equals that of the theory crate, and the curvature is that
-                // of the ball.
+                // The printed criterion equals the criterion of the theory crate, and the curvature
+                // equals the curvature of the ball.
                 let drawn = super::printed(
                     &visible,
                     [column, 400],
@@ -277,7 +277,7 @@ mod tests {
                 assert!((curvature - 1.0).abs() < 0.02, "{curvature}");
             }
         }
-        // The printed equations differ noticeably, because they lack the term 1 and a cosine.
+        // The printed equations lack the term 1 and a cosine, so their values differ noticeably.
         assert!(farthest > 0.05, "{farthest}");
     }
 }

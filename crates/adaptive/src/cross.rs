@@ -1,5 +1,5 @@
-//! Errors of planes through samples, found by cross-validation: planes through one half of the
-//! samples are compared with the other half.
+//! Estimates the errors of planes through samples by cross-validation: planes through one half of
+//! the samples are compared with the other half.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};
@@ -9,7 +9,7 @@ use crate::visible::Visible;
 /// reconstruction.
 pub(crate) const WIDER: f64 = 2.0;
 
-/// The error at a sample: the value of the plane through other samples, less the value of the
+/// The error at a sample: the value of the plane through other samples, minus the value of the
 /// sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrossError {
@@ -57,8 +57,8 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
     found
 }
 
-/// Returns the squared relative errors of the light after noise removal, as values of samples. `samples`
-/// hold the variance of their light.
+/// Returns the squared relative errors of the light, without the part due to noise, as values of
+/// samples. `samples` contains the variance of the light of each sample.
 pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) -> Vec<ShadedSample> {
     let dark = dark(samples);
     let of = |error: &CrossError| {
@@ -75,7 +75,8 @@ pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) ->
     errors.iter().map(of).collect()
 }
 
-/// Returns the radiance below which errors are not relative: a hundredth of the mean.
+/// Returns a hundredth of the mean radiance. For light below this radiance, errors are relative to
+/// this radiance.
 pub(crate) fn dark(samples: &[(ShadedSample, f64)]) -> f64 {
     let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
     0.01 * lights.sum::<f64>() / samples.len().max(1) as f64

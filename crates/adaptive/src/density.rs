@@ -1,4 +1,5 @@
-//! Sampling densities of pixels: distributes a number of samples by the criterion.
+//! Computes the sampling densities of pixels by distributing a number of samples according to the
+//! criterion.
 
 use crate::metric::Metric;
 
@@ -8,7 +9,8 @@ const DENSEST: f64 = 4.0;
 /// Maximum distance of samples in pixels.
 const MAX_SPACING: f64 = 32.0;
 
-/// Maximum anisotropy of the density: finite differences are not accurate enough for a larger one.
+/// Maximum anisotropy of the density. Finite differences are not accurate enough for a larger
+/// anisotropy.
 const LONGEST: f64 = 3.0;
 
 /// Returns metrics proportional to `wanted` within the bounds. The square root of the determinant
@@ -50,8 +52,8 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
 /// Returns the metric for a squared bandwidth. If `is_even` is set, the metric is isotropic and
 /// has the larger eigenvalue, as in the paper; otherwise it is anisotropic.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
-    // Along each direction there are twice as many samples as cycles (Shannon), plus a minimum for
-    // pixels without bandwidth.
+    // Along each direction, the number of samples is twice the number of cycles (Shannon), plus a
+    // minimum for pixels without bandwidth.
     let shannon = squared
         .times(4.0)
         .plus(Metric::even((4.0 * MAX_SPACING).powi(-2)));

@@ -1,5 +1,5 @@
-//! Pixels with edges of objects or textures. Such a pixel is examined at more points than are
-//! stored, and each of these points takes the light of similar stored points.
+//! Computes pixels that contain edges of objects or textures. Such a pixel is examined at more
+//! points than are stored, and each of these points takes the light of similar stored points.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{LightMean, bell, unlike};
@@ -9,10 +9,11 @@ use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance
 /// Number of rows and columns of additional points in a pixel.
 const FINE: usize = 4;
 
-/// Relative difference of texture factors and of emission that makes an edge.
+/// Relative difference of texture factors, or of emission, above which there is an edge between two
+/// points.
 const DIFFERENCE: f64 = 0.02;
 
-/// Squared difference of normals that makes an edge.
+/// Squared difference of normals above which there is an edge between two points.
 const TURN: f64 = 0.1;
 
 /// The light at all stored points of the picture; `None` where nothing is shaded.
@@ -54,7 +55,7 @@ fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
     }
 }
 
-/// Whether the points of a pixel and of its neighbours differ in object, normal, texture or
+/// Checks whether the points of a pixel and of its neighbours differ in object, normal, texture or
 /// emission.
 fn has_edge(visible: &Visible, [column, row]: [usize; 2]) -> bool {
     let [w, h] = visible.size;
@@ -70,7 +71,7 @@ fn has_edge(visible: &Visible, [column, row]: [usize; 2]) -> bool {
     places.any(|place| differs(first, place))
 }
 
-/// Whether two visible points are on different sides of an edge.
+/// Checks whether two visible points are on different sides of an edge.
 fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
     let differ = |a: f64, b: f64| (a - b).abs() > DIFFERENCE * a.abs().max(b.abs());
     differ(first.emitted, place.emitted)

@@ -1,10 +1,11 @@
-//! A guide for the reconstruction: the direct light at all visible points, from one path each, with
-//! the noise smoothed.
+//! Computes a guide for the reconstruction. The guide is the direct light at all visible points. It
+//! is computed from one path per point, and its noise is smoothed.
 //!
-//! The guide shows where shadows and highlights end, which sparse samples cannot. The light of
-//! samples less their guide is smoother than the light itself, so planes are fitted to this
-//! difference, and the guide is added afterwards. A guide is noisy, and contains no indirect light.
-//! So the errors of the first samples decide for each object which share of the guide is used.
+//! The guide shows where shadows and highlights end; sparse samples cannot show this. The
+//! difference between the light and the guide is smoother than the light itself. Therefore planes
+//! are fitted to this difference at the samples, and the guide is added afterwards. A guide is
+//! noisy, and contains no indirect light. Therefore the errors of the first samples determine which
+//! share of the guide is used for each object.
 
 use crate::criterion::shaded;
 use crate::cross::{CrossError, dark};
@@ -99,9 +100,9 @@ impl LightGuide {
         }
     }
 
-    /// Chooses the share of the guide for each object, and returns the errors of planes through
-    /// samples without this share. `plain` holds the errors of planes through whole samples, and
-    /// `of_guide` the errors of planes through `guides`.
+    /// Chooses the share of the guide for each object. Subtracts this share from the samples, and
+    /// returns the errors of planes through the results. `plain` contains the errors of planes
+    /// through unchanged samples, and `of_guide` contains the errors of planes through `guides`.
     pub(crate) fn trust(
         &mut self,
         samples: &[(ShadedSample, f64)],
@@ -136,7 +137,7 @@ impl LightGuide {
         [0, 1].map(|part: usize| shares[part] * self.values[index][part])
     }
 
-    /// Returns samples without the share of the guide that is used.
+    /// Returns samples from which the used share of the guide is subtracted.
     pub(crate) fn without(&self, visible: &Visible, samples: &[ShadedSample]) -> Vec<ShadedSample> {
         let less = |sample: &ShadedSample| {
             let guide = self.at(visible, sample).value;
@@ -172,16 +173,18 @@ fn direct(visible: &Visible, shader: &Shader<'_>, progress: &(dyn Fn(u64) + Sync
     .collect()
 }
 
-/// Returns the number of a pixel in a tile, in the order of Morton 1966: each quarter of the tile, and each
-/// quarter of a quarter, has consecutive numbers.
+/// Returns the number of a pixel in a tile, in the order of Morton 1966. In this order, the pixels
+/// of each quarter of the tile have consecutive numbers, and so have the pixels of each quarter of
+/// a quarter.
 fn morton([column, row]: [usize; 2]) -> usize {
     (0..TILE.ilog2()).fold(0, |number, bit| {
         number | ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
     })
 }
 
-/// The squared error of planes through all samples, relative to that of planes through one half of
-/// the first samples. The noise of a guide does not fall with the number of samples.
+/// The ratio of two squared errors: the error of planes through all samples, and the error of
+/// planes through one half of the first samples. Unlike these errors, the noise of a guide does not
+/// decrease with the number of samples.
 const SMALLER: f64 = 1.0 / 6.0;
 
 /// The shares of the guide that objects use, for base and lobe. The shares are computed from sums
@@ -215,8 +218,8 @@ impl GuideShares {
 mod tests {
     use super::*;
 
-    /// A guide without noise whose errors equal those of the planes is used whole. A guide with
-    /// other errors, or with much noise, is not used.
+    /// If a guide has no noise and its errors equal the errors of the planes, the whole guide is
+    /// used. If its errors differ, or if its noise is large, the guide is not used.
     #[test]
     fn shares_follow_errors() {
         let mut shares = GuideShares::default();

@@ -1,13 +1,13 @@
-//! Pictures with few shading samples, placed where light has high frequencies (Durand et al. 2005, *A Frequency Analysis of Light Transport*, section
-//! 6.2 and Figs. 15 to 17).
+//! Renders pictures from few shading samples, which are placed where light has high frequencies
+//! (Durand et al. 2005, *A Frequency Analysis of Light Transport*, section 6.2 and Figs. 15 to 17).
 //!
 //! Points visible to the camera are found at full resolution (`visible`). From the visible points
 //! and the distance of blockers at sparse points (`blockers`), the criteria give the bandwidth of
 //! light across the picture (`criterion`). The bandwidth determines the sampling density
-//! (`density`). The default method calibrates the criteria by the errors of first, evenly
-//! distributed samples (`auto`). Samples are blue noise of this density (`blue_noise`), and only
-//! samples are shaded. Between samples the picture is reconstructed from similar points
-//! (`reconstruct`).
+//! (`density`). The default method begins with evenly distributed samples, and calibrates the
+//! criteria by the errors of these samples (`auto`). Samples are blue noise of this density
+//! (`blue_noise`), and only samples are shaded. Between samples the picture is reconstructed from
+//! similar points (`reconstruct`).
 
 mod auto;
 mod blockers;

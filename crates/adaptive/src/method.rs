@@ -1,4 +1,5 @@
-//! The methods to distribute shading samples, and the stages from the camera to the picture.
+//! Defines the methods to distribute shading samples, and the stages from the camera to the
+//! picture.
 
 use crate::blockers::nearness;
 use crate::blue_noise::{PicturePoint, blue_noise};
@@ -24,16 +25,16 @@ pub enum SampleMethod {
     Predicted,
     /// Samples follow the criteria as printed, to show the cost of their approximations.
     Printed,
-    /// Half of the samples follow the criteria, and half follow the measured light. A first quarter
-    /// of the samples measures the light: planes are fitted to one half of this quarter, and their
-    /// error is evaluated at the other half.
+    /// Half of the samples follow the criteria, and half follow the measured light. The first
+    /// quarter of the samples measures the light: planes are fitted to one half of this quarter,
+    /// and their error is evaluated at the other half.
     Weighted,
-    /// The default: the first samples are evenly distributed. Half of the rest follow the criteria,
-    /// and half follow the errors at the first samples. The errors at the first samples also
-    /// calibrate the criteria for each object.
+    /// The default. The first samples are evenly distributed. Half of the remaining samples follow
+    /// the criteria, and half follow the errors at the first samples. The errors at the first
+    /// samples also calibrate the criteria for each object.
     Auto,
-    /// Samples follow the measured light alone: the standard deviation of a first quarter of the
-    /// samples, which is distributed uniformly.
+    /// Samples follow only the measured light. The measure is the standard deviation of the first
+    /// quarter of the samples, which is distributed uniformly.
     Variance,
 }
 
@@ -113,13 +114,13 @@ pub struct Rendered {
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
-/// distance, and so to 1/n² for a density n of samples. For a fixed number of samples, the sum of
-/// this error over the picture is minimal if n ∝ (c² B⁴)^(1/3), with the contrast c and the
+/// distance, and therefore to 1/n² for a density n of samples. For a fixed number of samples, the
+/// sum of this error over the picture is minimal if n ∝ (c² B⁴)^(1/3), with the contrast c and the
 /// bandwidth B.
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
-/// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the
-/// number of finished steps.
+/// Renders a picture. `stage` receives the next stage and its number of steps, and `progress`
+/// receives the number of finished steps.
 #[must_use]
 pub fn render(
     paths: &Paths,
@@ -164,7 +165,7 @@ pub(crate) struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// Shades all samples of the method, and stores with each of them the metric of all samples
+    /// Shades all samples of the method. With each sample, stores the metric of all samples
     /// together.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let method = self.plan.method;
@@ -216,7 +217,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// Shades the `rest` of the samples, and returns all samples, with their common metric.
+    /// Shades the samples `rest`, and returns all samples with their common metric.
     pub(crate) fn both(
         &mut self,
         first: &[Option<Metric>],
@@ -375,8 +376,8 @@ impl AdaptiveRun<'_> {
         }
     }
 
-    /// The light at all points: planes through samples, or the guide plus planes through the
-    /// differences of samples from the guide.
+    /// Returns the light at all points. It consists of planes through samples, or of the guide plus
+    /// planes through the differences between the samples and the guide.
     fn reconstructed(&self, samples: &[ShadedSample]) -> Vec<Option<[f64; 2]>> {
         let Some(guide) = &self.guide else {
             return reconstruct(self.visible, samples, SampleFit::Plane);
@@ -442,8 +443,8 @@ pub(crate) fn values(samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
     samples.iter().map(|(sample, _)| *sample).collect()
 }
 
-/// Returns the metrics that minimise the error, from errors found with the metrics `first`: a
-/// squared error e² at a density n requires the density (e² n²)^(1/3).
+/// Returns the metrics that minimise the error. `missed` are the squared errors found with the
+/// metrics `first`. A squared error e² at a density n requires the density (e² n²)^(1/3).
 pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<Metric>> {
     let pairs = first.iter().zip(missed);
     let of = |(metric, missed): (&Option<Metric>, &f64)| {

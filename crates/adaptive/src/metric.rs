@@ -1,6 +1,7 @@
-//! Symmetric matrices for the bandwidth of light along directions of the picture.
+//! Defines symmetric matrices that state the bandwidth of light along directions of the picture.
 
-/// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
+/// A symmetric 2 × 2 matrix over the picture, in units of 1/pixel². Columns count to the right, and
+/// rows count downwards.
 ///
 /// The matrix of a criterion gives the squared bandwidth along each direction, in cycles per
 /// pixel. The matrix of samples defines distances in which neighbours are about 1 apart.
@@ -69,8 +70,8 @@ impl Metric {
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
     }
 
-    /// Returns the metric made rounder, so that the lengths of a step in different directions
-    /// differ by at most a factor of `most`.
+    /// Returns a metric that is changed towards an isotropic metric, so that the lengths of a step
+    /// in different directions differ by at most a factor of `most`.
     #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {
         let large = self.largest();

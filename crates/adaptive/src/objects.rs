@@ -1,10 +1,11 @@
-//! Sums over the first samples of each object, to which a small share of the sums over all objects
-//! is added.
+//! Computes sums over the first samples of each object. A small share of the sums over all objects
+//! is added to the sums of each object.
 
 use std::collections::BTreeMap;
 
-/// The weight, in samples, with which the mean over all objects enters the sums of each object. An
-/// object with few samples thus has about the ratios of all objects.
+/// The mean over all objects is added to the sums of each object as if it were this number of
+/// samples. The ratios of an object with few samples are therefore close to the ratios of all
+/// objects.
 const SHARED: f64 = 4.0;
 
 /// Sums of `N` numbers for each object and for all.

@@ -1,7 +1,7 @@
-//! Reconstruction between samples. At each point a plane is fitted to the samples around it,
-//! weighted by similarity in shape, normal and position. The weights are those of a bilateral
-//! filter (Tomasi and Manduchi 1998), whose width follows the samples' metric, as in Durand et al.
-//! 2005, section 6.2.
+//! Reconstructs the picture between samples. At each point, a plane is fitted to the samples around
+//! the point, weighted by similarity in shape, normal and position. The weights form a bilateral
+//! filter (Tomasi and Manduchi 1998). The width of the filter follows the metric of the samples, as
+//! in Durand et al. 2005, section 6.2.
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
@@ -28,8 +28,8 @@ impl ShadedSample {
 }
 
 /// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a
-/// narrower filter some points would use only one sample, and a wider filter would blur details
-/// that the samples show.
+/// narrower filter, some points would use only one sample. A wider filter would blur details that
+/// the samples show.
 const WIDTH: f64 = 0.5;
 
 /// Distances at which the filter ends, in standard deviations. The first distance is for the first
@@ -131,8 +131,8 @@ impl LocalSums {
 
     /// Returns the value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // Positions are relative to their mean. The added spread keeps the slope small if there
-        // are few samples.
+        // Positions are relative to their mean. The added term keeps the slope small if there are
+        // few samples.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
         let ridge = 0.1 * WIDTH * WIDTH;

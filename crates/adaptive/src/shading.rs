@@ -1,4 +1,4 @@
-//! Shading samples: paths from a point of a picture.
+//! Computes shading samples by paths from points of a picture.
 
 use crate::blue_noise::{PicturePoint, PixelPosition};
 use crate::cutoffs::Cutoffs;
@@ -22,8 +22,8 @@ pub(crate) struct Shader<'a> {
 
 impl Shader<'_> {
     /// Shades points without the texture factors of their surface, and estimates the variance of
-    /// each with these factors. Points where nothing is visible are left out. Point i uses random
-    /// numbers of index `first` + i.
+    /// each point with these factors. Points at which nothing is visible are left out. Point i uses
+    /// random numbers of index `first` + i.
     pub(crate) fn shade(
         &self,
         points: &[PicturePoint],

@@ -60,8 +60,9 @@ impl EdgeFilter {
 /// Pixels to each side over which the power of details and their noise are averaged.
 const AROUND: usize = 2;
 
-/// Adds to smooth values the share 1 − noise/square of the detail of sharper values. The noise is
-/// found from the differences of the points of a pixel.
+/// The detail is the difference between sharper and smooth values. Adds the share 1 − noise/square
+/// of the detail to the smooth values. The noise is estimated from the differences between the
+/// points of a pixel.
 pub(crate) fn detailed(visible: &Visible, sharp: &[[f64; 2]], smooth: &[[f64; 2]]) -> PlaceValues {
     let powers = visible.pixels(|pixel| {
         let places = visible.range(pixel);
@@ -99,8 +100,8 @@ struct DetailPower {
 }
 
 impl DetailPower {
-    /// Returns the share of the detail to keep. The factor of two is for caution: the variance comes from
-    /// few points.
+    /// Returns the share of the detail that is kept. The variance is doubled for caution, because
+    /// it is estimated from few points.
     fn share(self) -> f64 {
         if self.square > 0.0 {
             (1.0 - 2.0 * self.noise / self.square).max(0.0)

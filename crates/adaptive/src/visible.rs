@@ -19,8 +19,8 @@ pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.625, 0.875],
 ];
 
-/// Position of point `i` of a pixel, in pixels to the right and down from the top left of the
-/// picture.
+/// Returns the position of point `i` of a pixel, in pixels to the right and down from the top left
+/// of the picture.
 pub(crate) fn at(pixel: [usize; 2], i: usize) -> [f64; 2] {
     [0, 1].map(|k: usize| pixel[k] as f64 + OFFSETS[i][k])
 }

@@ -1,4 +1,5 @@
-//! Pictures of few shading samples with known radiance, and properties that all methods have.
+//! Tests pictures of few shading samples whose radiance is known, and properties that all methods
+//! have.
 
 use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
 use etendue_paths::Paths;
@@ -94,8 +95,8 @@ fn even_light_stays_even() {
     }
 }
 
-/// A point light above a floor and a black card: the light of the floor is known, and has a sharp
-/// shadow. The guide finds the shadow's edge between samples.
+/// The scene is a point light above a floor and a black card. The light of the floor is known and
+/// has a sharp shadow, and the guide finds the edge of the shadow between samples.
 #[test]
 fn the_guide_shows_where_shadows_end() {
     const HEIGHT: f64 = 2.0;
@@ -180,8 +181,8 @@ fn samples_are_spent() {
     }
 }
 
-/// The criterion of a sphere increases towards its edge, and so does the density of predicted
-/// samples, but not that of uniform samples.
+/// The criterion of a sphere increases towards the edge of the sphere. The density of predicted
+/// samples also increases there, but the density of uniform samples does not.
 #[test]
 fn predicted_samples_gather_at_the_edge() {
     let far = |method: SampleMethod| {

@@ -31,8 +31,8 @@ impl BinaryHierarchy {
     }
 
     /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
-    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the
-    /// distance beyond which boxes can be skipped, which is `until` before the first hit.
+    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the distance
+    /// beyond which boxes can be skipped. Before the first hit, this distance is `until`.
     #[inline]
     pub fn along(
         &self,

@@ -1,4 +1,4 @@
-//! Trees built by obvhs, with two boxes in a node.
+//! Builds trees with two boxes in a node, by the crate obvhs.
 
 use crate::leaf::MAX_LEAF;
 use crate::space::Space;

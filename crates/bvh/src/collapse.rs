@@ -1,5 +1,5 @@
-//! Converts a binary tree to one with eight boxes in a node, minimising the number of nodes that a
-//! ray opens.
+//! Converts a binary tree to a tree with eight boxes in a node, such that a ray opens as few nodes
+//! as possible.
 
 use crate::leaf::MAX_LEAF;
 use crate::wide::{Node, WIDTH, Wide};
@@ -98,8 +98,8 @@ fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     costs
 }
 
-/// Returns the number of `boxes` that the first of two children gets when the total cost is
-/// smallest, and this cost.
+/// Divides `boxes` between two children such that the total cost is smallest. Returns the number of
+/// boxes of the first child, and this cost.
 fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
     let cost = |of_first: usize| first[of_first - 1] + second[boxes - of_first - 1];
     let mut best = (1, cost(1));

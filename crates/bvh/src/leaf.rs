@@ -115,8 +115,8 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// The leaves of a tree of triangles; each visit passes the triangles that a ray may meet to the
-/// caller.
+/// The leaves of a tree of triangles. Each visit passes to the caller the triangles that a ray may
+/// meet.
 pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,

@@ -1,4 +1,4 @@
-//! Finds the boxes or triangles that a ray may meet: the only crate that uses obvhs and f32.
+//! Finds the boxes or triangles that a ray may meet. Only this crate uses obvhs and f32.
 //!
 //! A hierarchy is in f32 and only finds candidates; the caller computes the intersections in f64.
 //! Boxes are padded by more than rounding errors, so no candidate is missed. obvhs builds a tree
@@ -6,8 +6,9 @@
 //! a tree with eight boxes in a node (`wide`). The leaves of the wide tree hold a few boxes, or
 //! triangles that are tested together ([`WideHierarchy`]).
 //!
-//! The builder panics on boxes with NaN. No valid scene has boxes with NaN, and the builder never
-//! receives such boxes: a primitive without a box in f32 is a candidate for every ray.
+//! The builder panics on boxes with NaN. No valid scene has boxes with NaN. The builder never
+//! receives such boxes, because a primitive without a box in f32 is treated as a candidate for
+//! every ray.
 
 mod binary_hierarchy;
 mod build;

@@ -1,4 +1,4 @@
-//! Conversion of boxes to f32, and their padding.
+//! Converts boxes to f32, and pads them.
 
 use crate::single::single;
 use glam::{DVec3, Vec3A};
@@ -21,8 +21,8 @@ pub(crate) struct Space {
 /// adds a few rounding errors.
 const PADDING: f64 = 1e-5;
 
-/// Additional padding relative to the largest coordinate at which a ray begins: several rounding
-/// errors in f64.
+/// Additional padding relative to the largest coordinate at which a ray begins. It is several
+/// rounding errors in f64.
 const ROUNDING: f64 = 1e-13;
 
 /// The largest coordinate of a box; the largest number in f32 is some 300 times as large. The
@@ -73,10 +73,10 @@ impl Space {
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns the distance along a ray at which the traversal begins. The traversal begins at
-    /// the distance `from`, unless the point there is far from all boxes. If this point is far
-    /// from all boxes, the traversal begins where the ray comes near the boxes, because f32 would
-    /// lose precision over a longer distance.
+    /// Returns the distance along a ray at which the traversal begins. The traversal begins at the
+    /// distance `from`, unless the point at this distance is far from all boxes. If this point is
+    /// far from all boxes, the traversal begins where the ray comes near the boxes, because f32
+    /// would lose precision over a longer distance.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;

@@ -44,7 +44,7 @@ pub(crate) struct NodeRay {
 /// smallest component, which does not move a ray noticeably and has a finite reciprocal.
 const MIN_COMPONENT: f32 = 1e-20;
 
-/// A child still to be visited, and the distance along the ray at which its box begins.
+/// A child that has not been visited yet, and the distance along the ray at which its box begins.
 #[derive(Clone, Copy, Default)]
 struct Waiting {
     near: f32,

@@ -78,8 +78,8 @@ impl WideHierarchy {
 
     /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
     /// back. Distances are multiples of the length of `direction`, which is at least 1. `meet`
-    /// returns the distance beyond which boxes or triangles can be skipped, which is `until`
-    /// before the first hit.
+    /// returns the distance beyond which boxes or triangles can be skipped. Before the first hit,
+    /// this distance is `until`.
     #[inline]
     pub fn along(
         &self,
@@ -112,7 +112,7 @@ impl WideHierarchy {
     }
 }
 
-/// The leaves of a tree of boxes; each visit passes the boxes of a leaf to the caller, one after
+/// The leaves of a tree of boxes. Each visit passes the boxes of a leaf to the caller, one after
 /// the other.
 struct Boxes<'a, M> {
     leaves: &'a [[u32; 2]],

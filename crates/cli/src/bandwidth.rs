@@ -1,4 +1,4 @@
-//! Implements `etendue bandwidth`: how finely a glossy reflection must be sampled.
+//! Implements `etendue bandwidth`, which computes how densely a glossy reflection must be sampled.
 
 use crate::args::BandwidthArgs;
 use crate::print::{deliver, say};

@@ -1,5 +1,5 @@
-//! Implements `etendue converge`: how fast the first-order chain converges to the exact
-//! prediction.
+//! Implements `etendue converge`, which computes how fast the first-order chain converges to the
+//! exact prediction.
 
 use crate::args::ConvergeArgs;
 use crate::print::{deliver, say};

@@ -1,5 +1,5 @@
-//! Implements `etendue figure`: the figures of Durand et al. 2005, and figures of the user's
-//! scenes.
+//! Implements `etendue figure`, which draws the figures of Durand et al. 2005 and figures of the
+//! user's scenes.
 
 use crate::args::FigureArgs;
 use crate::conclude::code_of;

@@ -1,9 +1,9 @@
 //! Interrupts a run on signals and on lack of memory.
 //!
 //! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
-//! process with exit code 3; a second signal ends the process at once. If an allocation fails,
-//! Rust prints a message and aborts; the exit code is then 3, as after a signal. If a file would
-//! exceed the system's size limit, the result is a write error, and the process is not killed.
+//! process with exit code 3; a second signal ends the process at once. If an allocation fails, Rust
+//! prints a message and aborts, and the exit code is also 3. If a file would exceed the system's
+//! size limit, there is a write error, and the process is not killed.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
@@ -46,8 +46,8 @@ pub(crate) fn install() -> Result<(), Failure> {
         }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
-            // With the handlers in this order, the first signal does not end the process, because
-            // the signal finds the flag clear and then sets it.
+            // The handlers run in this order. At the first signal, the flag is not set, so the
+            // first handler does not end the process, and the second handler sets the flag.
             register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
             register(signal, Arc::clone(&asked))?;
         }

@@ -1,4 +1,4 @@
-//! The program `etendue`: all of its code is in the library of the same name, which other programs
+//! The program `etendue`. All of its code is in the library of the same name, which other programs
 //! can embed.
 
 use std::process::ExitCode;

@@ -11,8 +11,8 @@ pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints the main output of a command. If the output cannot be written, the function fails,
-/// unless the reader has closed the pipe.
+/// Prints the main output of a command. If the output cannot be written, the function fails, unless
+/// the program at the other end has closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
     let text = if stdout().is_terminal() {

@@ -89,7 +89,7 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
 }
 
 /// Returns a progress bar with the number of finished steps, the name of the current step and the
-/// remaining time; it is shown on a terminal if there are several steps.
+/// remaining time. The bar is shown on a terminal if there are several steps.
 pub(crate) fn steps(
     verb: &'static str,
     total: usize,

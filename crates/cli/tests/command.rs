@@ -181,7 +181,7 @@ fn noise_leaves_a_run_undecided() {
     );
 }
 
-/// The number of photons is doubled until the noise is low enough, and the result equals that of
+/// The number of photons is doubled until the noise is low enough. The result equals the result of
 /// a run with the final number of photons.
 #[test]
 fn a_target_error_is_reached() {
@@ -263,8 +263,8 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // The ∫ L W of the light is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each of the two
-    // slopes contributes a factor 1/2.
+    // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each of the two slopes
+    // contributes a factor 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;
         f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
@@ -437,7 +437,8 @@ fn bad_arguments_are_refused() {
     assert_eq!(missing.status.code(), Some(2));
 }
 
-/// Killing a run at twenty moments, during and beyond its run time, leaves a whole result or none.
+/// A run is killed at twenty moments, some of them after its usual duration. Each kill leaves a
+/// complete result or no result.
 #[test]
 fn a_killed_run_leaves_no_half_result() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A lamp that fills the window of the first plane, and is cut off by the window of the second
-/// plane.
+/// The lamp fills the window of the first plane. The window of the second plane cuts off a part of
+/// its light.
 const LAMP: &str = r#"(
     light: Rectangle(center: (0, 0, 0), size: (4, 4)),
     blockers: [Shapes(name: "edge", center: (0, 0, 0.5), shapes: [HalfPlane(axis: X, edge: 0.02, opaque: Above)])],

@@ -201,8 +201,8 @@ fn changed_files_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// One after the other, each array of each file is missing, has another type, is too large for
-/// memory, or is not an array.
+/// For each array of each file, the test removes the array, changes its type, makes it too large
+/// for memory, or replaces it by something that is not an array.
 #[test]
 fn foreign_arrays_are_refused() {
     let stages = stages();

@@ -1,4 +1,4 @@
-//! Tests that the numbers of the explorer equal those of the command.
+//! Tests that the numbers of the explorer equal the numbers of the command.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -57,9 +57,8 @@ fn numbers_are_those_of_the_saved_scene() {
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
-            // The explorer and the command compute the same sums. The results of the explorer and
-            // the command differ only by rounding errors, because their frames differ by rounding
-            // errors.
+            // The explorer and the command compute the same sums. Their frames differ by rounding
+            // errors, so their results also differ only by rounding errors.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();

@@ -1,4 +1,4 @@
-//! The tests of `etendue`, one program for all.
+//! The tests of `etendue`, as one program.
 
 #![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
 

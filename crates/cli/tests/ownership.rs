@@ -1,5 +1,5 @@
-//! Tests that results own only the files that they wrote: files of other programs are never
-//! replaced or removed.
+//! Tests that commands replace and remove only files that they wrote, and never files of other
+//! programs.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -108,7 +108,7 @@ fn files_of_somebody_else_stay() {
         );
         fs::remove_dir_all(at("out")).unwrap();
     }
-    // A file of an earlier result is also protected if it was changed since; an unrelated file in
+    // If a file of an earlier result was changed later, it is also protected. An unrelated file in
     // the folder does not stop the command.
     passes(folder.path(), "run s.ron --out out");
     fs::write(at("out/light/notes.txt"), "mine").unwrap();

@@ -20,8 +20,8 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Checks that the result equals that of the uninterrupted run, and that no other files are
-/// beside it.
+/// Checks that the result equals the result of the uninterrupted run, and that there are no other
+/// files in the folder.
 fn is_whole(folder: &Path, out: &str) {
     let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
     for files in [&mut found, &mut whole] {

@@ -1,5 +1,5 @@
-//! Tests several processes that share one job; in these tests, they are threads that exchange
-//! bytes, as MPI ranks do.
+//! Tests several processes that share one job. In these tests, threads simulate the processes, and
+//! exchange bytes as MPI ranks do.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

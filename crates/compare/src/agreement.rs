@@ -7,8 +7,8 @@ use crate::verdict::Test;
 use etendue_field::Slices;
 use ndarray::Array3;
 
-/// The largest quadrature error that is ignored, as a share of the noise: it adds a thousandth to
-/// χ² and causes no warning.
+/// The largest quadrature error that is ignored, as a share of the noise. An error of this size
+/// adds a thousandth to χ² and causes no warning.
 pub(crate) const UNSEEN: f64 = 1.0 / 30.0;
 
 /// The difference of measurement and prediction, summed over the independent frequencies.
@@ -47,7 +47,8 @@ impl Agreement {
         }
     }
 
-    /// Returns the signed root of a squared quantity, relative to the norm of the prediction.
+    /// Returns the root of a squared quantity with the sign of this quantity, relative to the norm
+    /// of the prediction.
     fn relative(&self, squared: f64) -> Option<f64> {
         (self.predicted > 0.0).then(|| (squared.abs() / self.predicted).sqrt().copysign(squared))
     }
@@ -80,9 +81,9 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Returns the number of photons that brings the noise down to the resolution. Returns `None`
-    /// where the error of the prediction alone exceeds the resolution, or where noise does not
-    /// prevent a verdict.
+    /// Returns the number of photons with which the noise would equal the resolution. Returns
+    /// `None` where the error of the prediction alone exceeds the resolution, or where noise does
+    /// not prevent a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

@@ -16,11 +16,11 @@ use etendue_theory::{rays, reflections, scattering};
 pub struct Applicability {
     /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// Descriptions of the things on the light's way that no theory covers; empty where a theory
-    /// applies.
+    /// Descriptions of the objects on the way of the light that no theory covers. The list is empty
+    /// where a theory applies.
     pub reasons: Vec<String>,
-    /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces;
-    /// otherwise empty.
+    /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces. The list
+    /// is empty where it does not.
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
@@ -30,8 +30,9 @@ pub struct Applicability {
 }
 
 impl Theory {
-    /// Describes in words which parts of a scene violate the assumptions of the theory. Adds, as an
-    /// obstacle of the theory, blockers that light meets beside the central ray on a leg.
+    /// Describes in words which parts of a scene violate the assumptions of the theory. If light
+    /// meets blockers beside the central ray on a leg, adds these blockers to the obstacles of the
+    /// theory.
     fn obstacles(
         &mut self,
         scene: &Scene,
@@ -51,7 +52,8 @@ impl Theory {
         found
     }
 
-    /// Adds a layer of blockers, which light meets from the leg `from` on, as an obstacle.
+    /// Adds a layer of blockers as an obstacle. Light meets the layer on the leg `from` and on
+    /// later legs.
     fn take(&mut self, layer: &BlockerLayer, from: usize) {
         let (layers, obstacles) = match self {
             Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
@@ -122,8 +124,8 @@ impl Applicability {
                 off_patches: None,
             };
         }
-        // Objects are known to stop all light only on the paths that the theory assumes; light on
-        // other paths might pass beside them.
+        // Objects are known to stop all light only on the paths that the theory assumes. Light on
+        // other paths might pass beside these objects.
         let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,
@@ -146,8 +148,8 @@ impl Applicability {
         }
     }
 
-    /// Returns the chain of affine maps that leads to a plane behind specular surfaces, by the
-    /// paper's printed formulas where the scene asks for those.
+    /// Returns the chain of affine maps that leads to a plane behind specular surfaces. The chain
+    /// uses the paper's printed formulas where the scene asks for these formulas.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
@@ -156,8 +158,9 @@ impl Applicability {
         }
     }
 
-    /// Returns the steps that make the spectrum of the plane, one line each: the chain, anything
-    /// that no theory describes, and the window last.
+    /// Describes the steps that produce the spectrum of the plane, with one line for each step. The
+    /// first lines are the chain and everything that no theory describes, and the last line is the
+    /// window.
     #[must_use]
     pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let Window { x, y, u, v } = &plane.window;

@@ -1,5 +1,5 @@
-//! Computes how fast a glossy reflection changes with angle: by the paper's criteria, by quadrature
-//! and from the photons.
+//! Computes how fast a glossy reflection changes with angle. It uses the paper's criteria, a
+//! quadrature and the photons.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -12,8 +12,9 @@ use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
 use etendue_theory::{Model, scattering};
 
-/// Returns the criterion for a plane across the ray that leaves a surface with a BRDF; `None` for
-/// any other plane. The share [`BANDWIDTH_FRACTION`] of a lobe's energy lies below its cutoff.
+/// Returns the criterion for a plane that lies across the ray from a surface with a BRDF, and
+/// `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a lobe's energy lies below its
+/// cutoff.
 ///
 /// The edge that limits the light is the edge of the last blockers. Without blockers, the limiting
 /// edge is the edge of the light itself, unless the light is far away.
@@ -54,8 +55,8 @@ fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
-/// Returns Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles
-/// per radian. Returns `None` for a lobe centred on the normal.
+/// Returns Ω_ρ in cycles per radian: the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of
+/// its energy. Returns `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {
@@ -67,8 +68,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// Returns the bandwidth along ν of the exact prediction of a plane that has a [`criterion`], by
-/// the same estimator as for photons.
+/// Returns the bandwidth along ν of the exact prediction of a plane that has a [`criterion`]. The
+/// estimator is the same as for photons.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,
@@ -86,8 +87,8 @@ pub fn exact_bandwidth(
     Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
-/// Returns the bandwidth along ν as measured at plane `index`, with its error. Returns `None`
-/// where no light arrived.
+/// Returns the bandwidth along ν that was measured at plane `index`, and the error of this
+/// bandwidth. Returns `None` where no light arrived.
 ///
 /// # Errors
 /// Returns an error if the measurement has too few batches.

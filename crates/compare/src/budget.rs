@@ -3,7 +3,8 @@
 use etendue_scene::Scene;
 use etendue_theory::RayBudget;
 
-/// The largest accepted relative error of a prediction, however few the photons.
+/// The largest accepted relative error of a prediction. This limit holds even if there are few
+/// photons.
 const MAX_ERROR: f64 = 3e-3;
 /// The accepted relative error of a prediction, times √photons. The noise of the photons is about
 /// 25/√photons.

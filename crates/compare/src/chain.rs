@@ -4,9 +4,9 @@ use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
-/// Returns the chain that leads from the light to a virtual plane: travels, visibilities and
-/// diffuse reflections in the order in which the central ray meets them. Anything else on the way
-/// is left out, and reported by [`Applicability`](crate::Applicability).
+/// Returns the chain that leads from the light to a virtual plane. The chain contains travels,
+/// visibilities and diffuse reflections in the order of the central ray. It omits everything else
+/// on the way, which [`Applicability`](crate::Applicability) reports.
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = ChainWalk {
@@ -51,8 +51,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Returns the names, distances and masks of the objects across the path, including surfaces beside
-/// the central ray, which stop light too.
+/// Returns the names, distances and masks of the objects across the path. These objects include
+/// surfaces beside the central ray, because such surfaces also stop light.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));

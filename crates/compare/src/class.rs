@@ -9,8 +9,8 @@ use std::fmt;
 pub enum Class {
     /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// Two predictions exist: an exact one by rays, and the paper's first-order chain with its
-    /// computed error.
+    /// Two predictions exist: an exact prediction by rays, and the paper's first-order chain with
+    /// its computed error.
     FirstOrder,
     /// No theory applies. The other tracer's measurement serves as the prediction.
     Reference,

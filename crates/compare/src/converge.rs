@@ -1,5 +1,5 @@
-//! Measures how the first-order chain becomes exact as the neighbourhood of the central ray
-//! shrinks.
+//! Measures how fast the error of the first-order chain decreases as the neighbourhood of the
+//! central ray shrinks.
 
 use crate::applicability::Applicability;
 use crate::system::print;
@@ -15,11 +15,12 @@ use serde::Serialize;
 pub struct Convergence {
     /// Name of the plane.
     pub plane: String,
-    /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
+    /// The shares e of the scene's widths, in descending order, and ‖first order − exact‖/‖exact‖
+    /// for each share.
     pub steps: Vec<[f64; 2]>,
     /// The order n in error ∝ eⁿ, by least squares over the last three steps. The order is `None`
-    /// where the error is not clearly above that of the quadrature. This condition is not checked
-    /// where several surfaces scatter.
+    /// where the error is not clearly above the error of the quadrature. This condition is not
+    /// checked where several surfaces scatter.
     pub order: Option<f64>,
 }
 
@@ -30,12 +31,13 @@ const BUDGET: RayBudget = RayBudget {
 };
 /// The shares e.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
-/// Errors below this many times the quadrature error are too small to judge the chain by.
+/// If the error of the chain is less than this multiple of the quadrature error, it is too small
+/// for a judgement of the chain.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks the light and the window of a plane behind specular surfaces, or the lobes where
-/// several surfaces scatter. Widens the frequencies by the same factor. Returns `None` for any
-/// other plane. No photons are traced.
+/// Shrinks the light and the window of a plane behind specular surfaces. Where several surfaces
+/// scatter, shrinks their lobes instead. Widens the frequencies by the same factor. Returns `None`
+/// for any other plane. No photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
@@ -74,8 +76,8 @@ pub fn converge(
     })
 }
 
-/// Returns the error of a first-order chain behind specular surfaces at the scale e, and the error
-/// of the sums over rays from which it is computed.
+/// Returns the error of a first-order chain behind specular surfaces at the scale e. Also returns
+/// the error of the sums over rays from which the first error is computed.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,
@@ -94,8 +96,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// Returns the error of the chain where several surfaces scatter. The chain's error is a difference
-/// of sums over the same paths, and is known to a few per cent.
+/// Returns the error of the chain where several surfaces scatter. The error of the chain is
+/// computed as a difference of sums over the same paths, with an accuracy of a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,

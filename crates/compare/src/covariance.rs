@@ -1,5 +1,5 @@
-//! Compares the covariance that is traced along a chain with the covariances of the exact and of
-//! the measured spectrum.
+//! Compares the covariance that is traced along a chain with the covariance of the exact spectrum
+//! and with the covariance of the measured spectrum.
 
 use crate::applicability::Applicability;
 use crate::class::Class;
@@ -20,8 +20,9 @@ use serde::Serialize;
 /// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by every
 /// available method.
 ///
-/// Entries are in cycles² over the units of their coordinates. The spectrum of a field with edges
-/// has no second moments, so all matrices but `traced` are taken over the same band of frequencies.
+/// The unit of an entry is cycles² over the units of its two coordinates. The spectrum of a field
+/// with edges has no second moments, so all matrices except `traced` are computed over the same
+/// band of frequencies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CovarianceReport {
     /// Name of the plane.
@@ -30,17 +31,17 @@ pub struct CovarianceReport {
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// The result of covariance tracing, the window included as the last step. The covariance is
+    /// The result of covariance tracing, in which the window is the last step. The covariance is
     /// `None` where covariance tracing gives no result or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
     /// The reason why covariance tracing gives no result, in words.
     pub untraced: Option<String>,
-    /// The covariance, over the band, of the Gaussian that was traced.
+    /// The covariance of the traced Gaussian, computed over the band.
     pub traced_in_band: Option<Matrix<4>>,
-    /// The covariance of the exact spectrum, between parallel planes, where all four frequencies
-    /// are known at once.
+    /// The covariance of the exact spectrum. It is known only between parallel planes, where theory
+    /// gives the spectrum at any four frequencies.
     pub exact: Option<Matrix<4>>,
-    /// The covariance measured by the photons, without the bias of noise.
+    /// The covariance measured by the photons, corrected for the bias that noise causes.
     pub measured: Option<Matrix<4>>,
     /// Standard errors of `measured`, by the jackknife over groups of batches.
     pub error: Option<Matrix<4>>,
@@ -61,7 +62,7 @@ pub struct CovarianceReport {
 pub struct SliceMoment {
     /// By covariance tracing.
     pub traced: Option<f64>,
-    /// The moment of the photons, and that of the exact prediction.
+    /// The moment of the photons, and the moment of the exact prediction.
     #[serde(flatten)]
     pub found: Pair,
 }
@@ -76,10 +77,10 @@ pub struct TracedPlane {
 }
 
 impl TracedPlane {
-    /// Returns the covariance traced to a plane, the window included as the last step.
+    /// Returns the covariance that is traced to a plane. The last step is the window.
     ///
     /// # Errors
-    /// Returns the reason where covariance tracing gives no result.
+    /// Returns the reason if covariance tracing gives no result.
     pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
         let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
             Theory::Parallel(chain) => chain.spectral_covariance(),
@@ -203,27 +204,27 @@ impl CovarianceReport {
     }
 }
 
-/// Growth beyond this many standard errors is not noise: noise exceeds this limit once in a
-/// thousand cases.
+/// Growth by more than this number of standard errors is not attributed to noise. Noise alone
+/// exceeds this limit once in a thousand cases.
 const NOISE: f64 = 3.0;
 
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 
-/// A variance that grows by more than this share from half of the band to the whole band is limited
-/// by the band. The variance of a Gaussian grows by 10 % where the band ends at five of its
-/// standard deviations, and by 3 % at six.
+/// If a variance grows by more than this factor from half of the band to the whole band, the band
+/// limits the variance. The variance of a Gaussian grows by 10 % if the band ends at five of its
+/// standard deviations, and by 3 % if the band ends at six.
 const ENDLESS: f64 = 1.15;
 
-/// Divides each entry by the geometric mean of the variances of its two axes in a matrix, and
-/// returns the largest result.
+/// Divides each entry by the geometric mean of two variances in a matrix, the variances of the
+/// entry's two axes. Returns the largest result.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let shares = pairs.map(|(i, j)| entry(i, j).abs() / (of[i][i] * of[j][j]).abs().sqrt());
     shares.fold(0.0, f64::max)
 }
 
-/// Returns the covariance of the exact spectrum, where theory has the spectrum at any frequency in
+/// Returns the covariance of the exact spectrum if theory gives the spectrum at any frequency in
 /// closed form.
 fn exact(
     applicability: &Applicability,

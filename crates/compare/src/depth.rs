@@ -1,4 +1,4 @@
-//! Distances of the occluders of a plane's light.
+//! Computes the distances between a plane and the occluders of its light.
 
 use crate::chain::stands_before;
 use crate::parallel::passes;
@@ -7,11 +7,13 @@ use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
 
-/// Returns the shortest and the longest distance from a plane of the first leg back to the
-/// occluders of its light, metres. Returns `None` without occluders, and for other planes.
+/// Returns the shortest and the longest distance, in metres, from a plane of the first leg back to
+/// the occluders of its light. Returns `None` if there are no occluders, for planes of later legs,
+/// and for planes on surfaces.
 ///
-/// A blocker at distance d puts its frequencies on the line ν = −d ρ, so blockers between two distances fill a wedge
-/// (Durand et al. 2005, section 3.2; Egan et al. 2009).
+/// The frequencies of a blocker at distance d lie on the line ν = −d ρ. Therefore the frequencies
+/// of blockers between two distances fill a wedge (Durand et al. 2005, section 3.2; Egan et al.
+/// 2009).
 pub(crate) fn depth(scene: &Scene, plane: &VirtualPlane) -> Option<[f64; 2]> {
     if plane.leg > 0 || plane.orientation != Orientation::Orthogonal {
         return None;
@@ -34,7 +36,7 @@ pub(crate) fn depth(scene: &Scene, plane: &VirtualPlane) -> Option<[f64; 2]> {
     Some([plane.distance - all[1], plane.distance - all[0]])
 }
 
-/// Returns the least and the largest distance of points along the first leg, before the plane.
+/// Returns the smallest and the largest distance along the first leg of points before the plane.
 fn extent(points: &[DVec3], end: f64) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(0.0, f64::max);

@@ -19,17 +19,18 @@ pub enum PredictedField {
     Exact {
         /// The spectrum.
         spectrum: Box<FieldSpectrum>,
-        /// The power without aliasing, [|Ωxy|, |Ωuv|]; `None` where the rays of a file are put on the grid.
+        /// The power without aliasing, [|Ωxy|, |Ωuv|]. The power is `None` where the rays of a file
+        /// are put on the grid.
         alias_free: Option<Array2<f64>>,
     },
-    /// Independent estimates of the expectation, by rays that are put on the grid in the same way
-    /// as photons.
+    /// Independent estimates of the expectation. They are computed from rays that are put on the
+    /// grid in the same way as photons.
     Sampled(Vec<FieldSpectrum>),
 }
 
 impl PredictedField {
-    /// Returns the prediction of theory for a plane: in closed form, or by nets of rays in
-    /// `groups` groups. Returns `None` where no theory applies, or no ray arrives.
+    /// Returns the prediction of theory for a plane, either in closed form or by nets of rays in
+    /// `groups` groups. Returns `None` if no theory applies or no ray arrives.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -92,9 +93,9 @@ impl PredictedField {
     }
 }
 
-/// The largest number of products of a closed form, some ten seconds on one core. Nets of rays
-/// replace a closed form with more products, such as that of a disc, which consists of many
-/// rectangles.
+/// The largest number of products of a closed form, which take some ten seconds on one core. If a
+/// closed form has more products, nets of rays replace it. An example is a disc, which consists of
+/// many rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
 /// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
@@ -132,7 +133,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at the frequencies of a grid, along v only at frequencies from zero on.
+/// Returns the spectrum at the frequencies of a grid. Along v, the frequencies start at zero.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));
@@ -225,7 +226,7 @@ mod tests {
         };
         let closed = closed_form(&chain, plane, over).unwrap();
         assert!(p(&closed) > 0.01); // one test, of fixed nets
-        // The injected fault: the spectrum itself instead of its version on the grid.
+        // The injected fault is the spectrum without the effects of the grid.
         let fault = PredictedField::Exact {
             spectrum: Box::new(alias_free(&chain, plane, over).unwrap()),
             alias_free: None,

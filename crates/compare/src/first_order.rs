@@ -1,4 +1,4 @@
-//! The paper's linearised chain beside the exact ray-space prediction.
+//! Adds the paper's linearised chain to the exact ray-space prediction.
 
 use crate::budget::budget;
 use crate::residuals::Residuals;
@@ -16,11 +16,11 @@ use std::f64::consts::{PI, TAU};
 /// The prediction of the chain of affine maps.
 #[derive(Clone, Debug)]
 pub struct FirstOrder {
-    /// The slices of the chain, by the paper's printed formulas where a scene asks for these
-    /// formulas.
+    /// The slices of the chain. They follow the paper's printed formulas where a scene asks for
+    /// these formulas.
     pub slices: Slices,
-    /// Independent replicates, of which `slices` is the mean. The list is empty where the slices
-    /// have no statistical error.
+    /// Independent replicates; `slices` is their mean. The list is empty where the slices have no
+    /// statistical error.
     pub replicates: Vec<Slices>,
     /// The numbers that describe the chain.
     pub chain: FirstOrderChain,
@@ -33,7 +33,7 @@ pub struct FirstOrderChain {
     pub error: f64,
     /// The error that remains as the neighbourhood of the central ray shrinks. The defect is zero,
     /// apart from rounding errors, if every map is right (see [`rays::defect`]). Where `slices`
-    /// come from the printed formulas, the defect is also that of the printed formulas.
+    /// come from the printed formulas, the defect is also the defect of the printed formulas.
     pub defect: f64,
     /// The relative error of the radiance that the chain assigns to the central ray. This error is
     /// the part of the defect that is due to the constant factor of the chain.
@@ -42,11 +42,11 @@ pub struct FirstOrderChain {
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
     /// formulas.
     pub matrix: Matrix<4>,
-    /// The covariance of the windowed light field by rays, and as propagated by the chain (see
-    /// [`Covariance`](crate::Covariance)).
+    /// The covariance of the windowed light field as computed from rays, and as propagated by the
+    /// chain (see [`Covariance`](crate::Covariance)).
     pub covariance: [Option<Matrix<4>>; 2],
-    /// Distances from the last surface, metres, at which rays that leave the light in parallel
-    /// meet.
+    /// The distances, in metres, from the last surface to the points where rays meet that leave the
+    /// light in parallel.
     pub foci: Vec<f64>,
     /// Whether `slices` come from the paper's printed formulas.
     pub as_printed: bool,
@@ -72,17 +72,18 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain whose defect exceeds this limit has a wrong map. Finite differences alone cause a
-/// defect of 10⁻⁹, and a first-order operator that is missing or wrong by a thousandth causes a
-/// defect above this limit.
+/// A chain whose defect exceeds this limit has a wrong map. Finite differences alone cause a defect
+/// of 10⁻⁹. If a first-order operator is missing or wrong by a thousandth, the defect exceeds this
+/// limit.
 const DEFECT: f64 = 1e-5;
-/// Above this error a first-order chain is useless as a prediction of the light field.
+/// If its error exceeds this limit, a first-order chain is useless as a prediction of the light
+/// field.
 const MAX_ERROR: f64 = 0.5;
 /// The one-sided 95 % quantile of the normal distribution.
 const NINETY_FIVE: f64 = 1.645;
 
 impl FirstOrderChain {
-    /// Returns the verdict on the chain: it fails if a map is wrong, and is undecided where its
+    /// Returns the verdict on the chain. The chain fails if a map is wrong, and is undecided if its
     /// error is too large for a useful prediction.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -135,9 +136,10 @@ impl FirstOrder {
         })
     }
 
-    /// Returns the chain past surfaces that scatter light, with its defect and the matrix of its
-    /// rays along the mirror directions. The chain has the noise of the exact prediction, because
-    /// the difference of chain and exact prediction has little noise.
+    /// Returns the chain for light that surfaces scatter, with its defect and with the matrix of
+    /// its rays along the mirror directions. The noise of the chain is the noise of the exact
+    /// prediction, because the difference between the chain and the exact prediction has little
+    /// noise.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -162,7 +164,7 @@ impl FirstOrder {
     }
 
     /// Compares a measurement with the chain. `exact` is the exact ray-space prediction, with the
-    /// residuals from this prediction.
+    /// differences between the photons and this prediction.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,
@@ -199,8 +201,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
         return None;
     }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
-    // A zero width is replaced by a width that is narrow beside the window. An infinite width adds
-    // no inverse covariance.
+    // A zero width is replaced by a width that is much smaller than the window. An infinite width
+    // adds no inverse covariance.
     let narrow = window.map(|v| 1e8 / v);
     let picture = |w: f64| TAU / (w * w);
     let light = &system.light;
@@ -226,8 +228,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
     Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
-/// Returns the variance of the Gaussian with the profile's curvature at its centre; for a box, the
-/// variance of the box.
+/// Returns the variance of the Gaussian that has the curvature of the profile at the centre. For a
+/// box, returns the variance of the box.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(h) => 2.0 * (h / PI).powi(2),

@@ -12,9 +12,9 @@ use serde::Serialize;
 /// The full radial spectrum in `summary.json`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FullRadialReport {
-    /// Number of bins with noise, over which the other numbers are taken.
+    /// Number of bins with noise. The other numbers are computed from these bins.
     pub bins: usize,
-    /// The mean of (measured − predicted)²/σ²: 1 if the prediction is true.
+    /// The mean of (measured − predicted)²/σ², which is about 1 if the prediction is true.
     pub chi2_per_bin: Option<f64>,
     /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
@@ -45,8 +45,8 @@ pub struct FullRadialComparison {
 ///
 /// Group r holds the share a_r of the measurement, G_r, and the same share of the prediction, P_r;
 /// both have the expectation a_r F. Both powers are computed from pairs of groups, so their
-/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r and S_r = G_r − α
-/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, the difference
+/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). Let D_r = G_r − P_r, and let S_r = G_r
+/// − α D_r be the weighted mean of G_r and P_r that is not correlated with D_r. Then the difference
 /// is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
@@ -61,8 +61,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// Computes the difference from the products of the spectra in a bin. The spectra are the
-    /// spectra of the groups, whose shares are `a`, and of the prediction.
+    /// Computes the difference from the products of the spectra in a bin. The spectra belong to the
+    /// prediction and to the groups, whose shares are `a`.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;
@@ -120,7 +120,8 @@ fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     each.sum::<f64>().max(0.0)
 }
 
-/// Returns the mean product of two groups, from number `first` on: the power without noise.
+/// Returns the mean product of two different groups, which is the power without noise. The groups
+/// are counted from number `first` on.
 fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
     let all = products.indexed_iter();
     let pairs = all.filter(|((r, s), _)| first <= *r.min(s) && r != s);
@@ -129,11 +130,11 @@ fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
 }
 
 impl FullRadialComparison {
-    /// Compares a measurement that has its groups with a prediction on the same grid. `seed` keys
-    /// the random signs of the p-value.
+    /// Compares a measurement, which must have its groups, with a prediction on the same grid.
+    /// `seed` is the seed of the random signs of the p-value.
     ///
     /// # Panics
-    /// Panics if the prediction comes in groups that differ from those of the measurement.
+    /// Panics if the prediction comes in groups that differ from the groups of the measurement.
     #[must_use]
     pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
         let bins = RadialBins::new(&measured.grid);

@@ -1,13 +1,13 @@
-//! Detects light that is carried by few heavy rays.
+//! Detects whether a few rays of large weight carry most of the light.
 
 use etendue_field::Slices;
 
-/// Returns the number of rays of equal weight per batch with which the light of batches would vary
-/// as much as measured. Returns `None` if the number is large enough that no batch would be empty.
+/// Returns how many rays of equal weight each batch would need for its light to vary as much as
+/// measured. Returns `None` if this number is so large that no batch would be empty.
 ///
-/// With n equal rays the relative variance is 1/n, and R e⁻ⁿ of R batches are empty. With fewer
-/// than ln R rays the spread of batches does not estimate the error of their mean, because the rays
-/// that carry most of the light may still be missing.
+/// With n equal rays, the relative variance is 1/n, and R e⁻ⁿ of R batches are empty. With fewer
+/// than ln R rays, the spread of batches does not estimate the error of their mean, because the
+/// rays that carry most of the light may still be missing.
 pub(crate) fn too_few<'a>(batches: impl Iterator<Item = &'a Slices>) -> Option<f64> {
     let light: Vec<f64> = batches.map(Slices::at_zero).collect();
     let count = light.len() as f64;

@@ -1,10 +1,10 @@
 //! Compares measurement and prediction in units of statistical error.
 //!
-//! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
-//! holds the facts of the scene that this theory needs. A [`Prediction`] holds everything that the
-//! theory predicts for the plane. The function [`compare`] compares a measurement with the
-//! prediction and returns a [`Verdict`]. The [`Residuals`] are the differences, with the tests made
-//! on them. The test [`TwoSamples`] compares two measurements.
+//! [`Applicability`] states which theory applies to a plane of a scene, or why no theory applies.
+//! It also holds the facts of the scene that this theory needs. A [`Prediction`] holds everything
+//! that the theory predicts for the plane. The function [`compare`] compares a measurement with the
+//! prediction and returns a [`Verdict`]. The [`Residuals`] are the differences, and provide tests
+//! of these differences. The test [`TwoSamples`] compares two measurements.
 //!
 //! This crate traces no photons. Its only free parameter is the level α of the test, which the
 //! scene sets.

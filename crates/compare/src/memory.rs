@@ -12,7 +12,8 @@ use etendue_transform::SliceTransform;
 /// The parts of a run's memory, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
-    /// The spectra of all batches, kept until the errors are known, including those of references.
+    /// The spectra of all batches, which are kept until the errors are known. The batches of
+    /// references are included.
     pub batches: f64,
     /// The fine grids over which each thread spreads photons.
     pub threads: f64,
@@ -26,11 +27,12 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program needs for any scene: its code, buffers of photons, pictures, and memory
-/// that one stage leaves to the next.
+/// Bytes that the program needs for any scene: for its code, for buffers of photons, for pictures,
+/// and for memory that one stage does not free before the next stage.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle and its part of the hierarchy during construction. Measured: 130.
+/// Bytes of a triangle and of its part of the hierarchy during construction. The measured value is
+/// 130.
 const TRIANGLE: f64 = 150.0;
 /// Bytes of the normals at the corners of a triangle.
 const NORMALS: f64 = 72.0;
@@ -58,7 +60,7 @@ impl Memory {
         };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
-        // A reference keeps its measurement and the copies that its prediction holds.
+        // For a reference, its measurement is kept, and the copies that its prediction holds.
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
@@ -110,7 +112,8 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// Returns the replicates that a prediction by nets holds, of itself and of the first-order chain.
+/// Returns the number of replicates that a prediction by nets holds, including the replicates of
+/// its first-order chain.
 fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);

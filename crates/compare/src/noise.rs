@@ -1,21 +1,21 @@
-//! The number of independent numbers in the noise of measured slices.
+//! Estimates how many independent numbers the noise of measured slices contains.
 
 use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
-/// square of this many normal numbers fluctuates as much as the mean square of the noise, if the
-/// noise at each frequency is divided by its σ.
+/// Returns the effective number n of independent real numbers in the noise of plane `plane`. If the
+/// noise at each frequency is divided by its σ, the mean square of the noise fluctuates as much as
+/// the mean square of n normal numbers.
 ///
 /// The window correlates neighbouring frequencies. If C is the covariance of the noise divided by
-/// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². The relative
-/// variance of this mean is that of the mean square of (tr C)²/tr C² independent numbers
-/// (Satterthwaite 1946). The batches give the sample covariance Ĉ of n = R − 1 degrees of freedom.
-/// The expression n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for
-/// normal noise (Srivastava 2005, Eq. 2.4).
+/// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². The mean square of
+/// (tr C)²/tr C² independent numbers has the same relative variance (Satterthwaite 1946). The
+/// batches give the sample covariance Ĉ of n = R − 1 degrees of freedom. The expression n²/((n −
+/// 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for normal noise (Srivastava
+/// 2005, Eq. 2.4).
 ///
-/// Returns `None` without noise.
+/// Returns `None` if there is no noise.
 ///
 /// # Errors
 /// Returns an error for fewer than three batches.
@@ -29,8 +29,8 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// Returns the effective number of independent real numbers, from the difference of each batch to
-/// the mean.
+/// Returns the effective number of independent real numbers. `centred` holds the difference between
+/// each batch and the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
     // tr Ĉ and tr Ĉ² are computed from the matrix of products, which has the same non-zero
     // eigenvalues as Ĉ.
@@ -42,7 +42,7 @@ fn of_batches(centred: &Residuals) -> Option<f64> {
     let n = centred.count() as f64 - 1.0;
     let squares: f64 = products.iter().map(|h| h * h).sum();
     let square = n * n / ((n - 1.0) * (n + 2.0)) * (squares - trace * trace / n);
-    // Each frequency counts for one to two numbers, its real and imaginary parts.
+    // A frequency has a real and an imaginary part, so it counts as at most two numbers.
     let most = 2.0 * trace;
     Some((trace * trace / square.max(trace * trace / most)).clamp(1.0, most.max(1.0)))
 }

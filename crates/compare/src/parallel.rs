@@ -5,7 +5,7 @@ use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
 /// Describes in words what rules out the theory for a plane: oblique incidence, other objects in
-/// the way, and light that the theory does not cover. The list is empty where the theory applies.
+/// the way, or light that the theory does not cover. The list is empty where the theory applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
@@ -160,8 +160,8 @@ pub(crate) fn passes(
         let frame = &legs[leg].frame;
         overlaps(points, frame, from, to, end) && !is_beside(points, frame, from, to, end)
     };
-    // After several reflections in a row no tube is checked, because the theory of parallel planes
-    // does not apply.
+    // No tube is checked after several reflections in a row, because the theory of parallel planes
+    // does not apply there.
     let first = usize::from(on_way_back);
     (first..=plane.leg.min(1)).any(crosses)
 }
@@ -184,8 +184,8 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
     })
 }
 
-/// Checks whether four points lie in one plane, and a tube as in [`overlaps`] does not cross that
-/// plane.
+/// Checks whether four points lie in one plane that a tube does not cross. The tube is given as in
+/// [`overlaps`].
 fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let [a, b, c, d] = points else { return false };
     let normal = (b - a).cross(c - a);
@@ -215,7 +215,7 @@ fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     (!covered).then_some(&surface.name)
 }
 
-/// Returns the flat surface from which light starts on the leg of a plane.
+/// Returns the flat surface that light leaves at the beginning of the leg of a plane.
 fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
     match scene.path.legs[plane.leg].leaves?.object {
         Object::Surface(i) => Some(&scene.surfaces[i]),

@@ -30,7 +30,7 @@ pub struct PlaneComparison {
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
     /// Standard deviation of |S| alone, with the same axes. This deviation differs from `sigma`
-    /// only where the prediction has replicates, and so noise of its own.
+    /// only where the prediction has replicates, which have noise of their own.
     pub measured_sigma: Option<Array3<f64>>,
     /// The measured radial spectrum.
     pub radial: RadialPower,
@@ -39,8 +39,8 @@ pub struct PlaneComparison {
     /// Standard deviation of measured minus predicted radial power, [ρ, ν], if the prediction is
     /// true.
     pub radial_sigma: Array2<f64>,
-    /// |S − F₁|², F₁ being the first-order chain's slices, averaged over the azimuths, [ρ, ν]; `None`
-    /// where there is no chain.
+    /// |S − F₁|², averaged over the azimuths, [ρ, ν], where F₁ are the slices of the first-order
+    /// chain; `None` where there is no chain.
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
@@ -53,8 +53,8 @@ pub struct PlaneComparison {
 /// light.
 const DARK: f64 = 1e-12;
 
-/// Above this noise the residuals come from few photons and are not symmetric, although the p-value
-/// assumes symmetric residuals.
+/// The p-value assumes symmetric residuals. If the noise exceeds this limit, the residuals come
+/// from few photons and are not symmetric.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
 /// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
@@ -255,7 +255,7 @@ impl ComparedSides<'_> {
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Checks whether photons agree with some spectrum near the prediction. At each frequency this
+    /// Checks whether photons agree with any spectrum near the prediction. At each frequency, this
     /// spectrum may differ from the prediction by the relative error `error`, plus the error of the
     /// photons' transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
@@ -266,8 +266,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// Returns the number of photons that would decide the comparison; `None` where the number is
-    /// not known, or where more photons do not help.
+    /// Returns the number of photons with which the comparison would be decided. Returns `None`
+    /// where this number is not known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -291,9 +291,9 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of
-    /// a replicate of the prediction. Returns `None` if this number is large enough for a test, or
-    /// if measurement and prediction agree.
+    /// Returns how many rays of equal weight would vary as much as the rays of a batch, or as the
+    /// rays of a replicate of the prediction. Returns `None` if this number is large enough for a
+    /// test, or if measurement and prediction agree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
         let measured = too_few(batches.map(|batch| &batch.slices));
@@ -302,8 +302,8 @@ impl ComparedSides<'_> {
         fewest.min_by(f64::total_cmp).filter(|_| !agrees)
     }
 
-    /// Checks whether photons brought no light, or so little that it cannot be distinguished from
-    /// the rounding of the prediction.
+    /// Checks whether photons brought no light, or so little light that it cannot be distinguished
+    /// from rounding errors of the prediction.
     fn is_dark(&self) -> bool {
         largest(&self.residuals.mean()) <= self.prediction.unblocked * DARK
     }
@@ -312,8 +312,8 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Checks whether a batch of photons found no light: with so few photons, errors are not
-    /// symmetric and allow no conclusion.
+    /// Checks whether a batch of photons found no light. With so few photons, the errors are not
+    /// symmetric, and no conclusion is possible.
     fn has_dark_batch(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         batches.any(|batch| batch.tally.inside == 0)
@@ -379,16 +379,15 @@ impl ComparedSides<'_> {
             .collect()
     }
 
-    /// Returns ‖error‖ of a prediction by quadrature, over the independent frequencies.
+    /// Returns ‖error‖, over the independent frequencies, of a prediction by quadrature.
     fn numerical_error(&self) -> f64 {
         let half = &self.predicted.half;
         let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves s
-    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ²
-    /// (Cauchy–Schwarz).
+    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum changes s
+    /// by at most 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();
@@ -430,8 +429,8 @@ impl ComparedSides<'_> {
         vec![share(farthest), share(plane.distance)]
     }
 
-    /// Returns a number computed from the measured and from the predicted radial power by the same
-    /// estimator.
+    /// Applies the same estimator to the measured and to the predicted radial power, and returns
+    /// both results.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
         let predicted = self.replicates.and_then(|power| power.statistic(&of));
@@ -463,8 +462,8 @@ fn covariance(
     }))
 }
 
-/// Rounds up to one digit, with a margin of a tenth, because the noise of one run only estimates
-/// the number of photons that another run needs.
+/// Adds a margin of a tenth and rounds up to one digit. The margin is necessary because the noise
+/// of one run gives only an estimate of the number of photons that another run needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());
@@ -481,7 +480,8 @@ fn without_rounding(prediction: &Prediction) -> Slices {
     }
 }
 
-/// The share of the peak above which predicted power on the border of the grid causes a warning.
+/// If the predicted power on the border of the grid exceeds this share of the peak, there is a
+/// warning.
 const BORDER: f64 = 1e-2;
 
 /// Returns the limits of the measurement, in words.
@@ -519,9 +519,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 }
 
 impl PlaneComparison {
-    /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value is
-    /// below the level of the test. The plane does not fail if a systematic error of the
-    /// prediction, which its replicates do not show, may be visible above the noise.
+    /// Adds the full radial spectrum. If its p-value is below the level of the test, a plane that
+    /// would otherwise pass fails. However, the plane does not fail if the prediction has a
+    /// systematic error that its replicates do not show and that may be visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

@@ -19,36 +19,37 @@ use ndarray::Array2;
 pub struct Prediction {
     /// The kind of prediction.
     pub class: Class,
-    /// The steps that make the spectrum, one line each.
+    /// The steps that produce the spectrum, with one line for each step.
     pub steps: Vec<String>,
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
-    /// the quadrature error. The error is `None` for a closed form, and for a reference.
+    /// the quadrature error. The error is `None` for a closed form and for a reference.
     pub quadrature_error: Option<f64>,
     /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces smooth meshes by
     /// osculating patches, and the two tracers of a reference deflect rays at them differently. The
     /// error is `None` without a smooth mesh.
     pub mesh_error: Option<f64>,
-    /// The first-order chain. Where a first-order chain exists, `slices` and all other fields are
-    /// those of the exact ray-space prediction.
+    /// The first-order chain. Where a first-order chain exists, `slices` and all other fields
+    /// belong to the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
-    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
-    /// rules of theory. The list is empty where the slices have no statistical error. With n
-    /// replicates a p-value is no smaller than 2¹⁻ⁿ, so at least 16 replicates should be used.
+    /// Independent replicates, which are batches of a reference or randomised rules of theory;
+    /// `slices` is their mean. The list is empty where the slices have no statistical error. With n
+    /// replicates, a p-value is at least 2¹⁻ⁿ, so at least 16 replicates should be used.
     pub replicates: Vec<Slices>,
-    /// ∫ L W without occluders, the scale relative to which slices of theory are small or large;
-    /// zero for a reference.
+    /// ∫ L W without occluders; zero for a reference. The slices of theory are compared with this
+    /// value to decide whether they are dark.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
-    /// The shortest and the longest distance from the plane back to the occluders of its light,
-    /// metres; `None` without occluders, or where a reflection comes between.
+    /// The shortest and the longest distance, in metres, from the plane back to the occluders of
+    /// its light. The value is `None` if there are no occluders, or if light is reflected between
+    /// the occluders and the plane.
     pub depth: Option<[f64; 2]>,
-    /// The cuts above which energy counts as high-frequency, cycles per metre, on a plane that
-    /// light leaves diffusely.
+    /// The cuts, in cycles per metre, for a plane that light leaves diffusely. Energy above a cut
+    /// counts as high-frequency.
     pub cuts: Vec<f64>,
 }
 
@@ -71,14 +72,14 @@ impl Prediction {
         !self.replicates.is_empty()
     }
 
-    /// Returns the part of ‖error‖/‖slices‖ that replicates do not show.
+    /// Returns ‖error‖/‖slices‖ for the errors that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
         both(quadrature, self.mesh_error)
     }
 
-    /// Returns ‖error‖/‖slices‖ of theory's own replicates. This error does not shrink with more
-    /// photons.
+    /// Returns ‖error‖/‖slices‖ as estimated from the replicates of theory. This error does not
+    /// shrink with more photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
@@ -177,15 +178,15 @@ impl Prediction {
             parameters: Vec::new(),
             depth: depth(scene, plane),
             cuts: match class {
-                // No cut separates high frequencies in light that leaves a mirror or a lobe.
+                // For light that leaves a mirror or a lobe, no cut separates high frequencies.
                 Class::FirstOrder => Vec::new(),
                 Class::Exact | Class::Reference => cuts(scene, plane),
             },
         }
     }
 
-    /// Returns the prediction from another, independent measurement of plane `index`, where no
-    /// theory applies.
+    /// Returns the prediction from another, independent measurement of plane `index`. It is used
+    /// where no theory applies.
     ///
     /// # Errors
     /// Returns an error if that measurement has too few batches.
@@ -237,9 +238,9 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Returns two cuts. The first cut is twice the frequency 1/half-width at which the main lobe of a
-/// Hann window's transform ends. The second cut is 1.5 times the first, to show whether H depends
-/// on the cut. The list is empty where light does not leave a surface.
+/// Returns two cuts. The main lobe of the transform of a Hann window ends at the frequency
+/// 1/half-width. The first cut is twice this frequency. The second cut is 1.5 times the first, to
+/// show whether H depends on the cut. The list is empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -53,18 +53,19 @@ pub struct Bandwidth {
     pub nu: DirectedPair,
 }
 
-/// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
+/// Second central moments of a windowed light field, [4, 4], in the units of the coordinates.
 ///
 /// The moments are finite because the window is bounded. Second moments of the spectrum may be
-/// infinite: where the field has an edge they grow with the frequency grid. For this reason the
-/// bandwidth is a percentile.
+/// infinite: if the field has an edge, they grow with the frequency grid. Therefore the bandwidth
+/// is defined as a percentile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covariance {
     /// The moments of the photons.
     pub measured: Matrix<4>,
     /// Standard errors of `measured`, by the jackknife.
     pub error: Matrix<4>,
-    /// The moments of rays traced through the real geometry, where these rays make the prediction.
+    /// The moments of rays that are traced through the real geometry, if the prediction consists of
+    /// these rays.
     pub predicted: Option<Matrix<4>>,
     /// The moments A S Aᵀ that the first-order chain propagates from a Gaussian as wide as the
     /// light through a Gaussian window. Masks are left out.
@@ -80,7 +81,7 @@ pub struct HighFrequencyShare {
     pub share: Pair,
 }
 
-/// The share of power in the wedge of blockers between two distances.
+/// The share of power in the wedge that blockers between two distances fill.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WedgeShare {
     /// Shortest distance from the plane, metres.
@@ -99,7 +100,7 @@ pub struct PlaneReport {
     pub name: String,
     /// Kind of prediction.
     pub class: Class,
-    /// The chain, one line for each step.
+    /// The chain, with one line for each step.
     pub chain: Vec<String>,
     /// Estimated ‖error‖/‖F‖ of a prediction that is not in closed form. Where the prediction has
     /// replicates, this error is their standard error, which is also included in the noise.
@@ -140,16 +141,17 @@ pub struct PlaneReport {
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
-    /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
+    /// 95 % bandwidths of the light after its mean is subtracted. They show how fast the light
+    /// changes.
     pub variation_95: Bandwidth,
     /// Second central moments of the windowed light field over the coordinates of the plane. The
     /// moments are `None` where no light arrived.
     pub covariance: Option<Covariance>,
     /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
-    /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
-    /// first wedge lies between the nearest and the farthest blocker. The second wedge reaches back
-    /// to the light, because the light has edges too. The list is empty for any other plane.
+    /// The shares of power in two wedges, if blockers stand on the way to a plane of the first leg.
+    /// The first wedge lies between the nearest and the farthest blocker. The second wedge reaches
+    /// back to the light, because the light has edges too. The list is empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]

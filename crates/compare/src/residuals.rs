@@ -1,4 +1,4 @@
-//! Measured minus predicted slices, batch by batch, and the tests made on them.
+//! Computes measured minus predicted slices, batch by batch, and tests these differences.
 
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
@@ -7,9 +7,9 @@ use ndarray::{Array2, Array3, Axis};
 
 /// Measured minus predicted slices, in independent parts.
 ///
-/// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
-/// F. Against a prediction that has replicates itself, batches and replicates are combined into
-/// groups of neighbours. There are as many groups as batches or as replicates, whichever are fewer
+/// If the prediction has no statistical error, each batch has a residual, r_b = S_b − F. If the
+/// prediction has replicates, neighbouring batches and replicates are combined into groups. The
+/// number of groups is the number of batches or the number of replicates, whichever is smaller
 /// (docs/theory.md, section 6). If the prediction is true, each residual is an independent draw
 /// with mean zero. The mean of the residuals is S − F.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub struct Residuals {
     parts: Vec<Array3<Complex>>,
 }
 
-/// Number of rounds of random signs, which resolve the p-value to a part in 20,000.
+/// Number of rounds of random signs. With this number, the p-value is a multiple of 1/20,000.
 pub(crate) const ROUNDS: u64 = 19_999;
 /// Error of the fast transform of photons, as a share of the largest value
 /// (`etendue_transform`).
@@ -28,11 +28,11 @@ const TRANSFORM: f64 = 2e-7;
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// Returns the residuals of plane `plane` of a measurement from slices without statistical
-    /// error.
+    /// Returns the differences between plane `plane` of a measurement and slices without
+    /// statistical error.
     ///
     /// # Panics
-    /// Panics if the plane was measured at other frequencies than the prediction's.
+    /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
         let residual = |batch: &PlaneBatch| {
@@ -45,15 +45,15 @@ impl Residuals {
         }
     }
 
-    /// Returns the residuals from slices that are the mean of replicates, or that are exact if
-    /// there are no replicates.
+    /// Returns the differences between a measurement and slices that are the mean of replicates.
+    /// The slices are exact if there are no replicates.
     ///
-    /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
-    /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches
-    /// and the same number of replicates.
+    /// There are n = min(B, R) groups. Each group g holds a share of the B batches and of the R
+    /// replicates, and r_g = n/B Σ_b (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups
+    /// hold the same number of batches and the same number of replicates.
     ///
     /// # Panics
-    /// Panics if the plane was measured at other frequencies than the prediction's.
+    /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
     #[must_use]
     pub fn between(
         measurement: &Measurement,
@@ -89,9 +89,9 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// Returns the residuals from the spectrum closest to the measurement among those near the
-    /// prediction. At each frequency this spectrum is within `error`|F| of F, plus the fast
-    /// transform's error relative to the largest F.
+    /// Returns the differences between the measurement and the closest spectrum near the
+    /// prediction. At each frequency, this spectrum differs from F by at most `error`|F| plus the
+    /// error of the fast transform, which is relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
@@ -191,13 +191,14 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Returns the standard deviation, [ρ, ν], of the measured radial power around the predicted
-    /// one, if F is true.
+    /// Returns the standard deviation, [ρ, ν], of measured minus predicted radial power, if F is
+    /// true.
     ///
-    /// The deviation is |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the
-    /// azimuths. The first term is a mean over residuals, whose spread gives its variance. The
-    /// second term has the variance σ⁴ at each azimuth. Unlike the jackknife error of the power,
-    /// this error does not follow the power's own fluctuation.
+    /// The difference is |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the
+    /// azimuths. The first term is a mean over residuals, and the spread of the residuals gives the
+    /// variance of this term. The second term has the variance σ⁴ at each azimuth. Unlike the
+    /// jackknife error of the power, this error does not increase when the measured power
+    /// fluctuates upwards.
     pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
         let azimuths = self.grid.azimuths as f64;
         let half = self.grid.half_shape();
@@ -251,8 +252,8 @@ impl Residuals {
         products
     }
 
-    /// Returns ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one
-    /// jackknife error (docs/theory.md, section 6).
+    /// Returns ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and the delete-one
+    /// jackknife error of this value (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -270,8 +271,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Returns the standard error of [`Self::squared`] if every residual has mean zero: its terms
-    /// are then uncorrelated, and each pair occurs twice.
+    /// Returns the standard error of [`Self::squared`] if every residual has mean zero. In this
+    /// case the terms of the sum are uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -304,10 +305,11 @@ impl Residuals {
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
     /// its own distribution. The random signs also account for correlations between neighbouring
-    /// frequencies. The p-value is the share of rounds, the observed one included, that reach the
-    /// observed value.
+    /// frequencies. The p-value is the share of rounds that reach the observed value; the observed
+    /// signs count as one round.
     ///
-    /// Returns `None` when all residuals are zero, as when no light is measured or predicted.
+    /// Returns `None` when all residuals are zero, for example when no light is measured or
+    /// predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);
@@ -323,7 +325,7 @@ impl Residuals {
     }
 }
 
-/// Panics if the measured slices have other frequencies than the predicted slices.
+/// Panics if the measured and the predicted slices have different frequencies.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
     assert_eq!(
@@ -332,7 +334,7 @@ fn check(measured: &Slices, predicted: &Slices) {
     );
 }
 
-/// Returns Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
+/// Returns Σ_b<c ε_b ε_c H_bc. The diagonal is left out because it is the same for all signs.
 fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (b, row) in products.outer_iter().enumerate() {

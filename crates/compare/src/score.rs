@@ -5,7 +5,8 @@ use crate::residuals::Residuals;
 use ndarray::Array3;
 use serde::Serialize;
 
-/// One parameter of the chain: its value in the scene and its value as measured by the photons.
+/// One parameter of the chain, with its value in the scene and its value as measured by the
+/// photons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterReport {
     /// Name of the parameter, such as "travel light to blockers".
@@ -18,25 +19,26 @@ pub struct ParameterReport {
     pub measured: f64,
     /// Standard error of the measured value, including the error of the prediction.
     pub error: f64,
-    /// Smallest change that is detected at level 1 % nine times in ten: 3.86 errors.
+    /// The smallest change that is detected at level 1 % nine times in ten. This change is 3.86
+    /// standard errors.
     pub detectable: f64,
 }
 
-/// Distance of a change from zero, in errors, for a two-sided test at level 1 % with power 90 %:
-/// the normal quantiles 2.576 + 1.282.
+/// The size of a change, in standard errors, that a two-sided test at level 1 % detects with power
+/// 90 %. It is the sum of the normal quantiles 2.576 and 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// Returns the score test of one parameter (docs/theory.md, section 6): projects S − F on
+/// Returns the score test of one parameter (docs/theory.md, section 6). The test projects S − F on
 /// ∂F/∂parameter, weighted by 1/σ².
 ///
-/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; the
-/// error of δ is its spread over the residuals. This error includes correlations between
-/// frequencies and the noise of a prediction's replicates. A further error of the prediction,
-/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz).
-/// The bound is added to the standard error in quadrature. The step and its error are correct to
-/// first order in δ.
+/// With D = ∂F/∂parameter, the step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares
+/// change of the parameter. The error of δ is computed from the spread of δ over the residuals.
+/// This error includes correlations between frequencies and the noise of a prediction's replicates.
+/// A numerical error of the prediction, `numerical` = ‖error‖, changes δ by at most `numerical`
+/// ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz). The squares of this bound and of the standard error are
+/// added. The step and its error are correct to first order in δ.
 ///
-/// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
+/// Returns `None` if the prediction does not depend on the parameter, or if no photon arrived.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,

@@ -7,7 +7,7 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Plane, SpecularSurface, SpecularSystem};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
-/// Returns the light, masks and specular surfaces through which rays reach a plane, and the plane.
+/// Returns a plane, and the light, the masks and the specular surfaces on the way to this plane.
 /// Returns `None` where light comes from a ray file, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSystem>> {
@@ -52,8 +52,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// Returns the event of a surface, expressed as if the front of the surface faced the light; `back`
-/// states that the back faces the light.
+/// Returns the event of a surface in the form that it has if the front of the surface faces the
+/// light. `back` states whether the back of the surface faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -67,7 +67,7 @@ fn seen_from(event: Specular, back: bool) -> Specular {
     }
 }
 
-/// Returns the light, the masks and the surface with a BRDF before a plane, and the plane. Returns
+/// Returns a plane, and the light, the masks and the surface with a BRDF before this plane. Returns
 /// `None` where the plane is not on the second leg, where the first surface has no BRDF, and where
 /// light comes from a ray file.
 #[must_use]
@@ -101,9 +101,9 @@ pub fn scattered(
     })
 }
 
-/// Returns the light, all masks and all surfaces of the path, and a plane behind some of them.
-/// Returns `None` where light comes from a ray file, where it has met a mesh, and where it was
-/// scattered by no surface or by too many.
+/// Returns the light, all masks and all surfaces of the path, and a plane behind some of these
+/// surfaces. Returns `None` if light comes from a ray file, if it has met a mesh, if no surface has
+/// scattered it, or if too many surfaces have scattered it.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -226,8 +226,8 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// The largest number of triangles of a mesh that each ray of a prediction is tested against; with
-/// more the prediction would take too long.
+/// Each ray of a prediction is tested against the triangles of a mesh only if the mesh has at most
+/// this many triangles. With more triangles, the prediction would take too long.
 const MAX_TRIANGLES: usize = 500;
 
 /// Returns the objects that the path does not visit. They stop light.
@@ -243,7 +243,7 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
 }
 
-/// Returns the obstacles beside the path that rays are tested against.
+/// Returns the obstacles beside the path against which rays are tested.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()
@@ -265,8 +265,8 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
     }
 }
 
-/// Returns the obstacle for a layer of blockers that light meets from this leg on, at places where
-/// the central ray does not.
+/// Returns the obstacle for a layer of blockers. Light meets the layer on the leg `from` and on
+/// later legs, at places where the central ray does not meet it.
 pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     Obstacle {
         name: layer.name.clone(),
@@ -278,7 +278,7 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// Returns descriptions of the objects beside the path that no ray is tested against.
+/// Returns descriptions of the objects beside the path against which no ray is tested.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

@@ -2,13 +2,15 @@
 
 use std::f64::consts::SQRT_2;
 
-/// The most terms of a series or a continued fraction; a thousand degrees of freedom take about
-/// 200.
+/// The largest number of terms of a series or a continued fraction. About 200 terms are enough for
+/// a thousand degrees of freedom.
 const MAX_TERMS: u32 = 1_000_000;
-/// The precision at which a series or a continued fraction ends: the rounding of f64.
+/// A series or a continued fraction ends when its relative change is below this limit, which is the
+/// rounding error of f64.
 const ROUNDING: f64 = 1e-16;
 
-/// Returns the probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
+/// Returns the probability that a χ² variable with `dof` degrees of freedom exceeds `x`. `dof` is
+/// any positive number.
 ///
 /// The probability is Q(dof/2, x/2), the upper regularised incomplete gamma function. Q is computed
 /// from its series below x = dof + 2 and from its continued fraction above (Abramowitz and Stegun
@@ -64,11 +66,11 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// Returns the probability that Student's t of `dof` degrees of freedom is at least as far from
+/// Returns the probability that Student's t with `dof` degrees of freedom is at least as far from
 /// zero as `t`.
 ///
-/// Uses the normal deviate with about the same tail (Wallace 1959). The error is below 1 % of the
-/// probability from 30 degrees of freedom on, for probabilities down to 10⁻⁶.
+/// Uses the normal deviate with about the same tail (Wallace 1959). With at least 30 degrees of
+/// freedom, the error is below 1 % of the probability, for probabilities down to 10⁻⁶.
 pub(crate) fn student_beyond(t: f64, dof: f64) -> f64 {
     let shrink = (8.0 * dof + 1.0) / (8.0 * dof + 3.0);
     let normal = shrink * (dof * libm::log1p(t * t / dof)).sqrt();
@@ -90,7 +92,7 @@ mod tests {
             (77.9295, 100.0, 0.95),
         ] {
             let found = chi_squared_above(x, dof);
-            // The table gives x to six digits, with an error of 5e-4 at most, and the tail falls by
+            // The table gives x to six digits, so the error of x is at most 5e-4. The tail falls by
             // a fifth per unit of x.
             assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }

@@ -12,14 +12,15 @@ use etendue_theory::{
 /// The theories that predict a windowed light field.
 #[derive(Clone, Debug)]
 pub enum Theory {
-    /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
+    /// Light between parallel planes. The prediction is a closed form, or a quadrature over a flat
+    /// receiver.
     Parallel(Chain),
     /// Rays traced through smooth specular surfaces, or through pictures.
     Specular(Box<Observed<rays::SpecularSystem>>),
     /// Light that one smooth surface reflects by a BRDF.
     Scattering(Box<Observed<scattering::ScatteringSystem>>),
-    /// Light that several surfaces scatter in turn, or that one surface scatters with its own
-    /// shadow or edges.
+    /// Light that several surfaces scatter in turn, or light that one surface scatters if its own
+    /// shadow or its edges matter.
     Reflections(Box<Observed<reflections::ReflectionSystem>>),
     /// No theory applies, and another measurement takes the place of a prediction.
     None,
@@ -51,7 +52,8 @@ impl Theory {
         layers.iter().any(|known| is_same(known, layer))
     }
 
-    /// Returns the assumptions of the theory about a scene, each checked where the theory applies.
+    /// Returns the assumptions that the theory makes about a scene. Each assumption is checked
+    /// where the theory applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
         const FOLLOWED: &[&str] = &[
@@ -90,8 +92,8 @@ impl Theory {
     }
 }
 
-/// Returns the system of specular surfaces that leads to a plane behind or on one of them, also
-/// for light that passes through a picture and meets no surface.
+/// Returns the system of specular surfaces that leads to a plane behind one of them or on one of
+/// them. Light that passes through a picture and meets no surface also has such a system.
 fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {

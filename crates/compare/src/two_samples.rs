@@ -1,4 +1,4 @@
-//! Compares two measurements of one plane, from the data that their results store.
+//! Compares two measurements of one plane by the data that are stored in their results.
 
 use crate::tail::{chi_squared_above, student_beyond};
 use etendue_field::{Complex, SliceGrid, modulus};
@@ -14,15 +14,15 @@ pub struct Sample {
     /// The effective number of independent real numbers in the noise ([`crate::noise_dof`]); `None`
     /// without noise.
     pub noise_dof: Option<f64>,
-    /// Number of batches that `sigma` was estimated from.
+    /// Number of batches from which `sigma` was estimated.
     pub batches: usize,
 }
 
 /// The result of a test of two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoSamples {
-    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if A and B differ by
-    /// noise only.
+    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated. The expected value is 1 if
+    /// A and B differ by noise only.
     pub chi2_per_dof: Option<f64>,
     /// Probability of differences at least as large if both samples have the same true slices.
     pub p_value: Option<f64>,
@@ -32,8 +32,8 @@ pub struct TwoSamples {
     /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
     /// are dark.
     pub difference: f64,
-    /// √Σ(σ_A² + σ_B²) divided by the larger of ‖A‖ and ‖B‖: the difference that noise alone
-    /// makes.
+    /// √Σ(σ_A² + σ_B²) divided by the larger of ‖A‖ and ‖B‖: the difference that noise alone would
+    /// cause.
     pub noise: f64,
 }
 
@@ -43,15 +43,15 @@ const ROUNDING: f64 = 1e-12;
 impl TwoSamples {
     /// Tests whether two samples have the same true slices.
     ///
-    /// χ² over the independent frequencies is treated as that of ν independent numbers, with
-    /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w are the mean shares in the variance.
-    /// This number is exact if the noise of both samples has the same correlations, and
-    /// conservative if not (Cauchy–Schwarz for tr C_A C_B). The estimate of σ has only n = 1/Σ
-    /// w²/(R − 1) degrees of freedom. Therefore χ² is larger by n/(n − 1) and its relative variance
-    /// by n/(n − 2), as for an F distribution (docs/theory.md, section 6).
+    /// χ² over the independent frequencies is treated as χ² of ν independent numbers. Here ν^(−1/2)
+    /// = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w_A and w_B are the mean shares of the samples in
+    /// the variance. The number ν is exact if the noise of both samples has the same correlations;
+    /// otherwise it is conservative (Cauchy–Schwarz for tr C_A C_B). The estimate of σ has only n =
+    /// 1/Σ w²/(R − 1) degrees of freedom. Therefore χ² is larger by n/(n − 1) and its relative
+    /// variance by n/(n − 2), as for an F distribution (docs/theory.md, section 6).
     ///
     /// # Panics
-    /// Panics if the arrays have other shapes than the grid.
+    /// Panics if the shapes of the arrays differ from the shape of the grid.
     #[must_use]
     pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
         let sums = FrequencySums::new(grid, a, b);
@@ -71,7 +71,7 @@ impl TwoSamples {
             noise: relative(sums.noise),
         };
         if sums.count == 0 {
-            // Without noise any difference is significant.
+            // If there is no noise, any difference is significant.
             let apart = sums.without_noise;
             let p_value = apart.then_some(0.0);
             return Self { p_value, ..found };
@@ -162,10 +162,10 @@ pub struct Estimate {
     pub batches: usize,
 }
 
-/// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of
-/// a pull at least as far from zero if both estimates have the same true value.
+/// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²). Also returns the
+/// probability of a pull at least as far from zero, if both estimates have the same true value.
 ///
-/// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
+/// The test follows Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. Returns `None` where neither estimate has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {

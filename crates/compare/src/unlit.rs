@@ -12,17 +12,18 @@ type Extent = [[f64; 2]; 2];
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// The share of the rays of a section that may remain because of rounding errors.
+/// If at most this share of the rays of a section remains, the remainder is attributed to rounding
+/// errors.
 const ROUNDING: f64 = 1e-12;
-/// A layer whose shapes leave more open parts than this is assumed to have holes.
+/// A layer is assumed to have holes if its shapes leave more open parts than this number.
 const MOST_PARTS: usize = 4096;
 
 /// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
 /// plane.
 ///
-/// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
-/// which is empty if no ray passes. All rays are also stopped if a layer covers every place where
-/// they cross the layer.
+/// The rays of a section are points (position at the light, slope). Half-planes cut the set of
+/// these rays to a convex polygon, which is empty if no ray passes. All rays are also stopped if a
+/// layer covers every place where they cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
@@ -66,14 +67,15 @@ impl RaySection {
         let window = &plane.window;
         let [position, slope] =
             [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
-        // Light from beyond this position arrives only at larger slopes than those considered.
+        // Light from positions beyond this limit arrives only at slopes larger than `MAX_SLOPE`.
         let far = MAX_SLOPE * (plane.distance + position);
         let ends = scene.light.extent(axis);
         let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });
         let most = scene.light.steepest(axis).min(MAX_SLOPE);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
-        // Coordinates on a surface differ from those across the leg.
+        // The coordinates of a plane on a surface differ from the coordinates of a plane across the
+        // leg.
         if plane.leg == 0 && plane.orientation == Orientation::Orthogonal {
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);
@@ -159,8 +161,8 @@ fn covers(
     open.is_empty()
 }
 
-/// Returns the region where lines from the light to the first surface, if this surface is smooth,
-/// cross a plane.
+/// Returns the region of a plane that lines from the light to the first surface cross, if this
+/// surface is smooth.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;

@@ -2,9 +2,9 @@
 //!
 //! Theory follows rays from surface to surface and ignores all other objects. This module traces a
 //! few thousand rays with light in the window, the same in every run. The module traces each ray
-//! twice: to the first object in the whole scene, as for a photon, and to the place where theory
-//! looks for the next surface. Where the two results differ, the plane is not predicted. Rays are
-//! drawn more densely near the central ray, down to a thousandth of the surface, so that a window
+//! twice: as a photon, to the first object in the whole scene, and as theory does, to the next
+//! surface of the path. If the two results differ, the plane is not predicted. Rays are drawn more
+//! densely near the central ray, down to distances of a thousandth of the surface, so that a window
 //! of any size receives many rays.
 
 mod clearance;

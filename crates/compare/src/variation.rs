@@ -1,4 +1,5 @@
-//! Bandwidths of measured and predicted light: of all power, and of the light less its mean.
+//! Computes bandwidths of measured and predicted light. One bandwidth covers all power; the other
+//! covers the light after its mean is subtracted.
 
 use crate::prediction::Prediction;
 use crate::report::{Azimuths, Bandwidth, DirectedPair};
@@ -37,7 +38,8 @@ pub(crate) fn bandwidth(
     }
 }
 
-/// Returns the bandwidths of the light at plane `index`, and of its prediction, less their means.
+/// Subtracts the mean from the light at plane `index` and from its prediction, and returns the
+/// bandwidths of both.
 ///
 /// # Errors
 /// Returns an error if the measurement has too few batches.

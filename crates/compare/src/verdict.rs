@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Test {
     /// A plane agrees with its prediction when the p-value is not below this level.
     pub level: f64,
-    /// A plane passes when its noise, as a share of the spectrum, does not exceed this resolution.
+    /// A plane can pass only if its noise, as a share of the spectrum, does not exceed this
+    /// resolution.
     pub resolution: f64,
     /// The seed of the random signs of the p-value.
     pub seed: u64,
@@ -47,7 +48,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the worse of two verdicts: fail before undecided before pass.
+    /// Returns the worse of two verdicts. A failure is worse than an undecided result, which is
+    /// worse than a pass.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -58,7 +60,7 @@ impl Verdict {
     }
 }
 
-/// Returns the level of one of `planes` tests at which all pass together with probability 1 −
+/// Returns the level of each of `planes` tests for which the probability that all tests pass is 1 −
 /// `alpha` (Šidák 1967).
 #[must_use]
 pub fn sidak(alpha: f64, planes: usize) -> f64 {

@@ -8,7 +8,8 @@ use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::PredictionWork;
 use std::fmt;
 
-/// The largest number of steps of all predictions of a scene, about ten minutes on one core.
+/// The largest number of steps of all predictions of a scene. These steps take about ten minutes on
+/// one core.
 const MOST_STEPS: f64 = 6e11;
 /// The largest number of bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
@@ -51,9 +52,9 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// Returns the plane that takes most of the work if the predictions of a scene would take more than
-/// about ten minutes. Returns the first plane whose prediction would not fit into a gigabyte, if
-/// there is one. `theories` are the theories of the scene's planes.
+/// Returns the first plane whose prediction would not fit into a gigabyte, if there is one.
+/// Otherwise, if the predictions of a scene would take more than about ten minutes, returns the
+/// plane that takes most of the work. `theories` are the theories of the scene's planes.
 #[must_use]
 pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuchWork> {
     let mut total = 0.0;

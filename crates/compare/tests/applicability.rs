@@ -29,8 +29,8 @@ fn of(scene: &Scene) -> Applicability {
     Applicability::new(scene, &scene.planes[0])
 }
 
-/// Asserts that theory applies with the narrow window, and fails with the wide one for the given
-/// reason.
+/// Asserts that theory applies to the narrow window, and that it does not apply to the wide window
+/// for the given reason.
 fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Scene) {
     let applies = of(&scene(narrow));
     assert_eq!(applies.class(), Class::FirstOrder, "{:?}", applies.reasons);
@@ -170,7 +170,8 @@ fn a_wall_that_leans_away() {
     }
 }
 
-/// A plane to which no path is open is dark for every light and surface, and keeps its class.
+/// If no path leads to a plane, the plane is dark for every light and surface, and its class does
+/// not change.
 #[test]
 fn darkness_has_a_reason() {
     let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
@@ -279,7 +280,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     assert_eq!(obstacles(wide.theory), ["edge on legs from 0"]);
 }
 
-/// On a flat mesh no curvature changes from triangle to triangle; there is only rounding.
+/// The curvature of a flat mesh is the same for all triangles, so the only error is rounding.
 #[test]
 fn a_smooth_mesh_is_flat_or_finely_curved() {
     let of = |curvature: f64, cells: u32| {
@@ -302,8 +303,8 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     assert_eq!(of(3.0, 10), Class::Reference);
 }
 
-/// An object directly at a plane is in the way only of a plane after the object. An object in the
-/// light of a picture before a flat surface is in the way.
+/// An object directly at a plane is in the way only if the plane is after the object. In the light
+/// of a picture, an object before a flat surface is in the way.
 #[test]
 fn what_stands_at_a_plane_or_before_a_flat_surface() {
     let sheet = r#"Mesh(name: "sheet", center: (0, 0, 0.5), mesh: Paraboloid(curvatures: (0, 0), half: 0.1, cells: 1))"#;
@@ -332,8 +333,8 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
     );
 }
 
-/// A card that shades a small mirror leaves light beside the mirror, and a plane before the mirror
-/// sees this light.
+/// A card shades a small mirror, but light still passes beside the mirror. A plane before the
+/// mirror sees this light.
 #[test]
 fn what_passes_beside_a_shaded_surface_is_not_dark() {
     let card = r#"Shapes(name: "card", center: (0, 0, 0.5), shapes: [Rectangle(center: (0, 0), size: (0.4, 0.4))])"#;

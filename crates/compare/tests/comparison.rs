@@ -98,7 +98,8 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
-/// Rays that find no light do not prove darkness, so light that photons measure is then no failure.
+/// If rays find no light, this does not prove that the plane is dark. Therefore the plane does not
+/// fail if photons measure light there.
 #[test]
 fn rays_that_found_nothing_decide_nothing() {
     let [truth, _] = spectrum(0.3);
@@ -109,13 +110,14 @@ fn rays_that_found_nothing_decide_nothing() {
         let compared = compare(&measurement, 0, prediction, &TEST).unwrap();
         compared.report.verdict
     };
-    // A closed form that is dark proves that no light arrives.
+    // If a closed form is dark, no light arrives.
     assert_eq!(verdict(&nothing), Verdict::Fail);
     nothing.replicates = vec![Slices::zeros(plane().grid); 32];
     assert_eq!(verdict(&nothing), Verdict::Undecided);
 }
 
-/// Tests a reference in place of theory: its noise counts, and a difference from it is found.
+/// Tests a reference that replaces theory. Its noise is taken into account, and a difference from
+/// the reference is found.
 #[test]
 fn a_reference_is_judged_with_its_own_noise() {
     let verdict = |reference_width: f64, seed: u64| {
@@ -136,8 +138,8 @@ fn a_reference_is_judged_with_its_own_noise() {
         seeds += 1.0;
         assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
     }
-    // The mean over eight times 170 complex numbers has the standard deviation 1/√1360 = 0.027; the
-    // limit is four of these. Without the reference's noise the value would be 2.
+    // The mean over eight times 170 complex numbers has the standard deviation 1/√1360 = 0.027, and
+    // the limit is four standard deviations. Without the reference's noise the value would be 2.
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
@@ -200,8 +202,9 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             (3..=27).contains(&below),
             "{count}: {below} of 50 below 0.3"
         );
-        // The mean over 50 times 170 complex numbers has the standard deviation 1/√8500 = 0.011;
-        // the limit is four of these, and as much again for the groups' own variance.
+        // The mean over 50 times 170 complex numbers has the standard deviation 1/√8500 = 0.011.
+        // The limit is four standard deviations, plus the same amount for the variance of the
+        // groups.
         assert!((chi2 - 1.0).abs() < 0.06, "{count}: {chi2}");
         for seed in 0..5 {
             assert_eq!(compared(1.05, seed).verdict, Verdict::Fail, "{count}");
@@ -265,8 +268,8 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
         .unwrap()
         .report;
     assert_eq!(report.verdict, Verdict::Pass);
-    // The mean over 170 independent complex numbers has the standard deviation 1/√170 = 0.077; the
-    // limit is four of these.
+    // The mean over 170 independent complex numbers has the standard deviation 1/√170 = 0.077, and
+    // the limit is four standard deviations.
     assert!(
         (report.chi2_per_dof.unwrap() - 1.0).abs() < 0.3,
         "{report:?}"
@@ -279,7 +282,7 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
     ); // four errors
 }
 
-/// A spectrum 2 % too wide is rejected, and the score test finds by how much it is off.
+/// A spectrum that is 2 % too wide is rejected, and the score test finds the size of this error.
 #[test]
 fn a_wrong_parameter_is_rejected_and_measured() {
     let [truth, _] = spectrum(1.02);
@@ -297,8 +300,8 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     );
 }
 
-/// A quadrature whose error is above the resolution leaves the plane undecided. With an error below
-/// the resolution the plane passes if the error is as large as the disagreement, and fails
+/// If the error of a quadrature exceeds the resolution, the plane is undecided. If this error is
+/// below the resolution, the plane passes if the error is as large as the disagreement, and fails
 /// otherwise.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
@@ -331,9 +334,9 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
-/// The possible error of a quadrature is included in the errors of measured numbers. The noise is
-/// almost zero, and the prediction is wrong by just its stated error, along a derivative or by a
-/// shear.
+/// The possible error of a quadrature is included in the errors of measured numbers. In this test,
+/// the noise is almost zero. The prediction is wrong by exactly its stated error, along a
+/// derivative or by a shear.
 #[test]
 fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
     const STATED: f64 = 1e-3;
@@ -358,16 +361,16 @@ fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
         ]
     };
     for (direction, which) in [(&derivative, 0), (&sheared, 1)] {
-        // Without the stated error the only error is the noise of 10⁻⁶.
+        // Without the stated error, the only error is the noise of 10⁻⁶.
         assert!(pulls(direction, None)[which].abs() > 30.0);
-        // The bound is reached along a derivative with equal weights, and never exceeded; the
-        // remaining noise of the weights is a few per cent.
+        // Along a derivative with equal weights, the error equals the bound; it never exceeds the
+        // bound. The weights have a noise of a few per cent.
         let held = pulls(direction, Some(STATED))[which].abs();
         assert!((0.3..1.1).contains(&held), "{which}: {held}");
     }
 }
 
-/// The error of the shear slope is that of a difference and includes the noise of replicates.
+/// The error of the shear slope is the error of a difference, and includes the noise of replicates.
 #[test]
 fn errors_of_slopes_hold_the_noise_of_replicates() {
     let [truth, _] = spectrum(1.0);
@@ -381,15 +384,15 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
         (slope.measured.unwrap() - slope.predicted.unwrap()) / slope.error.unwrap()
     };
     let squares: f64 = (0..100).map(|seed| pull(seed).powi(2)).sum();
-    // The mean of 100 squares of numbers with unit variance has the standard deviation √(2/100);
-    // four times this is 0.57. Without the replicates, whose noise power is eight times the
-    // photons', the mean would be 9.
+    // The mean of 100 squares of numbers with unit variance has the standard deviation √(2/100),
+    // and four standard deviations are 0.57. Without the replicates, whose noise power is eight
+    // times the photons', the mean would be 9.
     let mean = squares / 100.0;
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
 /// The total of photons of equal weight has no noise. A quadrature is never exact, and its error
-/// does not count as disagreement.
+/// does not count as a disagreement with such a total.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
@@ -462,7 +465,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     let unlit = compare(&measurement(&dark, 0.0, 1), 0, &prediction(1.0), &TEST)
         .unwrap()
         .report;
-    // A measurement without light may also be due to chance, or to a window that light misses.
+    // The measurement may be dark by chance, or because the light misses the window.
     assert_eq!(unlit.verdict, Verdict::Undecided);
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
@@ -490,8 +493,8 @@ fn a_batch_without_photons_decides_nothing() {
     assert!(report.photons_needed.is_some() && report.undecided.is_some());
 }
 
-/// One heavy photon carries half of the light of a batch, or of a replicate of the prediction:
-/// other heavy photons may still be missing.
+/// One heavy photon carries half of the light of a batch, or half of the light of a replicate of
+/// the prediction. Other heavy photons may still be missing.
 #[test]
 fn light_of_a_few_heavy_photons_decides_nothing() {
     let [truth, _] = spectrum(1.0);

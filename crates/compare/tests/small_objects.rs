@@ -118,9 +118,9 @@ fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
     point - 2.0 * (point - on).dot(normal) * normal
 }
 
-/// A second mirror whose edge just reaches into the light on its way to the first mirror. A million
-/// random rays, traced by the images of the light in both planes, determine how far the edge may
-/// reach.
+/// The edge of a second mirror just reaches into the light on its way to the first mirror. A
+/// million random rays, traced by the images of the light in both planes, determine how far the
+/// edge may reach.
 #[test]
 fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     const RAYS: u32 = 1_000_000;

@@ -116,7 +116,8 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
     let unlike = distance(&p_values(&pairs(2 * BATCHES, SIZE / 3.0)));
     assert!(unlike < SMIRNOV, "{unlike}");
 
-    // Injected faults: σ off by 10 %, and frequencies treated as independent.
+    // The injected faults are a σ that is wrong by 10 %, and a test that treats frequencies as
+    // independent.
     for scale in [0.9, 1.1] {
         let mut planted = alike.clone();
         for (a, b) in &mut planted {
@@ -148,8 +149,8 @@ fn noise_amounts_to_as_many_numbers_as_its_correlation_leaves() {
     // Each of two azimuths has six lines with ρ > 0, and half of the line with ρ = 0.
     let frequencies = 2.0 * (6.0 * 13.0 + 7.0);
     let expected = 2.0 * frequencies * frequencies / (2.0 * (6.0 * squares(13.0) + squares(7.0)));
-    // Each frequency is in units of its own σ, which is estimated from 32 batches and adds two
-    // parts in 31.
+    // Each frequency is divided by its own σ. This σ is estimated from 32 batches, which increases
+    // the result by two parts in 31.
     assert!((mean / expected - 1.0).abs() < 0.065, "{mean} {expected}");
 }
 

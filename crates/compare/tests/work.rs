@@ -86,8 +86,8 @@ fn scenes_of_the_repository_end() {
     assert!(found > 40, "{found} scenes");
 }
 
-/// Quadratures that would take too long, or that nodes do not resolve, are replaced by nets with a
-/// budget.
+/// Nets with a budget replace a quadrature that would take too long, or whose nodes do not resolve
+/// the integrand.
 #[test]
 fn wide_lights_and_fine_gratings_before_a_receiver() {
     for edits in [

@@ -1,4 +1,4 @@
-//! Export of Étendue scenes to other renderers, for viewing and for checks.
+//! Exports Étendue scenes to other renderers, for viewing and for checks.
 //!
 //! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
 //! 3](https://www.mitsuba-renderer.org): the light, the blockers, and the surfaces with their

@@ -1,8 +1,8 @@
 //! Export to Mitsuba's scene format.
 //!
-//! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along
-//! X, Y and D of the central ray. Coordinates are written with so many digits that every f64 is
-//! read back exactly.
+//! The coordinates are the coordinates of [`Scene`], in metres. The centre of the light is at the
+//! origin, and x, y and z are along X, Y and D of the central ray. Coordinates are written with so
+//! many digits that every f64 is read back exactly.
 
 mod id;
 mod light;
@@ -237,7 +237,7 @@ impl Writer {
     }
 }
 
-/// A rectangle as two triangles.
+/// Returns a rectangle as two triangles.
 fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     let [[left, right], [low, high]] = [rectangle.extent(0), rectangle.extent(1)];
     let corner = |x, y| DVec3::new(x, y, distance);
@@ -245,8 +245,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin. Light reaches no coordinate of
-/// modulus `beyond` or more.
+/// Returns the part of a half-plane that light can reach, with a margin. Light reaches no
+/// coordinate of modulus `beyond` or more.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {
@@ -260,8 +260,8 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// The largest coordinate, across the central ray, of light on its straight way to a window or a
-/// surface.
+/// Returns the largest coordinate, across the central ray, of light that goes straight to a window
+/// or a surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends
@@ -282,7 +282,7 @@ fn reach(scene: &Scene) -> f64 {
     windows.chain(corners).fold(light, f64::max)
 }
 
-/// The name of an object that extends behind the plane of the light.
+/// Returns the name of an object that extends behind the plane of the light.
 fn behind(scene: &Scene) -> Option<String> {
     let mut bodies = bodies(scene);
     let found = bodies.find(|(_, corners)| corners.iter().any(|p| p.z < 0.0));

@@ -6,7 +6,7 @@ use crate::text::width;
 /// A named quantity and its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AxisQuantity {
-    /// Name, markup: `|*S*|^{2}`.
+    /// The name of the quantity, as markup such as `|*S*|^{2}`.
     pub name: String,
     /// The unit of the quantity, as markup; empty for a pure number.
     pub unit: String,
@@ -22,7 +22,8 @@ impl AxisQuantity {
         }
     }
 
-    /// Returns the label "name (unit)" as markup; the unit includes 10 to the power `exponent`.
+    /// Returns the label "name (unit)" as markup. The unit includes the factor 10 to the power
+    /// `exponent`.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
             0 => String::new(),

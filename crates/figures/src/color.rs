@@ -26,7 +26,7 @@ pub enum Scale {
     Phase,
 }
 
-/// Red, green, blue.
+/// A color as red, green and blue.
 pub(crate) type Rgb = [u8; 3];
 
 /// The grey that marks cells without a value (NaN). No color map contains this grey.
@@ -123,7 +123,8 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether any values are below the range of the colors, and whether any are above it.
+    /// Whether any values are below the range of the colors, and whether any values are above this
+    /// range.
     pub(crate) beyond: [bool; 2],
 }
 

@@ -10,10 +10,10 @@ use crate::svg::{Anchor, Area, Svg, TextStyle};
 use ndarray::ArrayView2;
 
 /// One quantity, measured and expected in the same cells, as arrays [x, y] with both axes
-/// ascending. NaN: no value.
+/// ascending. A cell without a value is NaN.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// The quantity and the plane that the pictures show, as markup.
+    /// The title, as markup, which names the quantity and the plane.
     pub title: &'a str,
     /// A line below the title, such as the verdict, as markup; may be empty.
     pub note: &'a str,

@@ -1,4 +1,4 @@
-//! Curves and measured points over one axis, in adjacent panels.
+//! Draws curves and measured points in adjacent panels.
 
 use crate::axis::{Axis, AxisQuantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -96,7 +96,7 @@ const RIVAL: Stroke = Stroke {
     dash: "6 4",
 };
 const POINT: &str = INK;
-/// Length of the sample of a line in the key.
+/// Length of the short line that the key shows for each curve.
 const SAMPLE: f64 = 30.0;
 
 /// Draws the panels. The CSV has a row for each point.
@@ -142,8 +142,8 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-/// Draws the key: each name once with its style, on as many lines as needed; returns the last
-/// baseline.
+/// Draws the key, which shows each name once with its style, on as many lines as needed. Returns
+/// the last baseline.
 fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f64 {
     let mut x = left;
     let mut known: Vec<&str> = Vec::new();
@@ -181,7 +181,7 @@ fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
     [0, 1].iter().all(|i| !panel.is_log[*i] || point[*i] > 0.0)
 }
 
-/// Returns the axes that cover all points of a panel, and y = 0.
+/// Returns the axes of a panel, which cover all its points and y = 0.
 fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
     let points = || {
         let all = panel.curves.iter().flat_map(|c| &c.points);
@@ -211,8 +211,8 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // On an axis that includes zero, values that are all far from zero would look like a flat
-        // line.
+        // If all values are far from zero, they would look like a flat line on an axis that
+        // includes zero.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]

@@ -257,8 +257,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// Returns the part of a line between a height just above the plot and a height just below the
-    /// plot. A horizontal line is returned unchanged.
+    /// Returns the part of a line that is between the height just above the plot and the height
+    /// just below the plot. A horizontal line is returned unchanged.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];

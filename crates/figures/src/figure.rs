@@ -16,11 +16,11 @@ const PNG_SCALE: f32 = 2.0;
 /// A drawing with the numbers that it shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// The drawing. The drawing as SVG; texts are stored as text, and heat maps are embedded PNGs
-    /// with one pixel per cell.
+    /// The drawing as SVG. Texts are stored as text, and heat maps are embedded PNGs with one pixel
+    /// per cell.
     pub svg: String,
-    /// The numbers that the drawing shows, as CSV: a header with names and units, then a row for
-    /// each cell or line.
+    /// The numbers that the drawing shows, as CSV. A header states names and units, and a row for
+    /// each cell or line follows.
     pub csv: String,
 }
 

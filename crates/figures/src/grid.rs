@@ -10,7 +10,7 @@ use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use ndarray::ArrayView2;
 
-/// Values on a grid [x, y], with both axes ascending. NaN: no value.
+/// Values on a grid [x, y], with both axes ascending. A cell without a value is NaN.
 #[derive(Clone, Debug)]
 pub struct Picture<'a> {
     /// The axis of the array's first index.
@@ -211,7 +211,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         self.shape * self.side
     }
 
-    /// Checks whether the y axis of a picture differs from that of its left neighbour.
+    /// Checks whether the y axis of a picture differs from the y axis of the picture to its left.
     fn differs(row: &PictureRow<'_, '_>, column: usize) -> bool {
         row.cells[column].0.y != row.cells[column - 1].0.y
     }

@@ -7,8 +7,8 @@ use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
-/// Returns the data URI of a picture of `values` [x, y], with x to the right and y upwards.
-/// `None` without cells.
+/// Returns the data URI of a picture of `values` [x, y], with x to the right and y upwards. Returns
+/// `None` if there are no cells.
 pub(crate) fn heat_map(
     values: ArrayView2<'_, f64>,
     shading: &Shading,
@@ -57,7 +57,8 @@ fn picture(
 /// pixels is drawn white.
 ///
 /// # Errors
-/// If there are no pixels, more pixels than a PNG can hold, or fewer or more values than pixels.
+/// If there are no pixels, if there are more pixels than a PNG can hold, or if the number of values
+/// differs from the number of pixels.
 pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u8>, Error> {
     let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
         return Err(Error::Size(u32::MAX, u32::MAX));

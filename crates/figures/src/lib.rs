@@ -1,8 +1,9 @@
 //! Draws light fields, spectra, and the path of the light between planes.
 //!
-//! Input: plain values (arrays, axes, positions in metres). Output: a [`Figure`], which is an SVG
-//! with a CSV of its numbers, and which can also be written as a PNG. The crate computes no physics
-//! and uses neither the disk nor system fonts, so the same values give the same bytes.
+//! The input consists of plain values (arrays, axes, positions in metres). The output is a
+//! [`Figure`], which is an SVG with a CSV of its numbers, and which can also be written as a PNG.
+//! The crate computes no physics and uses neither the disk nor system fonts, so the same values
+//! give the same bytes.
 //!
 //! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in
 //!   σ.
@@ -10,7 +11,7 @@
 //!   field and spectrum.
 //! * [`plate()`]: pictures in rows and columns.
 //! * [`section()`]: the cut of `strip()` alone.
-//! * [`ellipses()`]: a spectrum with covariances over it.
+//! * [`ellipses()`]: a spectrum, over which covariances are drawn as ellipses.
 //! * [`curves()`]: curves and measured points, in adjacent panels.
 //! * [`stacked()`]: several figures on one page.
 //! * [`photograph()`]: the picture that a camera takes.

@@ -1,4 +1,4 @@
-//! Writes SVG, with the few kinds of elements that figures consist of.
+//! Writes the few kinds of SVG elements of which figures consist.
 
 use crate::sizes::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
 use crate::text::{escape, fit, lines, plain, spans};
@@ -235,8 +235,8 @@ impl Svg {
         self.raw("</svg>");
     }
 
-    /// Draws a title and paler lines below it, both as markup, from the left edge `x`; returns
-    /// the y coordinate below these lines.
+    /// Draws a title and, in a paler color, the lines of a note below it. Both texts are markup and
+    /// begin at the left edge `x`. Returns the y coordinate below these lines.
     pub(crate) fn title(&mut self, x: f64, room: f64, title: &str, note: &str) -> f64 {
         let mut y = 8.0;
         if !title.is_empty() {

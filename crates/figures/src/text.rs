@@ -68,8 +68,8 @@ pub(crate) fn plain(markup: &str) -> String {
     runs(markup).into_iter().map(|run| run.text).collect()
 }
 
-/// Estimates the width of `text` at the font size `size`, in SVG units. The estimate of the width
-/// is good to about 15 %, which suffices for layout.
+/// Estimates the width of `text` at the font size `size`, in SVG units. The error of the estimate
+/// is about 15 %, which is small enough for layout.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     let ems: f64 = text.chars().map(advance).sum();
     ems * size

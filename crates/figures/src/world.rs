@@ -52,8 +52,8 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Returns the scale in units per metre and the centre of the drawing that make the path, the
-    /// planes and the lights visible.
+    /// Returns the scale in units per metre, and the centre of the drawing. With both, the path,
+    /// the planes and the lights are visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
             .objects

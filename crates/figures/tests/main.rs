@@ -1,4 +1,4 @@
-//! The tests of `etendue-figures`, one program for all.
+//! The tests of `etendue-figures`, as one program.
 
 mod common;
 mod layout;

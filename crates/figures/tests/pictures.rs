@@ -17,7 +17,8 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// In the PNG, too, one color fills the cell's part of the panel, without smoothing.
+/// In the PNG, one color also fills the part of the panel that belongs to the cell, without
+/// smoothing.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();
@@ -31,9 +32,10 @@ fn the_raster_shows_cells_as_sharp_rectangles() {
     let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| 2 * number(name));
     let bright = raster.at(x + w - w / 10, y + h / 6);
     assert!(bright[0] > 240 && bright[1] > 240, "{bright:?}");
-    // Three pixels inside the edges of the cell, clear of the frame, the color is that of the cell.
+    // Three pixels inside the edges of the cell, away from the frame, the picture has the color of
+    // the cell.
     assert_eq!(raster.at(x + w - w / 5 + 3, y + h / 3 - 3), bright);
-    // Three pixels outside the cell, the color is that of the value 0.
+    // Three pixels outside the cell, the picture has the color of the value 0.
     let dark = raster.at(x + 10, y + h - 10);
     assert!(dark.iter().all(|c| *c < 10), "{dark:?}");
     assert_eq!(raster.at(x + w - w / 5 - 3, y + h / 3 - 3), dark);

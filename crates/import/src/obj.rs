@@ -1,7 +1,7 @@
 //! Scenes of OBJ files with the materials of MTL files (Wavefront, Advanced Visualizer manual,
 //! appendices B1 and B2), and single meshes of PLY files.
 //!
-//! * Coordinates are those of the file, and are right-handed. There is no camera.
+//! * Coordinates are kept as they are in the file, and are right-handed. There is no camera.
 //! * Each part between `usemtl` lines is a shape. A shape without a material is diffuse with
 //!   reflectance 0.5.
 //! * Surfaces scatter light on both sides and emit light on their front. The front is the side to

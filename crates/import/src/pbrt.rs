@@ -2,7 +2,7 @@
 //!
 //! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]. `reader` and the
 //! modules below it turn this scene into a world. Each parameter that is read is marked, and each
-//! parameter without a mark becomes a note. Conventions are those of pbrt-v4's source.
+//! parameter without a mark becomes a note. Conventions follow the source of pbrt-v4.
 //!
 //! # Light
 //!

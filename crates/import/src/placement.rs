@@ -36,14 +36,15 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Op
     }
 }
 
-/// Whether a map keeps angles, and therefore maps spheres to spheres.
+/// Checks whether a map keeps angles, and therefore maps spheres to spheres.
 pub(crate) fn is_similarity(map: DMat3) -> bool {
     let [x, y, z] = axes(map);
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns the similarity that maps X as a regular map does, maps Y to the same side in the plane
-/// of both axes, and mirrors if the map mirrors.
+/// Returns the similarity that is closest to a regular map in these respects. Both map X to the
+/// same vector. Both map Y to the same half-plane beside the mapped X. The similarity mirrors if
+/// the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);
     let along = x.normalize();

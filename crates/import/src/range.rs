@@ -21,7 +21,7 @@ pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     }
 }
 
-/// Whether all numbers of a map are in range.
+/// Checks whether all numbers of a map are in range.
 pub(crate) fn holds(map: DAffine3) -> bool {
     map.to_cols_array().iter().all(|v| v.abs() <= MAX_NUMBER)
 }

@@ -88,7 +88,7 @@ impl Report {
         self.notes.borrow_mut().add(place, message.into());
     }
 
-    /// Whether the scene is refused.
+    /// Checks whether the scene is refused.
     pub(crate) fn has_causes(&self) -> bool {
         !self.causes.borrow().kept.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Small files that would take much time or memory if the work were not limited.
+//! Tests small files that would take much time or memory if the work were not limited.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -45,8 +45,8 @@ fn files_that_include_each_other_are_read_a_bounded_number_of_times() {
         .collect();
     let folder = folder(&files);
     let refused = import(&folder.path().join("f0.xml"), &Options::default()).unwrap_err();
-    // Each refused include is counted. The files contain 10⁸ nested includes; at most a thousand
-    // files with eleven includes each were read.
+    // Each refused include is counted. The files contain 10⁸ nested includes, of which at most a
+    // thousand files with eleven includes each are read.
     let last = &refused.causes[refused.causes.len() - 1].message;
     let more = last
         .strip_prefix("and ")

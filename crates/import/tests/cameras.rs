@@ -1,4 +1,4 @@
-//! Cameras, compared with rays that Mitsuba 3.9.1 sends through a film of 40 × 20 pixels.
+//! Compares cameras with the rays that Mitsuba 3.9.1 sends through a film of 40 × 20 pixels.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

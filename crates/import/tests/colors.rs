@@ -205,9 +205,9 @@ fn jpeg_and_radiance_pictures_are_read() {
     }
 }
 
-/// Two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a palette. In a BMP
-/// file, rows are stored from below, and colours as blue, green and red. As in Mitsuba, v increases
-/// downwards.
+/// The test reads two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a
+/// palette. In a BMP file, rows are stored from the lowest to the highest, and colours are stored
+/// as blue, green and red. As in Mitsuba, v increases downwards.
 #[test]
 fn bmp_pictures_are_read() {
     let header = |offset: u32, bits: u16, colors: u32| {

@@ -20,8 +20,8 @@ fn along(look: Look) -> [f64; 3] {
 #[test]
 fn x_is_to_the_right() {
     let top_right = camera(&format!("{WIDE} Camera \"perspective\"")).look([40.0, 0.0], [0.0; 2]);
-    // The vertical slope of the ray is that of 45 degrees, and the horizontal slope is twice the
-    // vertical slope.
+    // The vertical slope of the ray is the tangent of 45 degrees, and the horizontal slope is twice
+    // the vertical slope.
     assert_close(
         &along(top_right),
         &[2.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt()],

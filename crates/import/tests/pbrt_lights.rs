@@ -211,7 +211,8 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // The means over pixels conserve the light of a spot of the size of a pixel to a few per cent.
+    // If a spot has the size of a pixel, the means over pixels conserve its light to a few per
+    // cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
     // The centre of the pixel is at u = 9/16 and v = 1/16 in coordinates from −1 to 1, so r =

@@ -41,7 +41,8 @@ const SPARSE: usize = 20;
 /// Number of paths per shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// The difference of a pixel, relative to white, beyond which its color no longer changes.
+/// If the difference of a pixel, relative to white, exceeds this limit, the color of the pixel no
+/// longer changes.
 const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
@@ -53,7 +54,7 @@ struct CreatureScene {
 }
 
 impl CreatureScene {
-    /// The creatures scene, at the size for this quality.
+    /// Returns the creatures scene, at the size for this quality.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
         for (name, bytes) in FILES {
@@ -235,18 +236,19 @@ impl ComparedPictures {
         }
     }
 
-    /// Relative luminance: radiance divided by the radiance of white, at most 1.
+    /// Returns the relative luminance, which is radiance divided by the radiance of white, and at
+    /// most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
 
-    /// The difference from the reference, relative to white.
+    /// Returns the difference from the reference, relative to white.
     fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         let both = of.iter().zip(&self.reference.mean);
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// The mean of `squares`, such as (x − r)², each divided by r² + ε².
+    /// Returns the mean of `squares`, such as (x − r)², each divided by r² + ε².
     fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
         let reference = &self.reference.mean;
         let count = reference.len() as f64;
@@ -257,13 +259,13 @@ impl ComparedPictures {
             / count
     }
 
-    /// The relative mean square error of a picture.
+    /// Returns the relative mean square error of a picture.
     fn error(&self, of: &[f64]) -> f64 {
         let both = of.iter().zip(&self.reference.mean);
         self.relative(both.map(|(x, r)| (x - r).powi(2)))
     }
 
-    /// The relative mean square error of the reference due to its noise.
+    /// Returns the relative mean square error of the reference due to its noise.
     fn noise(&self) -> f64 {
         self.relative(self.reference.variance.iter().copied())
     }
@@ -332,14 +334,14 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ]))
 }
 
-/// The radiance exceeded by a hundredth of the pixels.
+/// Returns the radiance that a hundredth of the pixels exceed.
 fn bright(radiance: &[f64]) -> f64 {
     let mut sorted = radiance.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted[sorted.len() * 99 / 100].max(f64::MIN_POSITIVE)
 }
 
-/// The style with a grey scale for photographs.
+/// Returns the style with a grey scale for photographs.
 fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,

@@ -1,5 +1,5 @@
-//! Compares the sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected,
-//! with photons.
+//! Compares the sampling criteria of Durand et al. 2005, section 6.2, with photons. The criteria
+//! are evaluated as printed and with corrections.
 
 use crate::quality::Quality;
 use crate::scene_run::resolved;
@@ -16,8 +16,8 @@ struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// The values of the field at both ends of the lines; photons are also measured at these
-    /// values.
+    /// The values of the field at both ends of the curves. Measurements with photons are also made
+    /// at these values.
     ends: [f64; 2],
     values: &'static [f64],
     /// Converts a value of the field to the quantity on the axis.
@@ -106,7 +106,7 @@ fn panel(
     })
 }
 
-/// The bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
+/// Returns the bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
 /// function returns the bandwidth behind the edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
@@ -123,7 +123,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// A measurement with photons: the value on the axis, the bandwidth and its standard error.
+/// Returns a measurement with photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

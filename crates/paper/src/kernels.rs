@@ -43,7 +43,7 @@ fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
     }
 }
 
-/// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
+/// Draws g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
 pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slope = || AxisQuantity::new("*v*", "slope");
     let frequency = || AxisQuantity::new("*Ω*", "cycles/slope");
@@ -75,7 +75,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[curves, solid_slopes(taken)?]))
 }
 
-/// G(u, v) and its transform over both slopes and both frequencies (Fig. 5c).
+/// Draws G(u, v) over both slopes, and its transform over both frequencies (Fig. 5c).
 fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let at = |i: usize, end: f64| end * (2.0 * i as f64 / (CELLS - 1) as f64 - 1.0);
     let map = |end: f64, f: &dyn Fn(f64, f64) -> f64| {
@@ -137,7 +137,8 @@ impl KernelFactor {
             .map_or_else(|| cosine_hat(omega), |f| f.cosine_hat(omega))
     }
 
-    /// The frequencies below which the factor has [`SHARES`] of its energy, cycles per radian.
+    /// Returns the frequencies, in cycles per radian, below which the factor has [`SHARES`] of its
+    /// energy.
     fn energy_below(&self) -> [Option<f64>; 3] {
         let nodes = gauss_legendre(200).into_iter();
         let squares = nodes.map(|(t, w)| w * self.value(FRAC_PI_2 * t).powi(2));
@@ -146,8 +147,8 @@ impl KernelFactor {
     }
 }
 
-/// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the
-/// frequencies below which the shares of their energy lie.
+/// Draws cos₊, and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12).
+/// Also states the frequencies below which [`SHARES`] of the energy of each curve lie.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| KernelFactor { name, fresnel };
     let dielectric = |index| Some(FresnelFactor::Dielectric { index });

@@ -29,7 +29,7 @@ pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     }
 }
 
-/// The requested figures of the paper.
+/// Returns the requested figures of the paper.
 fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let of_scenes = [
         ("set", !request.set.is_empty()),

@@ -1,4 +1,5 @@
-//! Fig. 8: the spectrum at the receiver by slopes, by angles, and the difference of the two.
+//! Draws Fig. 8: the spectrum at the receiver over slopes, the spectrum over angles, and the
+//! difference of both.
 
 use crate::rows::{DECIBEL, Seen, feet, lettered, row};
 use crate::subject::FigureData;
@@ -50,7 +51,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
     })
 }
 
-/// Radial spectra by slopes, by angles with ρ along X, and their difference.
+/// Returns the radial spectra over slopes and over angles, with ρ along X, and their difference.
 fn panels(
     [slopes, angles]: [&Slices; 2],
     [by_slopes, by_angles]: [&Array2<f64>; 2],
@@ -62,9 +63,9 @@ fn panels(
 
 /// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
 ///
-/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. The
-/// slice by slopes at (ρ, ν) and azimuth φ is thus the slice by angles at (−ρ, ν) and azimuth −φ,
-/// or at (ρ, −ν) and azimuth π − φ.
+/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. Therefore
+/// the value over slopes at (ρ, ν) and azimuth φ is the value over angles at (−ρ, ν) and azimuth
+/// −φ, or at (ρ, −ν) and azimuth π − φ.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
     let (azimuths, columns, rows) = by_slopes.dim();
@@ -80,7 +81,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// The norm of the difference divided by the norm of the spectrum.
+/// Returns the norm of the difference divided by the norm of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -93,7 +94,7 @@ fn off(angles: &Seen<'_>) -> Vec<String> {
     ]
 }
 
-/// The 95 % bandwidths of a plane.
+/// Returns the 95 % bandwidths of a plane.
 fn bandwidths(seen: &Seen<'_>) -> Vec<String> {
     let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
     let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];

@@ -1,4 +1,4 @@
-//! Figures with several scenes, or several kinds of spectra, side by side.
+//! Draws figures that show several scenes, or several kinds of spectra, side by side.
 
 use crate::flat::Flat;
 use crate::rows::{DECIBEL, Seen, compared, feet, lettered, phase, power, row};
@@ -121,7 +121,8 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// ∫ L W of a plane without blockers; `None` if light does not travel between parallel planes.
+/// Returns ∫ L W that a plane would have without blockers; `None` if light does not travel between
+/// parallel planes.
 fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
     let index = shot
         .scene

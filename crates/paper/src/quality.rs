@@ -29,7 +29,7 @@ impl Quality {
         }
     }
 
-    /// The number of photons for a scene that specifies `photons`.
+    /// Returns the number of photons for a scene that specifies `photons`.
     pub(crate) fn photons(self, photons: u64) -> u64 {
         match self {
             Self::Draft => photons / 8,
@@ -39,9 +39,9 @@ impl Quality {
         }
     }
 
-    /// The number of frequencies along each axis for each frequency of the scene. The window is
-    /// bounded, so the spectrum between the scene's frequencies is well defined, and the picture
-    /// can show this spectrum with smaller cells.
+    /// Returns the number of frequencies along each axis for each frequency of the scene. The
+    /// window is bounded, so the spectrum between the scene's frequencies is well defined, and the
+    /// picture can show this spectrum with smaller cells.
     pub(crate) fn finer(self) -> usize {
         match self {
             Self::Draft => 2,

@@ -239,7 +239,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
 ];
 
-/// The recipe of a figure.
+/// Returns the recipe of a figure.
 pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
     let mut recipes = RECIPES.iter();
     recipes.find(|recipe| recipe.name == name).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Pictures of the planes of a figure's scenes, row by row.
+//! Collects the pictures of the planes of a figure's scenes, row by row.
 
 use crate::scene_run::Shot;
 use etendue_compare::PlaneComparison;
@@ -49,7 +49,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
+/// Returns the power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
 pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
     let full = slices.full();
     let slice = full.index_axis(Along(0), 0);
@@ -61,7 +61,7 @@ pub(crate) fn power(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, _| s.norm_sqr())
 }
 
-/// The phase in degrees.
+/// Returns the phase in degrees.
 pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
         if s.norm_sqr() > MIN_POWER * most {
@@ -88,8 +88,8 @@ pub(crate) fn row<'a>(
     }
 }
 
-/// Light fields, measured and predicted spectra of some planes, and their full radial spectra if
-/// there are any.
+/// Returns the light fields and the measured and predicted spectra of some planes, and their full
+/// radial spectra if there are any.
 pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
     let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
     let measured = pictures(&|seen| seen.spectrum(seen.found.radial.power.view()));
@@ -119,7 +119,7 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
     rows
 }
 
-/// The headings with letters, beginning with (a).
+/// Returns the headings with letters, beginning with (a).
 pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
     let letters = ('a'..='z').zip(heads);
     letters

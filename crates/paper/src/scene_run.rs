@@ -59,8 +59,8 @@ impl Shot {
     }
 }
 
-/// A scene of the repository with some fields set, and with a number of photons derived from the
-/// scene's own number.
+/// Returns a scene of the repository with some fields set, and with a number of photons derived
+/// from the scene's own number.
 pub(crate) fn resolved(
     name: &str,
     text: &str,
@@ -73,8 +73,8 @@ pub(crate) fn resolved(
     machine::resolved(name, file, Path::new(""), name)
 }
 
-/// The results as NPZ: for each plane its light field, its radial spectra and the slices at azimuth
-/// 0, with their axes. Names are SCENE.PLANE.ARRAY.
+/// Returns the results as NPZ: for each plane its light field, its radial spectra and the slices at
+/// azimuth 0, with their axes. Names are SCENE.PLANE.ARRAY.
 pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
     let mut npz = Npz::new();
     for shot in shots {

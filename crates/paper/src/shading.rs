@@ -1,4 +1,5 @@
-//! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
+//! Draws Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy
+//! reflections.
 
 use crate::criteria::criteria;
 use crate::rows::{Seen, compared, feet, lettered};
@@ -29,7 +30,8 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[steps, product(taken, &seen[3])?]))
 }
 
-/// The spectrum at ν = 0, and the product of the spectra of environment and cosine.
+/// Returns the spectrum at ν = 0, and the product of the spectrum of the environment and the
+/// spectrum of the cosine.
 fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
     let scene = &taken.shots[0].scene;
     let k = scene
@@ -76,7 +78,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
     })
 }
 
-/// The lobes of an environment over longitude, integrated over latitude.
+/// Returns the lobes of an environment over longitude, integrated over latitude.
 fn glows(light: &Light) -> Vec<Glow> {
     let Light::Environment { environment } = light else {
         return Vec::new();
@@ -92,8 +94,8 @@ fn glows(light: &Light) -> Vec<Glow> {
     lobes.iter().map(glow).collect()
 }
 
-/// |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied by the
-/// window and transformed back.
+/// Returns |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied
+/// by the window and transformed back.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
     // The range extends to four times the last frequency, because lobes of a tenth of a radian

@@ -1,4 +1,5 @@
-//! Figs. 3 and 13: coordinates of rays, and the error of treating one kind as another.
+//! Draws Figs. 3 and 13: coordinates of rays, and the error if one kind of coordinates is treated
+//! as another.
 
 use crate::rows::{Seen, compared, feet, lettered, row};
 use crate::scene_run::resolved;
@@ -13,7 +14,7 @@ use etendue_report::pictures::{across, across_axes, light_field_quantity};
 use etendue_store::Failure;
 use ndarray::Array2;
 
-/// Fig. 3: stripes at equal angles, by slopes and by angles, and after travel.
+/// Fig. 3: stripes at equal angles, over slopes and over angles, at the light and after travel.
 pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["two_plane", "travel", "plane_sphere"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
@@ -97,7 +98,8 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[plate, error]))
 }
 
-/// The decrease of first-order errors of some planes of a scene with the size of the neighbourhood.
+/// Returns how the first-order errors of some planes of a scene decrease with the size of the
+/// neighbourhood.
 fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Failure> {
     let scene = resolved(name, text, &[], |photons| photons)?;
     let wanted = scene

@@ -79,7 +79,7 @@ impl FigureData<'_> {
         curves(of, &self.style).map_err(Failure::cannot_run)
     }
 
-    /// The planes of the first scene along its path, measured and predicted.
+    /// Draws the planes of the first scene along its path, measured and predicted.
     pub(crate) fn strip(&self) -> Result<Figure, Failure> {
         let Shot {
             scene,

@@ -1,4 +1,4 @@
-//! Table 1: each operator, shown by the light before and after it.
+//! Draws Table 1: for each operator, the light before the operator and the light after it.
 
 use crate::rows::{DECIBEL, Seen, row};
 use crate::subject::FigureData;
@@ -6,8 +6,9 @@ use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
-/// An operator of Table 1. The first text is the operator's name, a line break and its formula;
-/// the other texts are the scene, the plane before and the plane after the operator.
+/// An operator of Table 1. The first text is the name of the operator, a line break and the formula
+/// of the operator. The other texts are the scene, the plane before the operator and the plane
+/// after the operator.
 type Step = (&'static str, [[&'static str; 2]; 2]);
 
 /// Largest width of a picture, so that both parts fit a page.

@@ -1,4 +1,5 @@
-//! Figures of the user's scenes: a single one along its path, or several side by side at a plane.
+//! Draws figures of the user's scenes. A single scene is shown along its path, and several scenes
+//! are shown side by side at a plane.
 
 use crate::request::{FigureRequest, Wanted};
 use crate::rows::{Seen, compared, feet};
@@ -13,7 +14,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use std::path::PathBuf;
 
-/// The figure of the requested scenes.
+/// Returns the figure of the requested scenes.
 pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     let sources = sources(request)?;
     let mut scenes: Vec<Scene> = Vec::new();
@@ -122,7 +123,7 @@ fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
     words.join(" ")
 }
 
-/// A plane of each scene, with one range of colors.
+/// Returns a plane of each scene, with one range of colors.
 fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen

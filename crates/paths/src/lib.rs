@@ -1,7 +1,7 @@
-//! Paths of light through a [`World`](etendue_world::World), traced back from a camera: ray
-//! intersections (`space`), scattering at surfaces (`scatter`), lights (`lights`), and the radiance
-//! of a path. `surface_hit` provides the points that a camera sees, for renderers with adaptive
-//! sampling; `probe` measures the light field behind a pixel.
+//! Traces paths of light through a [`World`](etendue_world::World), back from a camera. The modules
+//! contain ray intersections (`space`), scattering at surfaces (`scatter`), lights (`lights`), and
+//! the radiance of a path (`paths`). `surface_hit` provides the points that a camera sees, for
+//! renderers with adaptive sampling; `probe` measures the light field behind a pixel.
 
 mod lights;
 mod numbers;

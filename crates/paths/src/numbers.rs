@@ -11,7 +11,8 @@ pub(crate) struct PathNumbers<'a> {
     block: u32,
     left: [u32; 4],
     used: usize,
-    /// The net whose point gives the first numbers, and the index of this point, if any.
+    /// The net that gives the first numbers, and the index of the point that is used; `None` if no
+    /// net is used.
     net: Option<(&'a Net, u32)>,
 }
 

@@ -7,7 +7,7 @@ use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::World;
 use glam::DVec3;
 
-/// Paths of light through a world, traced back from where they are seen.
+/// Paths of light through a world. They are traced back from the place where they are seen.
 ///
 /// At each surface, direct light is sampled in two ways, from the lights and from the BSDF,
 /// weighted by multiple importance sampling (Veach and Guibas 1995, *Optimally combining sampling
@@ -31,12 +31,12 @@ pub(crate) enum LightSearch {
     Bsdf,
 }
 
-/// From the surface with this number on, a path continues only with a probability that its
-/// throughput determines (Russian roulette).
+/// At the surface with this number and at later surfaces, a path continues only with a probability
+/// that depends on its throughput (Russian roulette).
 pub(crate) const ROULETTE: u32 = 6;
 
-/// Maximum path length, which ends paths between mirrors whose throughput is below the rounding
-/// error of a picture.
+/// Maximum path length. It ends paths between mirrors; at this length, their throughput is below
+/// the rounding error of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {
@@ -54,8 +54,8 @@ impl Paths {
         }
     }
 
-    /// Returns the radiance arriving at the origin of a ray, from distances within the visible
-    /// range: an unbiased estimate by one path. `before` is the number of surfaces between the
+    /// Returns an unbiased estimate, by one path, of the radiance that arrives at the origin of a
+    /// ray from distances within the visible range. `before` is the number of surfaces between the
     /// origin and the camera.
     pub(crate) fn radiance(
         &self,
@@ -85,9 +85,9 @@ impl Paths {
         }
     }
 
-    /// Returns the radiance that a hit surface scatters back along the ray, as the parts that one
-    /// path finds, each with its incident direction in the frame of the hit. `before` is the
-    /// number of surfaces between the hit and the camera.
+    /// Returns the radiance that a hit surface scatters back along the ray. The result lists the
+    /// parts that one path finds, each with its incident direction in the frame of the hit.
+    /// `before` is the number of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         (mut ray, mut hit): (Ray, Hit),
@@ -134,13 +134,13 @@ impl Paths {
         &self.materials[self.of_shape[hit.shape]]
     }
 
-    /// Whether directions sampled from BSDFs find all lights. They never find points, spots and
-    /// directional lights.
+    /// Checks whether directions sampled from BSDFs find all lights. Such directions never find
+    /// point lights, spots and directional lights.
     pub(crate) fn bsdf_finds_lights(&self) -> bool {
         self.lights.are_extended()
     }
 
-    /// Whether the world has a light of distant radiance from all directions.
+    /// Checks whether the world has distant light with a radiance from all directions.
     pub(crate) fn has_sky(&self) -> bool {
         self.lights.of_sky(DVec3::Z).next().is_some()
     }

@@ -31,7 +31,7 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // If `progress` unwinds to stop the work, each further row ends here.
+            // If `progress` unwinds to stop the work, this call ends each further row.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();
@@ -46,7 +46,7 @@ impl Paths {
         }
     }
 
-    /// Mean and variance of the mean of a pixel.
+    /// Returns the mean of a pixel, and the variance of this mean.
     fn pixel(
         &self,
         camera: &Camera,
@@ -69,7 +69,7 @@ impl Paths {
         [mean, squares / (count * (count - 1.0).max(1.0))]
     }
 
-    /// One path through a random point in a pixel.
+    /// Returns the radiance by one path through a random point of a pixel.
     fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
         let lens = disc(1.0, [a, b]).to_array();

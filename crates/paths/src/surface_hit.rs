@@ -1,5 +1,5 @@
-//! Surface points that a camera sees: their light, and the distances of what they reflect.
-//! Renderers with adaptive sampling use these points.
+//! Describes the surface points that a camera sees: their light, and the distances of the objects
+//! that they reflect. Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::{LightSearch, Paths};
@@ -73,12 +73,12 @@ impl SurfaceHit {
 /// The nearness of a point to its blockers and reflected surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearness {
-    /// The mean of 1/distance over what the material reflects, per metre, to which distant light
-    /// adds nothing. The inverse of this mean is the harmonic mean of Durand et al. 2005, section
-    /// 6.2.
+    /// The mean of 1/distance, per metre, over the objects that the material reflects. For distant
+    /// light, 1/distance is 0. The inverse of this mean is the harmonic mean of Durand et al. 2005,
+    /// section 6.2.
     pub reflected: f64,
-    /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light: the
-    /// inverse of the width of the penumbra, where light is partly blocked.
+    /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light. It is
+    /// the inverse of the width of the penumbra, which is the region where light is partly blocked.
     pub shadow: f64,
 }
 
@@ -109,9 +109,9 @@ impl Paths {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
     }
 
-    /// Returns the radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths`
-    /// paths, and the variance of their sum, divided by the number of paths. The result depends
-    /// only on the point, the seed and `number`.
+    /// Returns the radiance, in W m⁻² sr⁻¹, that base and lobe scatter to the eye. The two
+    /// radiances are means over `paths` paths. Also returns the variance of their sum, divided by
+    /// the number of paths. The result depends only on the point, the seed and `number`.
     ///
     /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is
     /// smaller than this variance suggests.
@@ -135,8 +135,9 @@ impl Paths {
         ([base, mean - base], variance)
     }
 
-    /// Estimates by one path the direct light that base and lobe scatter to the eye,
-    /// W m⁻² sr⁻¹. Points with the same `number` share a net, of which this is point `index`.
+    /// Estimates, by one path, the direct light that base and lobe scatter to the eye, in W m⁻²
+    /// sr⁻¹. The random numbers belong to point `index` of a net, which all calls with the same
+    /// `number` share.
     #[must_use]
     pub fn direct(&self, seen: &SurfaceHit, seed: u64, number: u64, index: u32) -> [f64; 2] {
         let net = Net::new(seed, Stream::EvenNet, number, JOINT);
@@ -171,8 +172,8 @@ impl Paths {
         parts
     }
 
-    /// Returns the nearness of a point to what it reflects and to its blockers, from `rays` rays
-    /// of each kind. Distances below `nearest` count as `nearest`.
+    /// Returns the nearness of a point to the objects that it reflects and to its blockers. The
+    /// function traces `rays` rays of each kind. Distances below `nearest` count as `nearest`.
     #[must_use]
     pub fn nearness(
         &self,
@@ -256,12 +257,13 @@ impl Paths {
     }
 }
 
-/// Angle in radians assigned to point lights: their shadows are then sharp enough for any picture.
+/// Angle, in radians, that is assigned to point lights. With this angle, their shadows are sharp
+/// enough for any picture.
 const POINT: f64 = 1e-3;
 
 struct Shadow {
     /// The light that the surface would reflect without the blocker.
     light: f64,
-    /// The inverse of the penumbra width, per metre; 0 if nothing blocks.
+    /// The inverse of the penumbra width, per metre; 0 if nothing blocks the light.
     nearness: f64,
 }

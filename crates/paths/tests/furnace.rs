@@ -1,8 +1,10 @@
-//! Furnace tests: under a sky of radiance 1 a lossless surface is invisible, and no surface is brighter than the sky.
+//! Furnace tests. Under a sky of radiance 1, a lossless surface is invisible, and no surface is
+//! brighter than the sky.
 //!
-//! Sheets and opaque surfaces are tested on a disc from its front and its back, and on an open
-//! cylinder, whose inside and outside are visible. Every material is tested on a cube and a sphere
-//! from outside and, if it transmits light, on a sphere from inside.
+//! Sheets and opaque surfaces are tested on a disc, seen from its front and from its back, and on
+//! an open cylinder, whose inside and outside are visible. Every material is tested on a cube and a
+//! sphere, seen from outside. A material that transmits light is also tested on a sphere, seen from
+//! inside.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -87,7 +89,7 @@ fn mask(of: Material) -> Material {
 enum Behind {
     /// The same medium is in front of the surface and behind it.
     Same,
-    /// A medium of this index, in which radiance is larger by the square of the index.
+    /// A medium with this index. Radiance in the medium is larger by the square of the index.
     Medium(f64),
     /// No light is transmitted.
     Nothing,

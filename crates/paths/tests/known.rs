@@ -10,7 +10,7 @@ use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Returns a narrow camera at a point that looks at another.
+/// Returns a narrow camera at one point that looks at another point.
 fn camera(from: DVec3, at: DVec3) -> Camera {
     let along = (at - from).normalize();
     let left = along.any_orthonormal_vector();
@@ -307,8 +307,8 @@ fn lenses_focus() {
     assert!(middle.truncate().length() > 0.1);
 }
 
-/// Direct light at a point is the light of paths that end at the first surface; a wall beside the
-/// floor adds indirect light, which direct light excludes.
+/// Direct light at a point is the light of paths that end at the first surface. A wall beside the
+/// floor adds indirect light, which is not part of direct light.
 #[test]
 fn direct_light_is_that_of_the_shortest_paths() {
     let turned = DQuat::from_rotation_y(-0.5 * PI);
@@ -343,7 +343,7 @@ fn direct_light_is_that_of_the_shortest_paths() {
         (direct, paths.shade(&seen, 4096, 1, 0).0[0])
     };
     let [(direct, all), (_, shortest)] = [None, Some(1)].map(of);
-    // Means over nets of 4,096 points have errors of some 10⁻³.
+    // Means over nets of 4,096 points have errors of about 10⁻³.
     assert!(
         (direct / shortest - 1.0).abs() < 5e-3,
         "{direct} {shortest}"

@@ -1,4 +1,4 @@
-//! The tests of `etendue-paths`, one program for all.
+//! The tests of `etendue-paths`, as one program.
 
 #![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
 

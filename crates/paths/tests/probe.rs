@@ -1,4 +1,4 @@
-//! Known light fields behind a pixel.
+//! Tests light fields behind a pixel that are known.
 
 use etendue_field::{Crossing, PhotonSource};
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};
@@ -104,13 +104,13 @@ fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
     each.iter().map(of).collect()
 }
 
-/// Checks that rays, photons and, unless a light is directional, BSDF rays all find `radiance` in the windows of these planes: ∫ L W is
-/// radiance times half-widths.
+/// Checks that rays and photons find `radiance` in the windows of these planes, where ∫ L W is the
+/// radiance times the half-widths. BSDF rays are checked too, unless a light is directional.
 fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f64) {
     assert_even_with(50_000, world, question, planes, radiance);
 }
 
-/// Does the same with this number of photons a batch.
+/// Makes the checks of `assert_even` with a given number of photons per batch.
 fn assert_even_with(
     photons: u64,
     world: &World,
@@ -212,8 +212,8 @@ fn surfaces_curve_as_they_do() {
     let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
     let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
     let [along, across] = of(Geometry::Cylinder, to_world);
-    // The ray is nearly along the normal, so the plane of incidence is inaccurate by some degrees;
-    // the sum of the curvatures does not depend on it.
+    // The ray is nearly parallel to the normal, so the plane of incidence has an error of some
+    // degrees. The sum of the curvatures does not depend on this plane.
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
     // A large sphere is seen from inside.
@@ -269,8 +269,9 @@ fn an_emitting_wall_in_one_and_two_mirrors() {
 
 #[test]
 fn wide_windows() {
-    // The cosines along the lines of these windows differ, and photons that continue at random often
-    // hit the windows. So an error of a power of the cosine or of a density is many times the noise.
+    // The cosines along the lines of these windows differ, and photons that continue at random
+    // often hit the windows. Therefore a wrong power of the cosine, or a wrong density, causes an
+    // error of many times the noise.
     let wide = Question {
         across: 48.0,
         ..QUESTION
@@ -301,8 +302,8 @@ fn photons_know_what_they_miss() {
     let probe = Probe::new(&paths, &camera(), &QUESTION).unwrap();
     assert_eq!(probe.stops[0].reflects, Reflects::Mirror);
     let photons = PhotonProbe::new(&probe, Budget { each: 10, seed: 1 });
-    // The camera also sees light that the glass refracts, the window of arriving light only the
-    // sky.
+    // The camera also sees light that the glass refracts. The window of arriving light sees only
+    // the sky.
     assert_eq!(photons.misses(0), Some("a smooth surface"));
     assert_eq!(photons.misses(2), None);
 }

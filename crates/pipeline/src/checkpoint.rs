@@ -1,5 +1,5 @@
-//! Stores a measurement on disk, so that a later process can continue it. A batch is stored when
-//! it is finished, and every few seconds before.
+//! Stores a measurement on disk, so that a later process can continue it. A batch is stored when it
+//! is finished, and every few seconds until then.
 
 use crate::method::source;
 use crate::reporter::{Progress, Reporter, Work};

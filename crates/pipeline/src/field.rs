@@ -127,8 +127,8 @@ fn on_grid(
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
     let scene = case.scene.seen_at(&[index]);
-    // The tracer aims photons at all planes of a scene. The photons on the grid must be those of
-    // the measurement, so the scene is traced with all of its planes.
+    // The tracer aims photons at all planes of a scene. The photons on the grid must be the photons
+    // of the measurement, so the scene is traced with all of its planes.
     let (source, at) = if method == case.method {
         (source(&case.scene, method)?, index)
     } else {

@@ -30,8 +30,8 @@ pub(crate) fn inquire(
     failed.into_iter().filter_map(judged).collect()
 }
 
-/// Checks whether a plane fails against its prediction, and not only against its first-order
-/// chain of affine maps.
+/// Checks whether a plane disagrees with its prediction, and not only with its first-order chain of
+/// affine maps.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }

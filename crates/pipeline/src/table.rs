@@ -193,9 +193,9 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 
 /// Returns the measured value of a parameter, and the smallest change of the parameter that the
 /// photons can detect. If the parameter is not zero, this change is a share of the parameter;
-/// otherwise the change has the parameter's unit. Both texts are – if even a change as large as
-/// the parameter would be undetectable; only the value is – if its error is larger than the
-/// value.
+/// otherwise the change has the parameter's unit. If even a change as large as the parameter would
+/// be undetectable, both texts are “–”. If the error of the value is larger than the value, only
+/// the text of the value is “–”.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
@@ -290,7 +290,7 @@ pub fn verdict_text(summary: &Summary) -> String {
     }
 }
 
-/// Returns the predicted slope, with as many digits as the measured slope has.
+/// Returns the predicted slope with the same number of digits as the measured slope.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
         (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),

@@ -25,8 +25,8 @@ const MAX_FACTOR: f64 = 8.0;
 /// two that is at least 2²⁰. The function sets the number of photons in the scene to this power
 /// of two. The last possible measurement has `most` photons, which need not be a power of two.
 ///
-/// Each measurement starts again from the first photon, so its result equals that of a run with
-/// the same number of photons. The possible numbers of photons are fixed beforehand, and only
+/// Each measurement starts again from the first photon, so its result equals the result of a run
+/// with the same number of photons. The possible numbers of photons are fixed beforehand, and only
 /// noise decides which number is the last, so p-values are not biased.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Converts a file to another format, with notes on everything that is lost.
+//! Converts a file to another format, and adds notes on everything that is lost.
 
 use crate::mcpl::{self, McplFile, Particle, WATTS};
 use crate::tm25::{self, Flags, SpectrumType, Tm25File};
@@ -18,8 +18,8 @@ pub struct Converted {
 /// Writes a file in a format. A file that is converted to its own format is preserved completely.
 ///
 /// # Errors
-/// When the format cannot represent some rays, such as negative weights in TM-25 and NPY. Every
-/// written file can be read.
+/// When the format cannot represent some rays, for example negative weights in TM-25 and NPY.
+/// Therefore every file that this function writes can be read.
 pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     let packed = |bytes: Vec<u8>| match to {
         Format::McplGz => gz::pack(&bytes),

@@ -5,8 +5,8 @@ use crate::tm25::Tm25File;
 use crate::{Fault, RaySet, gz, npy};
 use std::fmt;
 
-/// The largest ratio of memory to the length of the unpacked file, apart from [`MEMORY_FREE`]
-/// bytes, while a file is read and its [`RaySet`] is made.
+/// While a file is read and its [`RaySet`] is made, memory is at most this multiple of the length
+/// of the unpacked file, plus [`MEMORY_FREE`] bytes.
 ///
 /// The shortest record of a ray takes 28 bytes in memory and 64 bytes in the set. The unpacked
 /// content of a gzip file may take twice its length in memory.

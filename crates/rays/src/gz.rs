@@ -7,8 +7,9 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packing reduces
-/// files of rays to about half of their length, and test files with repeated rays to a tenth.
+/// A file may unpack to at most this multiple of its packed length, plus [`FREE`] bytes. Packing
+/// reduces files of rays to about half of their length, and test files with repeated rays to a
+/// tenth.
 pub const MOST_RATIO: usize = 64;
 
 /// Number of bytes to which any packed file may unpack, regardless of its length.

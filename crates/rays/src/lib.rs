@@ -1,8 +1,8 @@
 //! Reads and writes ray files: IES TM-25, MCPL (versions 2 and 3, plain or gzipped) and NPY.
 //!
-//! A file is read from bytes into a [`RayFile`], which keeps the whole content of the file. A
-//! file that is read and written again has the same bytes (for TM-25 the same values, see
-//! [`tm25`]). The common content of all formats is a [`RaySet`]: positions in metres, unit
+//! A file is read from bytes into a [`RayFile`], which keeps the whole content of the file. If a
+//! file is read and written again, its bytes do not change (for TM-25, its values do not change,
+//! see [`tm25`]). The common content of all formats is a [`RaySet`]: positions in metres, unit
 //! directions, power and wavelengths. A conversion between formats returns a [`Converted`], whose
 //! notes name everything that is dropped.
 //!

@@ -1,13 +1,13 @@
-//! Rays as a NumPy array: f64 [rays, 8] in C order, with the columns x, y, z (m), kx, ky, kz, power
-//! and wavelength (m, NaN where it is not known). The reader also accepts files of 7 columns,
-//! without wavelength. The files do not state the unit of power.
+//! Reads and writes rays as a NumPy array, f64 [rays, 8] in C order. The columns are x, y and z in
+//! m, kx, ky, kz, power, and wavelength in m. An unknown wavelength is NaN. The reader also accepts
+//! files of 7 columns, without wavelength. The files do not state the unit of power.
 
 use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
 use crate::{Fault, NpyHeader, PowerUnit, RaySet, Wavelengths};
 
-/// The tolerance for the length of a direction, which should be 1: the error of f32 converted to
-/// f64, with a margin.
+/// The tolerance for the length of a direction, which should be 1. It covers the rounding errors of
+/// f32 numbers that were converted to f64, with a margin.
 const LENGTH_SLACK: f64 = 1e-5;
 
 /// # Errors

@@ -1,7 +1,7 @@
 //! The content that all ray files have in common.
 
-/// Planck's constant times the speed of light, MeV m: a photon of energy E has the wavelength h c
-/// / E. The value is exact in the SI of 2019, and is rounded to f64.
+/// Planck's constant times the speed of light, in MeV m. A photon of energy E has the wavelength h
+/// c / E. The value is exact in the SI of 2019, and is rounded to f64.
 pub const PHOTON_ENERGY_LENGTH: f64 = 1.239_841_984_332_002_6e-12;
 
 /// The unit of the power of rays.
@@ -43,7 +43,7 @@ pub enum Wavelengths {
 /// Rays with their power.
 ///
 /// The power of a set of rays is the sum of the powers of its rays. A ray carries the same power
-/// through any plane it crosses: no cosine is included.
+/// through any plane that it crosses, so no cosine is included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaySet {
     /// A point on each ray, in metres, from which the light continues.

@@ -95,8 +95,8 @@ fn unusual_texts_and_fluxes_have_notes() {
     assert_eq!(file.notes().len(), 3, "{:?}", file.notes());
 }
 
-/// Files with every combination of the options of MCPL are read and written with the same bytes,
-/// also if they are packed.
+/// Files with every combination of the options of MCPL, packed or not, are read and written with
+/// the same bytes.
 #[test]
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {
@@ -209,7 +209,8 @@ fn some_rays(wavelengths: Wavelengths, unit: PowerUnit) -> RaySet {
     }
 }
 
-/// Conversions from each format to each and back preserve the rays to the format's precision.
+/// Converts rays from each format to each other format and back. The rays agree to the precision of
+/// the formats.
 #[test]
 fn rays_are_the_same_in_all_formats() {
     for wavelengths in [

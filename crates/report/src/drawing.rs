@@ -9,9 +9,9 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// The cut through X with the given planes, the cut through Y if it differs from the cut through
-/// X, and the scene to scale if its path turns. The path is unfolded: each surface is cut as
-/// light arrives at it.
+/// Returns the cut through X with the given planes. The result also contains the cut through Y if
+/// it differs from the cut through X, and a drawing to scale if the path turns. The path is
+/// unfolded: each surface is cut in the frame of the light that arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,
@@ -26,7 +26,7 @@ pub(crate) fn cross_section<'a>(
     }
 }
 
-/// Whether two cuts are the same except for jitter.
+/// Checks whether two cuts are the same except for jitter.
 fn alike(a: &Section, b: &Section) -> bool {
     const JITTER: f64 = 0.05;
     let width = a.half_width.max(b.half_width);
@@ -39,7 +39,7 @@ fn alike(a: &Section, b: &Section) -> bool {
             .all(|(a, b)| a.0 == b.0 && close(a.1[0], b.1[0]) && close(a.1[1], b.1[1]))
 }
 
-/// Segments sorted by kind and start, regardless of their direction.
+/// Returns segments sorted by kind and start, regardless of their direction.
 fn sorted(segments: &[Segment]) -> Vec<(SegmentKind, [[f64; 2]; 2])> {
     let before = |a: &[f64; 2], b: &[f64; 2]| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0]));
     let upwards = segments.iter().map(|s| {

@@ -11,11 +11,11 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// The part after # in the address of the page that shows a scene; `None` if the explorer does
-/// not support the scene.
+/// Returns the part after `#` in the address of the page that shows a scene; `None` if the explorer
+/// does not support the scene.
 ///
-/// A scene is supported if the explorer, set to the numbers of this scene, would save the same
-/// scene; planes, names and the extent of surfaces may differ.
+/// A scene is supported if the explorer saves the same scene after its controls are set to the
+/// numbers of this scene. Planes, names and the extent of surfaces may differ.
 pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     let setup = setup(file)?;
     let saved = SceneFile::parse(&scene(&setup)).ok()?;
@@ -31,7 +31,7 @@ pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
 /// The precision, in inverse metres, of values derived from positions and sides of slats.
 const DIGITS: f64 = 1e12;
 
-/// Whether two layers are slats that differ only by rounding errors.
+/// Checks whether two layers are slats that differ only by rounding errors.
 fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     let of = |blockers: &BlockersFile| {
         let BlockersFile::Shapes { center, shapes, .. } = blockers else {
@@ -107,7 +107,8 @@ fn plain(mut file: SceneFile) -> SceneFile {
     }
 }
 
-/// The explorer's numbers for a scene, assuming that the explorer supports the scene.
+/// Returns the explorer's numbers for a scene. The function assumes that the explorer supports the
+/// scene.
 fn setup(file: &SceneFile) -> Option<Setup> {
     let mut setup = Setup::default();
     let LightFile::Rectangle { center, size, .. } = &file.light else {

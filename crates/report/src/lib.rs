@@ -1,4 +1,5 @@
-//! The readable output of a run: pictures of its planes and path, and a page that shows everything.
+//! Writes the readable output of a run: pictures of its planes and path, and a page that shows
+//! everything.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,5 +1,5 @@
-//! A result as one page that any browser shows, without network: `report.html` of each run, and the
-//! output of `etendue report`, which shows several runs side by side.
+//! Writes results as one page that any browser shows without network. The page is the `report.html`
+//! of a run, or the output of `etendue report`, which shows several runs side by side.
 
 mod data;
 

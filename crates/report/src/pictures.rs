@@ -1,4 +1,5 @@
-//! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
+//! Draws the pictures of a run: the light field and the spectrum of each plane, and the strip along
+//! the path.
 
 mod chance;
 mod cross_section;
@@ -43,8 +44,8 @@ pub const NAMES: [&str; 6] = [
 /// The picture files of the path, and the numbers behind them.
 pub const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// The names of the two sides in the pictures of a plane. If no theory applies, the second side is
-/// a measurement by the other tracer.
+/// Returns the names of the two sides in the pictures of a plane. If no theory applies, the second
+/// side is a measurement by the other tracer.
 pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     match plane.report.class {
         Class::Reference => ["measured", "other tracer"],
@@ -52,8 +53,8 @@ pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     }
 }
 
-/// The pictures `primal` and `spectrum` of a plane; `made_from` describes their source, and `sides`
-/// are the names of both sides.
+/// Returns the pictures `primal` and `spectrum` of a plane. `made_from` describes their source, and
+/// `sides` are the names of the two sides.
 pub fn plane(
     results: &mut Results,
     (made_from, sides): (&str, [&str; 2]),
@@ -70,7 +71,7 @@ pub fn plane(
     write(results, &format!("{name}/spectrum"), &drawn)
 }
 
-/// The light field of a plane.
+/// Returns the light field of a plane.
 fn primal(
     (note, sides): (&str, [&str; 2]),
     prediction: &Prediction,
@@ -108,9 +109,9 @@ fn primal(
     .map_err(Failure::cannot_run)
 }
 
-/// The radial spectrum of a plane. Where the window determines the values between the frequencies,
-/// measured and predicted are drawn without visible cells. The difference and the stored numbers
-/// are at the frequencies of the scene.
+/// Returns the radial spectrum of a plane. If the window determines the values between the
+/// frequencies, the measured and the predicted spectrum are drawn without visible cells. The
+/// difference and the stored numbers are at the frequencies of the scene.
 fn spectrum(
     (note, sides): (&str, [&str; 2]),
     at: &VirtualPlane,
@@ -196,7 +197,7 @@ pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// Returns the verdict and its reasons, in lines that are not wider than a picture.
+/// Returns the verdict and its reasons, in lines that are at most as wide as a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);

@@ -1,4 +1,4 @@
-//! Writes the result of a run: arrays, pictures, the page, and the summary last.
+//! Writes the result of a run: arrays, pictures and the page, and then the summary.
 
 use crate::{explorer, page, pictures};
 use etendue_field::VirtualPlane;
@@ -22,7 +22,7 @@ pub struct OutputOptions<'a> {
 /// arrays hold the numbers.
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
-/// The files that a comparison of a scene writes.
+/// Returns the files that a comparison of a scene writes.
 pub fn plan(
     scene: &Scene,
     save: &[Save],

@@ -1,4 +1,4 @@
-//! The interface of BSDFs, and the sampled directions of paths.
+//! Defines the interface of BSDFs, and the sampled directions of paths.
 
 use glam::DVec3;
 

@@ -1,6 +1,6 @@
-//! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface;
-//! `index` is the refractive index of the far side divided by the refractive index of the side of
-//! wo.
+//! Defines smooth and rough transmitting interfaces between two media. wo is in front of the
+//! interface; `index` is the refractive index of the far side divided by the refractive index of
+//! the side of wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.
 
@@ -71,7 +71,8 @@ impl RoughDielectric {
         let normal = (wo + eta * wi).try_normalize()?;
         let normal = if normal.z < 0.0 { -normal } else { normal };
         let [i, o] = [wi.dot(normal), wo.dot(normal)];
-        // The facet must be visible from both directions, for each from its own side.
+        // The facet must be visible from both directions, and each direction must see it from its
+        // own side.
         (o > 0.0 && i * wi.z > 0.0).then(|| Facet {
             normal,
             cosines: [i, o],

@@ -1,5 +1,5 @@
-//! Reflectance of interfaces for unpolarised light, the mean of both polarisations, and directions
-//! of refraction.
+//! Computes the reflectance of interfaces for unpolarised light, which is the mean over both
+//! polarisations, and directions of refraction.
 
 use etendue_field::Fresnel;
 use glam::DVec3;
@@ -70,8 +70,8 @@ impl Interface {
         }
     }
 
-    /// Returns the direction behind the interface from which light continues to `wo` in front of
-    /// it; `normal` is on the side of wo.
+    /// Returns the direction behind the interface from which light is refracted to `wo` in front of
+    /// the interface. `normal` is on the side of wo.
     #[inline]
     pub(crate) fn refracted(&self, wo: DVec3, normal: DVec3) -> DVec3 {
         let [near, far] = self.cosines;
@@ -83,7 +83,7 @@ impl Interface {
 /// Returns the reflectance of a smooth interface for uniform light from all directions: 2 ∫ F(μ) μ
 /// dμ over (0, 1).
 ///
-/// Uses the midpoint rule in μ²; with 10⁴ points the error is less than 10⁻⁶ where F has a kink.
+/// Uses the midpoint rule in μ². With 10⁴ points, the error is less than 10⁻⁶ even if F has a kink.
 pub(crate) fn diffuse_reflectance(index: f64) -> f64 {
     const POINTS: u32 = 10_000;
     let at = |i: u32| dielectric(index, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());

@@ -6,7 +6,8 @@ use etendue_field::MicrofacetDistribution;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Microfacets that are mirrors with normals distributed about Z, with Smith's masking.
+/// Microfacets that are mirrors. Their normals are distributed about Z, and they mask each other by
+/// Smith's function.
 #[derive(Clone, Copy, Debug)]
 pub struct Microfacets {
     /// The distribution of the normals.
@@ -65,8 +66,8 @@ impl Microfacets {
     /// Samples the mirror direction of wo at any normal, visible from wo or not, in proportion to D
     /// cos θ (Walter et al., Eqs. 28 f. and 35 f.).
     ///
-    /// For Beckmann, weights are closer to 1 than the weights of [`Self::sample`] if light comes from near the
-    /// normal, but these weights grow without bound towards grazing.
+    /// Near normal incidence, for Beckmann's distribution, weights are closer to 1 than the weights
+    /// of [`Self::sample`]. Towards grazing incidence, they grow without bound.
     #[inline]
     #[must_use]
     pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -112,7 +113,8 @@ impl Microfacets {
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // For larger arguments, erfc is below erfc(6), which is below rounding error.
+                // For larger arguments, erfc is less than erfc(6), which is smaller than the
+                // rounding error.
                 if a > 6.0 {
                     return 1.0;
                 }

@@ -15,8 +15,8 @@ pub struct Phong {
 }
 
 impl Phong {
-    /// Returns (n + 1)/(2π) cosⁿ α of the angle α between wi and the mirror direction of wo; 0 from
-    /// 90° on, for n = 0 too.
+    /// Returns (n + 1)/(2π) cosⁿ α, where α is the angle between wi and the mirror direction of wo.
+    /// The value is 0 if α is 90° or more, even for n = 0.
     #[inline]
     #[must_use]
     pub fn value(&self, wi: DVec3, wo: DVec3) -> f64 {

@@ -1,4 +1,4 @@
-//! A diffuse base below a dielectric coat, smooth or rough.
+//! Defines a diffuse base below a smooth or rough dielectric coat.
 
 use crate::bsdf::{before, mirrored};
 use crate::fresnel::{Interface, diffuse_reflectance};
@@ -81,8 +81,8 @@ impl Plastic<'_> {
         self.base_albedo() * through / (self.coat.index * self.coat.index) * lambertian::VALUE
     }
 
-    /// Returns the share of light reaching the base that the base reflects, including repeated
-    /// reflections by the coat.
+    /// Returns the share of the light reaching the base that the base reflects. Repeated
+    /// reflections by the coat are included.
     #[must_use]
     pub fn base_albedo(&self) -> f64 {
         let within = self.coat.within;

@@ -7,13 +7,13 @@ use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// The length, in metres, above which a length is suspicious if the other lengths of the scene
-/// are about a metre.
+/// A length above this limit, in metres, is suspicious if the other lengths of the scene are about
+/// a metre.
 const MANY_METRES: f64 = 100.0;
-/// The length, in metres, below which a length counts as about one metre.
+/// A length below this limit, in metres, counts as about one metre.
 const NEAR: f64 = 10.0;
-/// The slope above which a slope is suspicious, because slopes beyond 79° from the central ray
-/// are rarely intended.
+/// A slope above this limit is suspicious, because slopes beyond 79° from the central ray are
+/// rarely intended.
 const STEEP: f64 = 5.0;
 
 /// Returns a description of each likely mistake.

@@ -60,8 +60,8 @@ pub fn resolve(
 
 /// The lowest allowed significance level of a test: ten times the smallest possible p-value.
 const LEAST_LEVEL: f64 = 5e-4;
-/// The relative difference between the distances of two planes across the path below which the
-/// planes count as the same.
+/// Two planes across the path count as the same if the relative difference between their distances
+/// is below this limit.
 const SAME_PLANE: f64 = 1e-9;
 
 struct Resolver<'a> {

@@ -6,8 +6,8 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The smallest relative difference between the spectra of photons and of backward rays for which
-/// a mesh causes a warning.
+/// A mesh causes a warning if the relative difference between the spectra of photons and of
+/// backward rays is at least this number.
 const LEVEL: f64 = 0.01;
 /// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.
@@ -32,9 +32,9 @@ impl Scene {
     /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
     /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
     /// of two spectra at the measured frequencies along x and y, both computed where the light hits
-    /// the mesh. The first spectrum is that of the window times f − 1, and the second spectrum is
-    /// that of the window alone. The effects of facets that are finer than the waves of these
-    /// frequencies average out.
+    /// the mesh. The first spectrum is the spectrum of the window times f − 1, and the second is
+    /// the spectrum of the window alone. The effects of facets that are finer than the waves of
+    /// these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);

@@ -453,9 +453,10 @@ fn a_star_is_closed_outward_and_of_its_volume() {
     assert!(Mesh::star(1.0, 0.3, 5, 113).unwrap().triangles().len() >= 50_000);
 }
 
-/// The volume of the mesh converges to that of the smooth surface as rings⁻². With half the rings
-/// the error is four times as large, and extrapolation gives the closed form. The closed form is ∫
-/// (1 + ε sinˡθ cos lφ)³ / 3 over the sphere, in which odd powers of the cosine vanish.
+/// The volume of the mesh converges to the volume of the smooth surface; the difference is
+/// proportional to rings⁻². With half the rings, the difference is four times as large, so
+/// extrapolation gives the closed form. The closed form is ∫ (1 + ε sinˡθ cos lφ)³ / 3 over the
+/// sphere, in which odd powers of the cosine vanish.
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {

@@ -161,8 +161,7 @@ fn a_header_of_any_length_is_read_in_proportion() {
         assert!(fault.to_string().len() < 500, "{fault}");
         start.elapsed().as_secs_f64()
     };
-    // When each of 60,000 names was compared with all previous names, reading the header took 6
-    // s.
+    // A comparison of each of 60,000 names with all previous names took 6 s.
     let properties = header(200_000, &|i| format!("property int p{i}\n"));
     let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
     assert!(seconds(&properties) < 2.0);

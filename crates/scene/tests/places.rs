@@ -39,7 +39,8 @@ fn fields_are_found_whatever_stands_around_them() {
         ("planes[2].window.y.cut", [5, 69]),
         ("planes[2].window.y.cut: some", [5, 69]),
         ("map[1].from", [7, 39]),
-        // If a field is not written in the file, its position is that of the enclosing field.
+        // If a field is not written in the file, its position is the position of the enclosing
+        // field.
         ("planes[0].window.x", [4, 13]),
         ("planes[7].at", [3, 81]),
     ] {

@@ -169,7 +169,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
-/// More refused scenes, for a path over an oblique wall to a floor.
+/// Further scenes that are refused. Their path leads over an oblique wall to a floor.
 const BAD_PATHS: &[(&str, &str, &str)] = &[
     (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
     (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),

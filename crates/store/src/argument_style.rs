@@ -1,10 +1,9 @@
-//! The way in which messages name arguments, which differs between the command and the Python
-//! package.
+//! Defines how messages name arguments. The command and the Python package name them differently.
 
 use std::fmt::Display;
 
 /// The way in which messages name arguments. The command and the Python package call the same
-/// functions, and write arguments differently.
+/// functions, but users write arguments differently in the two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArgumentStyle {
     /// Options of the command, such as `--look-from`.

@@ -1,4 +1,4 @@
-//! The array files of one plane: `slices.npz`, `radial.npz`, `radial.exr`.
+//! Writes the array files of one plane: `slices.npz`, `radial.npz` and `radial.exr`.
 
 use crate::Failure;
 use crate::Results;

@@ -1,4 +1,4 @@
-//! The batches of a measurement as files, which are named `ledger.npz`, and `batches.npz` for each
+//! Stores the batches of a measurement in files: one `ledger.npz`, and a `batches.npz` for each
 //! plane.
 
 use crate::Failure;
@@ -66,7 +66,8 @@ pub fn files(
     each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
-/// Returns a new file that lists the numbers of the batches in its rows.
+/// Returns a new file with an array of the numbers of the batches. Each row of later arrays belongs
+/// to one of these batches.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
@@ -161,7 +162,7 @@ pub fn read_files(
     Ok(measurement)
 }
 
-/// The batches that the rows of a file represent.
+/// The batches to which the rows of a file belong.
 #[derive(PartialEq)]
 struct StoredRows {
     numbers: Array1<u32>,
@@ -169,7 +170,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// Checks that the rows are the batches that the index lists.
+    /// Checks that the rows belong to the batches that the index lists.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;

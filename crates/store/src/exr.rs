@@ -1,4 +1,5 @@
-//! Writes OpenEXR files: parts of one channel Y each, with a record of their source.
+//! Writes OpenEXR files. Each part of a file has one channel, Y, and a record of the source of its
+//! numbers.
 
 use crate::Failure;
 use exr::prelude::{
@@ -8,7 +9,8 @@ use exr::prelude::{
 use serde_json::Value;
 use std::io::Cursor;
 
-/// One part of a file: rows from the top, each from left to right.
+/// One part of a file. The rows are in order from the top, and each row is in order from left to
+/// right.
 #[derive(Debug)]
 pub struct Part {
     /// Name of the channel.

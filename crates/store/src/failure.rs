@@ -9,13 +9,14 @@ use std::path::Path;
 pub struct Failure {
     /// The message for the user, one line for each fault.
     pub message: String,
-    /// The exit code: 2 for bad input, 3 if the command cannot run on this machine.
+    /// The exit code, which is 2 for bad input, and 3 if the command cannot run on this machine.
     pub code: u8,
 }
 
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of a run that is impossible on this machine: directory, disk, memory, interruption.
+/// Exit code of a run that is impossible on this machine because of a folder, the disk, the memory
+/// or an interruption.
 pub const CANNOT_RUN: u8 = 3;
 
 impl Failure {

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-/// A field that differs, named as for `--set`, with its value in each of two trees.
+/// A field that differs, with its value in each of two trees. The field is named in the notation of
+/// `--set`.
 #[derive(Debug)]
 pub struct FieldChange {
     /// Path of the field, with dots.
@@ -11,8 +12,8 @@ pub struct FieldChange {
     pub values: [String; 2],
 }
 
-/// Returns all fields in which two trees differ, in the order of the first. A missing field counts
-/// as null.
+/// Returns all fields in which two trees differ, in the order of the first tree. A missing field
+/// counts as null.
 pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     let mut found = Vec::new();
     collect(String::new(), a, b, &mut found);
@@ -51,7 +52,7 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
     }
 }
 
-/// Returns a value, shortened to part of a line.
+/// Returns a value as text, shortened so that it fits in a line.
 fn brief(value: &Value) -> String {
     const MAX_CHARACTERS: usize = 60;
     let text = value.to_string();

@@ -1,12 +1,13 @@
-//! A mark in a file that shows that this program wrote it: a hash of all other bytes, at the end.
-//! If the hash matches, the file was not changed since it was written, and may be replaced.
+//! Marks files that this program writes. The mark is a hash of all other bytes, near the end of the
+//! file. If the hash matches, the file has not changed since this program wrote it, and may be
+//! replaced.
 
 /// The kind of file, which determines how the mark is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SealKind {
-    /// HTML or SVG: a comment as the last line.
+    /// HTML or SVG. The mark is a comment in the last line.
     Markup,
-    /// PNG: a text chunk before the last chunk.
+    /// PNG. The mark is a text chunk before the last chunk.
     Png,
 }
 

@@ -1,4 +1,4 @@
-//! Messages that consist of a header in JSON, called words, and bytes.
+//! Encodes messages that consist of a header in JSON, called words, and of bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -13,7 +13,7 @@ pub fn joined(words: &impl Serialize, bytes: &[u8]) -> Vec<u8> {
 /// Splits the bytes of [`joined`] into words and bytes.
 ///
 /// # Errors
-/// When the bytes are not such a message.
+/// When the bytes do not form a message of this kind.
 pub fn split<T: DeserializeOwned>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
     let fault = || "a message between processes is damaged".to_owned();
     let (length, rest) = bytes.split_first_chunk().ok_or_else(fault)?;

@@ -1,8 +1,9 @@
-//! Result folders: ownership of files, replacing old files by new ones, and their content.
+//! Manages folders of results: which files Étendue owns, how new files replace old files, and what
+//! the files contain.
 //!
 //! [`Results`] claims a folder, writes files and an index of their hashes, and puts all files in
-//! place together. The other modules define the content of files: arrays, batches, predictions,
-//! and indices that a later stage reads.
+//! place together. The other modules define the content of files: arrays, batches, predictions, and
+//! the indices that a later stage reads.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,4 +1,5 @@
-//! A lock for one writer at a time, which the system releases when its process ends.
+//! A lock that admits one writer at a time. The system releases the lock when the writer's process
+//! ends.
 
 use crate::Failure;
 use same_file::Handle;
@@ -17,8 +18,8 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Makes and locks the file `path`, or takes over the file of a dead process; `busy` is the
-    /// path that messages name while a living process writes.
+    /// Makes and locks the file `path`, or takes over the file of a dead process. If a living
+    /// process holds the lock, the message names the path `busy`.
     pub(crate) fn take(path: &Path, busy: &Path) -> Result<Self, Failure> {
         let failure = |error: io::Error| Failure::write(busy, error);
         loop {

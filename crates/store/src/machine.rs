@@ -35,7 +35,8 @@ pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM:")
 }
 
-/// Checks whether a signal was ignored when this process began, as under `nohup`.
+/// Checks whether a signal was ignored when this process began, for example because `nohup` started
+/// it.
 pub fn ignores(signal: i32) -> bool {
     let read = || {
         let text = fs::read_to_string("/proc/self/status").ok()?;
@@ -46,14 +47,14 @@ pub fn ignores(signal: i32) -> bool {
     read().unwrap_or(false)
 }
 
-/// Returns the memory left in each control group around this process, of version 2 or 1.
+/// Returns the remaining memory of each control group (version 1 or 2) that contains this process.
 fn control_groups() -> impl Iterator<Item = u64> {
     let text = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let groups: Vec<PathBuf> = text.lines().flat_map(folders).collect();
     groups.into_iter().filter_map(|folder| left_in(&folder))
 }
 
-/// Returns the folders of a control group and of the groups that contain it, from a line
+/// Returns the folders of a control group and of the groups that contain it. `line` has the form
 /// `number:controllers:path`.
 fn folders(line: &str) -> Vec<PathBuf> {
     let mut parts = line.splitn(3, ':').skip(1);

@@ -10,12 +10,13 @@ pub enum Method {
     Photons,
     /// Rays drawn in the window of each plane, traced back to the light.
     Backward,
-    /// Photons that are not aimed at windows, to judge other methods.
+    /// Photons that are not aimed at windows. They are used to test other methods.
     Even,
 }
 
 impl Method {
-    /// Checks whether the method keeps a ledger of all flux, which only photons from the light do.
+    /// Checks whether the method keeps a ledger of all flux. Only methods that trace photons from
+    /// the light keep a ledger.
     #[must_use]
     pub fn keeps_ledger(self) -> bool {
         match self {

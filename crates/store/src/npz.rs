@@ -1,4 +1,5 @@
-//! NPZ files: writes named arrays to memory, and reads them back with a message for every fault.
+//! Writes named arrays to memory as NPZ files, and reads them back. Every fault of a file has a
+//! message.
 
 use crate::Failure;
 use etendue_field::{Complex, SliceGrid};
@@ -16,7 +17,7 @@ pub trait Number: Copy {
     const DESCR: &'static str;
     /// Appends the bytes of the number.
     fn write(self, bytes: &mut Vec<u8>);
-    /// Decodes a number; `None` unless there are exactly as many bytes as a number has.
+    /// Decodes a number. Returns `None` unless the number of bytes is exactly right.
     fn read(bytes: &[u8]) -> Option<Self>;
     /// Checks whether the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
@@ -141,7 +142,7 @@ impl Npz {
     }
 }
 
-/// Arrays larger than this need the 64-bit fields of ZIP, which NumPy reads.
+/// Arrays with more bytes than this limit need the 64-bit fields of ZIP, which NumPy can read.
 const MAX_SMALL_FILE: usize = 1 << 31;
 
 /// Returns the axes of arrays [azimuth, ρ ≥ 0, ν].
@@ -154,7 +155,7 @@ fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
     ]
 }
 
-/// A file to read arrays from.
+/// A file from which arrays are read.
 pub struct NpzFile {
     path: PathBuf,
     archive: ZipArchive<Cursor<Vec<u8>>>,
@@ -174,7 +175,7 @@ impl fmt::Debug for NpzFile {
 const HEADER: usize = 1 << 16;
 
 impl NpzFile {
-    /// Returns the file of these bytes; `path` is for messages.
+    /// Returns the file with these bytes. Messages name the file as `path`.
     pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
         match ZipArchive::new(Cursor::new(bytes)) {
@@ -228,8 +229,8 @@ impl NpzFile {
         }
     }
 
-    /// Checks whether the file is long enough for this many numbers of eight bytes, as an
-    /// uncompressed file must be.
+    /// Checks whether the file is long enough to hold this many uncompressed numbers of eight
+    /// bytes.
     pub fn may_hold(&self, numbers: usize) -> bool {
         numbers <= self.length / size_of::<f64>()
     }
@@ -278,7 +279,7 @@ impl NpzFile {
             .is_some()
     }
 
-    /// Checks that the axes are exactly those of a grid.
+    /// Checks that the axes are exactly the axes of a grid.
     pub fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
         for (name, values) in half_axes(grid) {
             let found: Array1<f64> = self.array(name, [values.len()])?;
@@ -295,8 +296,8 @@ impl NpzFile {
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// Returns the NPY file `name` in the archive. The function unpacks at most as many bytes as
-    /// `numbers`, the size of the archive and the size of a header together.
+    /// Returns the NPY file `name` in the archive. The number of unpacked bytes is at most the sum
+    /// of `numbers`, the size of the archive and the size of a header.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! A single output file chosen by the user, such as a picture or a table.
+//! Writes a single output file that the user chooses, such as a picture or a table.
 
 use crate::Failure;
 use crate::file_seal::SealKind;

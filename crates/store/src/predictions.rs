@@ -40,8 +40,8 @@ pub struct PredictedPlane {
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
     depth: Option<[f64; 2]>,
-    /// Numbers of independent replicates of the slices, and of the slices of the chain of affine
-    /// maps; zero where the slices have no statistical error.
+    /// The number of independent replicates of the slices, and the number for the slices of the
+    /// chain of affine maps. A number is zero if the slices have no statistical error.
     replicates: [usize; 2],
 }
 
@@ -54,8 +54,8 @@ pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
 
-/// Writes the predictions of the planes of a scene for a measurement by `method`; returns their
-/// entries for the index.
+/// Writes the predictions of the planes of a scene for a measurement by `method`. Returns the
+/// content of the index.
 pub fn write(
     results: &mut Results,
     scene: &Scene,
@@ -171,8 +171,7 @@ pub fn read(
         method: predicted_for,
         planes,
     } = &stored.index.content;
-    // Without this check, a reference measurement would be compared with a measurement by the
-    // same method.
+    // Without this check, a reference would be compared with a measurement by the same method.
     if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
         let what = format!(
             "the prediction is for method {predicted_for:?}, but the method of the measurement is {method:?}"

@@ -1,10 +1,10 @@
-//! A folder of results, which owns only the files that it wrote.
+//! Writes a folder of results. Only files that Étendue wrote to the folder are replaced or removed.
 //!
 //! New files wait in a subfolder until all new files are complete, so an earlier result stays in
 //! place until then. An index, such as `summary.json`, lists the files with their hashes and is
 //! moved last. A file of an earlier result is removed if the index of that result lists the file,
-//! and the file still has the listed hash. All other files in the folder belong to somebody else
-//! and are kept (docs/files.md).
+//! and the file still has the listed hash. All other files in the folder belong to the user and are
+//! kept (docs/files.md).
 
 mod claim;
 mod commit;
@@ -83,7 +83,7 @@ pub struct Results {
     is_new: bool,
     /// Files that etendue did not write and that the files of a dead process replaced.
     replaced: Vec<String>,
-    /// The lock, released before the folder is removed; `None` afterwards.
+    /// The lock, which is released before the folder is removed; `None` after its release.
     lock: Option<Lock>,
 }
 
@@ -272,7 +272,8 @@ impl Results {
         self.folder.join(UNFINISHED).join("new").join(name)
     }
 
-    /// Returns the temporary path of a new index, once all files are complete and begin to move.
+    /// Returns the temporary path that a new index has after all files are complete. From then on,
+    /// the files begin to move.
     fn ready(&self, index: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join(index)
     }
@@ -310,8 +311,8 @@ impl Drop for Results {
     }
 }
 
-/// Returns the path of a file of a folder; `None` if the path leads out of the folder, by `..` or
-/// by a link.
+/// Returns the path of a file of a folder. Returns `None` if the path leads out of the folder,
+/// through `..` or through a link.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();

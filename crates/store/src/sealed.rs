@@ -1,4 +1,4 @@
-//! JSON files that end with their own hash: indices and timings.
+//! Writes and checks JSON files that end with their own hash. Indices and timings are such files.
 //!
 //! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. If a file was edited in
 //! any way, its hash no longer matches.

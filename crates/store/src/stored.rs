@@ -1,4 +1,5 @@
-//! The results of a stage in its folder, for a later stage: arrays, and an index that lists them.
+//! Stores the results of a stage in a folder, from which a later stage reads them. The folder holds
+//! arrays, and an index that lists them.
 
 use crate::Method;
 use crate::fields::{FieldChange, difference};
@@ -36,7 +37,7 @@ pub struct Index<T> {
     /// The stage's own data.
     #[serde(flatten)]
     pub content: T,
-    /// The scene file, defaults and overrides included.
+    /// The scene file, including defaults and overrides.
     pub scene_file: SceneFile,
     /// BLAKE3 hash of each mesh and picture of the scene, by its name in the scene file.
     inputs: BTreeMap<String, String>,
@@ -200,8 +201,8 @@ impl<T> Stored<T> {
     }
 }
 
-/// Returns the file `name` of a folder, whose bytes must be those listed in `files` of the index
-/// called `index`.
+/// Returns the file `name` of a folder. The hash of its bytes must be the hash that `files`, from
+/// the index called `index`, lists.
 pub fn listed_bytes(
     folder: &Path,
     index: &str,
@@ -222,7 +223,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// Returns the summary of a run, if the run had exactly this scene, method and version.
+/// Returns the summary of a run if the run had exactly this scene, method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;

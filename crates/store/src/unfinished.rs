@@ -1,4 +1,5 @@
-//! Files that are not yet part of a result, and their removal when the process is asked to stop.
+//! Keeps a list of files that are not yet part of a result, and removes these files if the process
+//! is asked to stop.
 
 use std::fs;
 use std::path::PathBuf;
@@ -37,7 +38,7 @@ pub fn ended(release: impl FnOnce()) {
     unfinished.clear();
 }
 
-/// Does short work; a first signal to stop takes effect only after this work.
+/// Calls `work`, which must be short. A first signal to stop takes effect only after this call.
 pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     let _held = unfinished();
     work()

@@ -1,4 +1,5 @@
-//! Bandwidths of glossy reflections by the paper's criteria, beside exact and measured bandwidths.
+//! Computes the bandwidths of glossy reflections by the paper's criteria, and the exact and the
+//! measured bandwidths.
 
 use crate::values::{SweepPoint, message_at};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
@@ -15,10 +16,11 @@ pub struct BandwidthRow {
     pub point: Vec<f64>,
     /// The plane's name.
     pub plane: String,
-    /// κ \[1/m\], θ₀ and θ₁ \[°\], d and d′ \[m\], and the bandwidth of the lobe \[cycles per radian\]. In cycles per
-    /// unit slope follow B of Eq. 20, corrected and as printed, and B′ of Eq. 21, corrected and as printed. If the
-    /// scene is measured, the exact bandwidth, the measured bandwidth and its standard error follow. `None` stands
-    /// for a number that the plane does not have.
+    /// κ \[1/m\], θ₀ and θ₁ \[°\], d and d′ \[m\], and the bandwidth of the lobe \[cycles per
+    /// radian\]. The next numbers, in cycles per unit slope, are B of Eq. 20, corrected and as
+    /// printed, and B′ of Eq. 21, corrected and as printed. If the scene is measured, the exact
+    /// bandwidth, the measured bandwidth and its standard error follow. `None` stands for a number
+    /// that the plane does not have.
     pub numbers: Vec<Option<f64>>,
     /// Warnings to read before using the numbers.
     pub warnings: Vec<String>,
@@ -99,9 +101,9 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// Warns of a bandwidth at the end of the grid, where the grid limits it. The bandwidth of a
-/// spectrum that is flat over the grid is 95 % of the frequency at which the last cell ends, half a
-/// step beyond the largest frequency.
+/// Warns if the grid of frequencies limits a bandwidth. The bandwidth of a spectrum that is flat
+/// over the grid is 95 % of the frequency at which the last cell ends, half a step beyond the
+/// largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

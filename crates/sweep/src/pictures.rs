@@ -89,7 +89,7 @@ pub(crate) fn drawn(
     quantities.into_iter().map(figure).collect()
 }
 
-/// Measured and predicted numbers of a plane over the swept field.
+/// Returns a panel with the measured and predicted numbers of a plane over the swept field.
 fn panel(
     plane: &str,
     others: &SweepPoint,
@@ -122,7 +122,7 @@ fn panel(
     }
 }
 
-/// Whether there are at least three values, and the values grow by equal factors.
+/// Checks whether there are at least three values, and the values grow by equal factors.
 fn go_by_factors(values: impl Iterator<Item = f64>) -> bool {
     // The relative rounding error of the values of a range, with a margin.
     const ROUNDING: f64 = 1e-6;
@@ -139,7 +139,7 @@ fn name(plane: &serde_json::Value) -> &str {
     plane["name"].as_str().unwrap_or_default()
 }
 
-/// The values that distinguish one panel from another.
+/// Returns the values that distinguish one panel from another.
 fn others(at: &PointResult, together: bool) -> SweepPoint {
     if together {
         SweepPoint::new()

@@ -54,13 +54,13 @@ impl SweepPoints {
         })
     }
 
-    /// The name of the scene.
+    /// Returns the name of the scene.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.base.name
     }
 
-    /// The scene at each point.
+    /// Returns the scene at each point.
     #[must_use]
     pub fn scenes(&self) -> &[Scene] {
         &self.scenes
@@ -99,9 +99,9 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point. The seed is derived from the point's scene and the seed of the sweep, and
-/// does not depend on the other points. The seed is small enough for every reader of JSON to
-/// represent it exactly.
+/// Returns the seed of a point. The seed is derived from the point's scene and the seed of the
+/// sweep, and does not depend on the other points. The seed is small enough for every reader of
+/// JSON to represent it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
@@ -164,7 +164,8 @@ fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     (set, sweeps)
 }
 
-/// The scene with some further fields set to numbers; `options` overrides fields at all points.
+/// Returns the scene with some further fields set to numbers; `options` overrides fields at all
+/// points.
 pub fn scene_at(
     source: &SceneSource,
     point: &SweepPoint,

@@ -1,4 +1,5 @@
-//! Hides the progress within a point of a sweep, since the sweep shows its points.
+//! Hides the progress within a point of a sweep, because the sweep shows its progress over the
+//! points.
 
 use etendue_pipeline::{Progress, Reporter, Work};
 

@@ -176,8 +176,8 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points. The function checks that these folders are inside the folder of the
-/// sweep.
+/// Returns the folders of the points. The function checks that these folders are inside the folder
+/// of the sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,
@@ -193,7 +193,8 @@ fn folders(
     all.scenes.iter().zip(&all.points).map(name).collect()
 }
 
-/// The name of a point: its values, and a hash that is the same for the same scene and method.
+/// Returns the name of a point. It consists of the values of the point, and of a hash of its scene
+/// and method.
 fn name_of(scene: &Scene, point: &SweepPoint, request: &SweepRequest) -> String {
     /// Maximum length of the values in a name.
     const MAX_VALUES: usize = 48;
@@ -281,7 +282,7 @@ fn undecided(at: &PointResult) -> Vec<String> {
     reasons.collect()
 }
 
-/// The table for the terminal: a row for each plane at each point.
+/// Returns the table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
         (BANDWIDTHS[0], "95 % bandwidth in ρ [cycles/m]"),

@@ -114,7 +114,7 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     swept.chain(rest).collect()
 }
 
-/// The table as CSV with all digits; cells without a number are empty.
+/// Returns the table as CSV with all digits; cells without a number are empty.
 pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
     let columns = columns(paths, found);
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -24,7 +24,7 @@ pub enum Setting {
 /// A point of a sweep: the value of each swept field.
 pub type SweepPoint = Vec<(String, f64)>;
 
-/// The largest number of values of one sweep, and of points in total.
+/// The largest number of values of one field, and the largest total number of points.
 const MAX_POINTS: usize = 1000;
 
 /// Parses a `--set` argument of a sweep.
@@ -49,7 +49,8 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether a text has a comma outside of parentheses and quotes, which shows that it is a list.
+/// Checks whether a text has a comma outside of parentheses and quotes, which shows that it is a
+/// list.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {
@@ -63,7 +64,7 @@ fn is_list(text: &str) -> bool {
     })
 }
 
-/// The argument has the form `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal
+/// Parses an argument of the form `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal
 /// factors) or `PATH=A,B,C`.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
@@ -95,7 +96,7 @@ impl Sweep {
     }
 }
 
-/// The values of a range or a list.
+/// Returns the values of a range or a list.
 fn values_of(text: &str) -> Result<Vec<f64>, String> {
     match text.split_once("..") {
         None => text.split(',').map(number).collect(),
@@ -161,8 +162,8 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     tidy(value).parse().unwrap_or(value)
 }
 
-/// The values at all points. Fields vary together, or in all combinations with the last field
-/// varying fastest.
+/// Returns the values at all points. Fields vary together, or in all combinations; in the
+/// combinations, the last field varies fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
@@ -196,7 +197,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// A message, and the name of the point that it concerns.
+/// Returns a message, and the name of the point that it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
@@ -205,13 +206,13 @@ pub fn message_at(point: &SweepPoint, text: String) -> String {
     }
 }
 
-/// A description of a point.
+/// Returns a description of a point.
 pub fn shown(point: &SweepPoint) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// The shortest end of a path that identifies its field, such as `Ggx` for
+/// Returns the shortest end of a path that still identifies the field, such as `Ggx` for
 /// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());

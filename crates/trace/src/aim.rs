@@ -8,8 +8,8 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// An equal mixture of several strategies to draw rays of light from an environment. The density
-/// of this mixture is over (x, y, u, v) at the beginning of the first leg.
+/// A mixture, with equal weights, of several strategies to draw rays of light from an environment.
+/// The density of this mixture is over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, covers only rays that reach the window of some virtual plane,
 /// because the flux of an environment through all space is infinite.

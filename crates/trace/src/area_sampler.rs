@@ -19,7 +19,7 @@ impl AreaSampler {
         Self::Many(triangles.clone(), DiscreteDistribution::new(areas))
     }
 
-    /// The total area.
+    /// Returns the total area.
     pub(crate) fn area(&self) -> f64 {
         match self {
             Self::One(corners) => parallelogram(corners),

@@ -244,7 +244,7 @@ impl Emitter {
         (TwoPlane { x, y, u, v }, density)
     }
 
-    /// Radiance over density.
+    /// Returns the radiance divided by the density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
         // Because of rounding, a ray can lie exactly on the edge of a range, where the density is

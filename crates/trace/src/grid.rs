@@ -23,8 +23,8 @@ pub(crate) struct Grid {
 /// The number of cells per shape, chosen so that most cells hold at most one shape.
 const FINENESS: f64 = 4.0;
 
-/// The largest allowed average number of cells that a shape occupies. The average exceeds this
-/// limit only if shapes overlap.
+/// The largest allowed average number of cells per shape. The average exceeds this limit only if
+/// shapes overlap.
 const COPIES: usize = 16;
 
 /// Returns the extent of a shape along an axis. The extent includes a small margin, because

@@ -17,7 +17,7 @@ pub(crate) enum Primitive {
     Grid(Box<Grid>),
     /// A flat shape in the XY plane of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
-    /// Triangles. A mesh, in which a hit is identified by the number of the triangle.
+    /// A mesh of triangles. A hit is identified by the number of the triangle.
     Mesh(Box<BlockerMesh>),
     /// A smooth surface.
     Smooth(Box<Patch>),
@@ -45,8 +45,9 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. The function is
-    /// not inlined, which keeps loops over mostly flat shapes short.
+    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. This function
+    /// is not inlined. The machine code of loops over primitives therefore stays small, and most of
+    /// these primitives are flat.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);

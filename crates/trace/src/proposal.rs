@@ -74,7 +74,7 @@ impl ProfileDensity {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
             // One formula is used for both signs of t, because the processor would mispredict a
-            // branch every other time.
+            // branch half of the time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
@@ -188,7 +188,8 @@ impl Aim {
 /// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
 /// light and cross the window. The position x is drawn second: the window's profile is applied to
 /// the positions in the window that light with the drawn slope reaches. All samples start on the
-/// light and cross the window. For a point light x is fixed, and the density is that of u alone.
+/// light and cross the window. For a point light, x is fixed, and the density is the density of u
+/// alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.

@@ -11,9 +11,9 @@ use glam::{DVec2, DVec3};
 
 /// Returns the half-widths of a box around the central ray, in the plane at the end of `leg`. All
 /// light from `origins` (in the frame of the leg) that can reach the window of `plane` passes
-/// through this box. `plane` lies on a later leg, or on the surface that ends `leg`. Returns
-/// `None` if no light reaches the window, or if light must travel perpendicular to a later leg or
-/// back along it.
+/// through this box. `plane` lies on a later leg, or on the surface that ends `leg`. Returns `None`
+/// if no light reaches the window. Also returns `None` if light must travel perpendicular to a
+/// later leg, or back along a later leg.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,

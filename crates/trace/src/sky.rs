@@ -141,7 +141,8 @@ pub(crate) fn radiance(environment: &Environment, ray: &TwoPlane) -> f64 {
     }
 }
 
-/// The cosine of the angle to the central ray above which light goes forward.
+/// Light goes forward if the cosine of the angle between its direction and the central ray exceeds
+/// this limit.
 const FORWARD: f64 = 1e-6;
 
 #[cfg(test)]

@@ -45,8 +45,8 @@ struct FlightLeg {
     /// The objects on which the leg begins and ends.
     leaves: Option<Object>,
     ends: Option<Object>,
-    /// The object on which the leg begins, if light may meet it again; light never meets a flat
-    /// surface again.
+    /// The object on which the leg begins, if light may meet this object again. Light never meets a
+    /// flat surface again.
     rejoins: Option<Object>,
     /// The distance up to which a hit is attributed to rounding errors.
     rounding: f64,

@@ -25,7 +25,7 @@ const WALL: &str = r#"Rectangle(name: "s", center: (0, 0, 1), size: (2, 1.6),
 const STAR: &str = r#"Mesh(name: "s", center: (0, 0, 1),
     mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const SPHERE: &str = r#"Mesh(name: "m", center: (0.2, -0.1, 0.5), mesh: Star(radius: 0.08, relief: 0.3, lobes: 4, rings: 10), albedo: 0.8)"#;
-/// A mirror that light reaches from the wall; the light leaves the wall by mirror reflection or
+/// A mirror that receives light from the wall. The light leaves the wall in the mirror direction or
 /// upwards.
 const MIRROR: &str = r#"Smooth(name: "mirror", center: (0.5, -0.8, 0), facing: (-0.4, 1, 0.2),
     form: Sphere(-0.1), aperture: 1.5, event: Mirror)"#;

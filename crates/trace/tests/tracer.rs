@@ -1,4 +1,5 @@
-//! Tests the tracer: against closed forms, with plain against aimed emission, and by its ledger.
+//! Tests the tracer: compares it with closed forms, compares plain with aimed emission, and checks
+//! its ledger.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

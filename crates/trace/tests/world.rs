@@ -60,8 +60,8 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     for plane in 0..2 {
         let rays = rays(&scene, plane);
         let expected = PI * 2.0 * 0.06 * 0.04;
-        // The tolerance is the sum of 32768 rounding errors at the first plane, and at the second
-        // plane the loss of light that grazes the adjacent surface.
+        // At the first plane, the tolerance is the sum of 32768 rounding errors. At the second
+        // plane, it allows for the loss of light that grazes the adjacent surface.
         let slack = [1e-11, 0.3][plane];
         assert!(
             (total(&rays) / expected - 1.0).abs() < slack,

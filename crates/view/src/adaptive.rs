@@ -1,4 +1,4 @@
-//! Pictures with few shading samples, their maps, and the time of each stage.
+//! Renders pictures with few shading samples, and writes their maps and the time of each stage.
 
 use crate::finite::require_finite;
 use crate::picture_request::PictureRequest;

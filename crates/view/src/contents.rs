@@ -10,11 +10,12 @@ use etendue_world::{Camera, Geometry, Light, Projection, World};
 pub struct Contents {
     /// The number of each kind of content, such as `triangles`.
     pub counts: Vec<(&'static str, usize)>,
-    /// Cameras of the scene; the first is used unless another is named.
+    /// Cameras of the scene. The first camera is used unless another is named.
     pub cameras: Vec<Camera>,
     /// Whether the scene has a light.
     pub has_light: bool,
-    /// The largest number of surfaces that light meets between a source and the camera, if limited.
+    /// The largest number of surfaces that light meets between a source and the camera; `None` if
+    /// there is no limit.
     pub depth: Option<u32>,
     /// A sentence for each omission or approximation.
     pub notes: Vec<String>,

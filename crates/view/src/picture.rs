@@ -23,9 +23,9 @@ const FILES: [&str; 3] = ["picture.exr", "picture.npz", "picture.png"];
 pub struct RenderedPicture {
     /// Number of pixels across and down.
     pub size: [usize; 2],
-    /// Omissions from the scene and approximations.
+    /// Notes on omissions from the scene and on approximations.
     pub notes: Vec<String>,
-    /// The number of samples and the time they took, in words; empty for a reference.
+    /// The number of samples and their time, in words; empty for a reference.
     pub effort: String,
 }
 

@@ -10,7 +10,7 @@ pub struct PictureRequest {
     pub source: WorldSource,
     /// The camera.
     pub camera: CameraChoice,
-    /// The method of placing few shading samples; `None` requests a reference picture.
+    /// The method by which few shading samples are placed; `None` requests a reference picture.
     pub method: Option<SampleMethod>,
     /// Paths for each pixel of a reference.
     pub samples: u32,

@@ -1,4 +1,4 @@
-//! The light field behind a pixel, and how fast it changes over a picture.
+//! Measures the light field behind a pixel, and how fast light changes over a picture.
 
 mod covariance;
 mod found;

@@ -1,5 +1,5 @@
-//! The allowed ranges of numbers for a scene, a picture and a probe, checked by the code that fills
-//! in a request.
+//! Defines the allowed ranges of numbers for a scene, a picture and a probe. The code that fills in
+//! a request checks these ranges.
 
 use std::ops::RangeInclusive;
 

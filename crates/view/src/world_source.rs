@@ -13,12 +13,12 @@ pub struct WorldSource {
     pub path: PathBuf,
     /// Options of the importer.
     pub options: Options,
-    /// The largest number of surfaces that light meets between a source and the camera, in place of
-    /// the file's.
+    /// The largest number of surfaces that light meets between a source and the camera; it replaces
+    /// the number in the file.
     pub bounces: Option<u32>,
     /// Radiance of a uniform sky, W/(m² sr).
     pub sky: Option<f64>,
-    /// A camera that is added to the scene as the first, with the name `command`.
+    /// A camera that is added to the scene as its first camera, with the name `command`.
     pub viewpoint: Option<Viewpoint>,
     /// How messages name arguments: as options of the command, or as keywords of Python.
     pub arguments: ArgumentStyle,
@@ -40,9 +40,9 @@ pub struct Viewpoint {
 /// The selected camera.
 #[derive(Clone, Debug, Default)]
 pub struct CameraChoice {
-    /// Name of the camera; the first by default.
+    /// Name of the camera; by default, the first camera is used.
     pub name: Option<String>,
-    /// Number of pixels across and down, in place of the camera's.
+    /// Number of pixels across and down, which replaces the number in the file.
     pub size: Option<[usize; 2]>,
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
     Ok(imported)
 }
 
-/// Omissions and approximations of the scene, for result files and the terminal.
+/// Returns notes on omissions and approximations of the scene, for result files and the terminal.
 pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     imported.notes.iter().map(ToString::to_string).collect()
 }
@@ -128,7 +128,7 @@ fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, 
     })
 }
 
-/// Whether the scene has a light.
+/// Checks whether the scene has a light.
 pub(crate) fn has_light(world: &World) -> bool {
     let shines = world.shapes.iter().any(|shape| shape.emission.is_some());
     shines || !world.lights.is_empty()
@@ -142,7 +142,7 @@ pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(
     Err(Failure::bad_input(no_light(arguments)))
 }
 
-/// Returns the requested camera, or the first, with the requested size.
+/// Returns the requested camera, or the first camera if none is requested, with the requested size.
 pub(crate) fn camera(
     world: &World,
     choice: &CameraChoice,

@@ -31,7 +31,8 @@ pub enum Projection {
         /// The lens; `None` for a pinhole.
         lens: Option<Lens>,
     },
-    /// Parallel rays along Z that start at x from −1 to 1; the range of y makes pixels square.
+    /// Parallel rays along Z that start at x from −1 to 1. The range of y is chosen so that pixels
+    /// are square.
     Orthographic,
 }
 

@@ -1,9 +1,9 @@
 //! A world: surfaces, each with a geometry and a material, lights, and cameras.
 //!
-//! Scenes of other programs are read into worlds. Coordinates are right-handed, or left-handed if
-//! the file's are: the maps of cameras then contain a reflection. Coordinates are in the units of
-//! the file, metres by default. Worlds are monochrome: a colour of the file becomes one number,
-//! its luminance or one of its channels.
+//! Scenes of other programs are read into worlds. Coordinates are right-handed or left-handed, as
+//! in the file. If they are left-handed, the maps of cameras contain a reflection. Coordinates are
+//! in the units of the file, metres by default. Worlds are monochrome: a colour of the file becomes
+//! one number, its luminance or one of its channels.
 
 mod camera;
 mod light;
@@ -29,8 +29,8 @@ pub struct World {
     pub lights: Vec<Light>,
     /// Cameras: at least one is needed for pictures or probes.
     pub cameras: Vec<Camera>,
-    /// Maximum number of surfaces between a source and the camera; `None` for no limit. 0 shows
-    /// only sources, 1 adds direct light.
+    /// Maximum number of surfaces between a source and the camera; `None` if there is no limit.
+    /// With 0, only sources are visible, and 1 adds direct light.
     pub depth: Option<u32>,
     /// Whether sources that the camera sees directly appear black.
     pub hides_sources: bool,

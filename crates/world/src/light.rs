@@ -27,9 +27,9 @@ pub enum Light {
         cutoff: f64,
         /// The falloff of intensity between the two angles.
         falloff: Falloff,
-        /// A texture that multiplies the intensity: the factor in the direction (x, y, z) of the
-        /// light is the value at the texture coordinates ½ + ½ (x, y)/(z tan `cutoff`), as in
-        /// Mitsuba 3.
+        /// A texture that multiplies the intensity, as in Mitsuba 3. In the direction (x, y, z) of
+        /// the light, the factor is the value at the texture coordinates ½ + ½ (x, y)/(z tan
+        /// `cutoff`).
         picture: Option<Texture>,
     },
     /// A distant light in a single direction.

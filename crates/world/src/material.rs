@@ -65,7 +65,7 @@ pub struct Conductor {
 /// An interface that reflects and refracts light.
 #[derive(Clone, Debug)]
 pub struct Dielectric {
-    /// Ratio of the index of refraction behind the surface to that in front of it.
+    /// The index of refraction behind the surface, divided by the index in front of it.
     pub index: f64,
     /// A factor on the reflected light.
     pub reflectance: Texture,
@@ -82,7 +82,7 @@ pub struct Dielectric {
 /// and out, and reflected internally.
 #[derive(Clone, Debug)]
 pub struct Plastic {
-    /// Ratio of the index of refraction of the coat to that outside.
+    /// The index of refraction of the coat, divided by the index outside.
     pub index: f64,
     /// Reflectance of the base.
     pub diffuse: Texture,

@@ -12,10 +12,10 @@ pub struct Shape {
     /// The geometry in local coordinates.
     pub geometry: Geometry,
     /// The map from local to world coordinates. Normals are mapped by the inverse transpose, so a
-    /// reflection keeps the front. Spheres that emit are scaled uniformly; cylinders too, except
-    /// that they may have another factor along Z.
+    /// reflection keeps the front. Spheres that emit are scaled uniformly. Cylinders that emit are
+    /// scaled uniformly along X and Y, and may have another factor along Z.
     pub to_world: DAffine3,
-    /// Whether the front of the surface is opposite to that of [`Geometry`].
+    /// Whether the front of the surface is opposite to the front of its [`Geometry`].
     pub is_flipped: bool,
     /// The index of the surface's material.
     pub material: usize,
@@ -45,7 +45,8 @@ pub enum Geometry {
 /// Triangles with shared vertices.
 ///
 /// Corners are counterclockwise as seen from the front. The constructor ensures that corners refer
-/// to vertices, and that there are as many normals and texture coordinates, if any, as vertices.
+/// to vertices. If there are normals or texture coordinates, it also ensures that their number is
+/// the number of vertices.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     vertices: Vec<DVec3>,
@@ -56,7 +57,7 @@ pub struct Triangles {
 
 impl Triangles {
     /// Returns `None` unless corners refer to vertices and lengths agree. Normals may have any
-    /// length but zero; without normals, triangles are flat.
+    /// length except zero. If there are no normals, triangles are flat.
     #[must_use]
     pub fn new(
         vertices: Vec<DVec3>,

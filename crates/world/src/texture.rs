@@ -12,7 +12,7 @@ pub enum Texture {
     /// Alternating squares of half a unit. The first number applies where both components of (u, v)
     /// mod 1 are below ½ or both are above ½.
     Checkerboard {
-        /// The map from the surface's (u, v) to the board's.
+        /// The map from the (u, v) of the surface to the (u, v) of the checkerboard.
         to_uv: DAffine2,
         /// Both numbers.
         values: [f64; 2],
@@ -21,11 +21,11 @@ pub enum Texture {
     Bitmap(Bitmap),
 }
 
-/// A picture over the unit square of texture coordinates: u to the right and v down from the first
-/// pixel, at the top left.
+/// A picture over the unit square of texture coordinates. From the first pixel, at the top left, u
+/// increases to the right and v increases downwards.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
-    /// The map from the surface's (u, v) to the picture's.
+    /// The map from the (u, v) of the surface to the (u, v) of the picture.
     pub to_uv: DAffine2,
     /// Its pixels.
     pub pixels: Arc<Raster>,

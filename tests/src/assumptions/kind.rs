@@ -38,8 +38,8 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A phrase from the reason that `check` gives for a slow prediction; a violation of this
-/// assumption makes predictions slow, but not wrong.
+/// A phrase from the reason that `check` gives for a slow prediction. If this assumption is
+/// violated, predictions are slow, but not wrong.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.

@@ -18,8 +18,8 @@ pub(super) struct Trial {
     pub(super) plane: String,
     /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// The outcome of the unchecked prediction. The outcome is `None` for a plane that violates
-    /// more than one assumption, where it would be inconclusive.
+    /// The outcome of the unchecked prediction. If a plane violates more than one assumption, the
+    /// outcome would be inconclusive and is `None`.
     pub(super) ending: Option<TrialEnding>,
 }
 
@@ -36,8 +36,8 @@ pub(super) enum TrialEnding {
     Panicked(#[expect(dead_code, reason = "the message is only printed")] String),
 }
 
-/// Two seeds; a plane counts as failed only if it fails with both, because with a single seed one
-/// correct plane in a hundred fails.
+/// Two seeds. A plane counts as failed only if it fails with both seeds, because with a single seed
+/// one correct plane in a hundred fails.
 const SEEDS: [u64; 2] = [1, 2];
 /// Maximum time for a prediction and its derivatives, in seconds of one core.
 const LONGEST: f64 = 60.0;
@@ -47,7 +47,7 @@ const BUDGET: RayBudget = RayBudget {
     error: 3e-3,
 };
 
-/// Tries, one at a time, each plane of a scene for which `check` reports a violation.
+/// Tries the planes of a scene for which `check` reports a violation, one plane at a time.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
     let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()
@@ -126,8 +126,8 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
     }
 }
 
-/// Whether a theory can describe the surfaces on the central ray. The theory of parallel planes
-/// describes at most one surface, which must be Lambertian and lit by a lamp.
+/// Checks whether a theory can describe the surfaces on the central ray. The theory of parallel
+/// planes describes at most one surface, which must be Lambertian and lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;

@@ -80,8 +80,8 @@ fn replicas(photons: u64) -> Claim {
     let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
         let blockers = squares([count; 2], pitch, "fill: 0.5");
         let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
-        // The number is the pitch times the frequency of the spectral peak. The peak is the vertex
-        // of a parabola through the highest values.
+        // The number is the pitch times the frequency of the spectral peak. The peak is located at
+        // the vertex of a parabola through the highest values.
         seen.number(0, |slices| {
             let along = line(slices, 0);
             let step = slices.grid.rho.spacing;
@@ -262,8 +262,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Two maximum frequencies, per metre: up to the first, bounds are compared with spectra; up to the
-/// second, the sum in a bound is computed.
+/// Two maximum frequencies, per metre. Bounds are compared with spectra up to the first, and the
+/// sum in a bound is computed up to the second.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 

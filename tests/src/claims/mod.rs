@@ -1,4 +1,4 @@
-//! Statements in the paper's text, measured with photons. The table has a row for each statement.
+//! Tests statements in the paper's text with photons. The table has a row for each statement.
 
 mod blockers;
 mod criteria;
@@ -23,7 +23,7 @@ struct Claim {
     /// A text that describes the measured numbers.
     shown: String,
     numbers: Vec<ClaimNumber>,
-    /// Checks other than that each number agrees with its prediction.
+    /// Checks in addition to the check that each number agrees with its prediction.
     checks: Vec<Check>,
     /// The conclusion about the statement: "holds", or the part of it that holds.
     holds: &'static str,

@@ -1,4 +1,4 @@
-//! Numbers derived from measured spectra, each with its standard error and with a prediction by
+//! Computes numbers from measured spectra. Each number has a standard error, and a prediction by
 //! the same estimator.
 
 use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};

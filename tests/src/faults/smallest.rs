@@ -11,7 +11,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
 use etendue_trace::Tracer;
 
-/// The largest tried size of a fault, and how many times this size is halved.
+/// The largest size of a fault that is tried, and the number of times that this size is halved.
 const LARGEST: f64 = 0.01;
 const HALVES: i32 = 10;
 
@@ -64,7 +64,8 @@ const FAULTS: [(&str, SizedFault); 7] = [
     ),
 ];
 
-/// Returns a predictor whose windows are wider than those of the scene by the given fractions.
+/// Returns a function that predicts slices with windows that are wider than the windows of the
+/// scene by the given fractions.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut wide = plane.clone();
@@ -79,8 +80,8 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
 }
 
 /// Tries each fault with a size of 1 %, and then repeatedly with half the previous size. Returns
-/// the section on the smallest size at which each fault is rejected, together with all larger
-/// sizes.
+/// the section on the smallest size such that this size and all larger sizes of the fault are
+/// rejected.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
@@ -134,7 +135,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
         .last()
 }
 
-/// Whether photons and prediction disagree at any plane.
+/// Checks whether photons and prediction disagree at any plane.
 fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let p_value = |(i, plane): (usize, &VirtualPlane)| {

@@ -67,7 +67,7 @@ pub(crate) enum HostileFault {
     Wrote,
     /// The process wrote no error message, or a message that is long or has control characters.
     Message,
-    /// The process accepted a damaged input, and its result differs from that for the valid
+    /// The process accepted a damaged input, and its result differs from the result for the valid
     /// input.
     Changed,
 }
@@ -167,7 +167,7 @@ fn step(
     Ok(ended)
 }
 
-/// Whether a run on the unmutated input also takes a large part of the time limit.
+/// Checks whether a run on the unmutated input also takes a large part of the time limit.
 fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
     let Some(sound) = &attack.sound else {
         return Ok(false);
@@ -207,8 +207,8 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Returns the names of files that the command must not change but did. A command may change only
-/// results, and only if it makes results and accepts the input.
+/// Returns the names of files that the command has changed although it must not change them. A
+/// command may change only results, and only if it writes results and accepts the input.
 fn wrote(
     attack: &Attack,
     arguments: &[String],
@@ -232,7 +232,7 @@ fn wrote(
     Ok(names.into_iter().map(str::to_owned).collect())
 }
 
-/// Whether the message gives the position of the fault in the text.
+/// Checks whether the message gives the position of the fault in the text.
 fn is_syntax(stderr: &[u8]) -> bool {
     let message = String::from_utf8_lossy(stderr);
     message.contains(": line ") && message.contains(", column ")
@@ -242,8 +242,8 @@ fn is_syntax(stderr: &[u8]) -> bool {
 /// size, slowness is not a fault.
 const MOST_FREQUENCIES: u64 = 200_000;
 
-/// Whether the output of `check`, which states azimuths x rho x nu for each plane, shows that the
-/// scene has few enough frequencies to be run.
+/// Checks whether the scene has few enough frequencies to be run. The output of `check` states
+/// azimuths x rho x nu for each plane.
 fn is_small(checked: &[u8]) -> bool {
     let text = String::from_utf8_lossy(checked);
     let planes = text.lines().filter(|line| line.contains("  measured at "));

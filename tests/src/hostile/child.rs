@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// Time after which a child counts as hung.
 pub(crate) const LONGEST: Duration = Duration::from_secs(30);
 
-/// Memory above which a child counts as using too much, for any input, bytes.
+/// Memory, in bytes. A child that uses more memory than this, for any input, uses too much.
 pub(crate) const LARGEST: u64 = 1 << 30;
 
 /// Memory at which a child is killed to protect the machine, bytes.
@@ -40,8 +40,8 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// Returns the path of the program to attack: the given path, or else that of `etendue` in the
-/// folder of this program.
+/// Returns the path of the program that is attacked. If no path is given, the program is `etendue`
+/// in the folder of this program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),

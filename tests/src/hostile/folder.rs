@@ -5,8 +5,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A map from paths to the bytes of files, where paths are relative to the folder and use `/`;
-/// the entry of a subfolder has no bytes.
+/// A map from paths to the bytes of files. Paths are relative to the folder and use `/`. The entry
+/// of a subfolder has no bytes.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
 /// Writes files, and creates the folders that contain them.

@@ -1,5 +1,5 @@
-//! Attacks on the program from outside: it runs as a child process and is given mutated input of
-//! every kind.
+//! Attacks the program from outside. The program runs as a child process, and is given mutated
+//! input of every kind.
 //!
 //! A case is a function of the seed and the number of the case, so that each case can be repeated
 //! alone.
@@ -55,7 +55,7 @@ pub(crate) struct HostileOptions {
     etendue: Option<PathBuf>,
 }
 
-/// The valid inputs that cases are derived from.
+/// The valid inputs from which cases are derived.
 struct Seeds {
     scenes: Vec<String>,
     meshes: [meshes::Meshes; 2],

@@ -87,7 +87,7 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
-    // Spectra along two azimuths suffice to test how the program treats values of fields.
+    // Two azimuths are enough to test how the program treats values of fields.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,

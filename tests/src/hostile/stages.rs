@@ -1,9 +1,9 @@
 //! Mutated folders of stages (parts of a measurement, and predictions) that the command `compare`
 //! reads.
 //!
-//! If a change makes a hash wrong, the program must refuse the folder, or the change must have no
-//! effect on the result. If all hashes match after a change, the program cannot detect the
-//! change, but the test reaches the code that reads files after the check of hashes.
+//! If a hash does not match after a change, the program must refuse the folder, or the change must
+//! have no effect on the result. If all hashes match after a change, the program cannot detect the
+//! change. Such a change tests the code that reads files after the check of hashes.
 
 use super::case::{Attack, OUT};
 use super::child;
@@ -107,8 +107,8 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // If all hashes match, the summary may differ from that of valid folders, unless the mutation
-    // has changed nothing.
+    // If all hashes match, the summary may differ from the summary of valid folders, unless the
+    // mutation has changed nothing.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,

@@ -80,7 +80,7 @@ pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     text
 }
 
-/// Returns a number near the old one, or a valid number of any size.
+/// Returns a number near the old number, or a valid number of any size.
 fn another(old: &str, dice: &mut Dice) -> String {
     if let (Ok(old), true) = (old.parse::<f64>(), dice.one_in(2)) {
         return format!("{:.4}", old * (0.5 + dice.unit()));

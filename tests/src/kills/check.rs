@@ -1,4 +1,4 @@
-//! Checks of a folder against its index, with a reader that shares no code with the program.
+//! Checks a folder against its index. The reader of the index shares no code with the program.
 
 use crate::hostile::folder::Folder;
 use crate::hostile::index::TAIL;
@@ -51,7 +51,7 @@ pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>>
     pairs.map(pair).collect()
 }
 
-/// The fault that an index lacks a hash of its own; this fault is counted separately.
+/// The fault that an index has no hash of its own. This fault is counted separately.
 pub(super) const NO_HASH: &str = "has no hash of its own";
 
 /// The last field of an index is the hash of all bytes before it.

@@ -1,4 +1,4 @@
-//! A simulated full disk: a small tmpfs, or a limit on file sizes.
+//! Simulates a full disk by a small tmpfs, or by a limit on the size of files.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,8 +14,8 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// Returns the mount of a tmpfs if this machine allows mounts, else the shell's limit on file
-    /// sizes.
+    /// Returns the way that works on this machine. It is a small tmpfs if this process may mount
+    /// one, and a limit on the size of files otherwise.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);

@@ -1,5 +1,5 @@
-//! The commands that are killed; each writes into a folder that contains an earlier result and
-//! files of the user.
+//! Defines the commands that are killed. Each command writes to a folder that contains an earlier
+//! result and files of the user.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};

@@ -1,4 +1,4 @@
-//! One trial: it starts a command in a folder, disturbs the command, and then checks the folder.
+//! Runs one trial: starts a command in a folder, disturbs the command, and then checks the folder.
 
 use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
@@ -25,8 +25,8 @@ pub(super) enum KillTrouble {
 pub(super) enum Finding {
     TwoWriters,
     FullDisk,
-    /// The index of the folder is that of the earlier result (`Before`), missing (`Between`) or
-    /// new (`After`).
+    /// The index of the folder belongs to the earlier result (`Before`), is missing (`Between`), or
+    /// is new (`After`).
     Before,
     Between,
     After,
@@ -219,15 +219,15 @@ impl TrialBench<'_> {
     }
 }
 
-/// Whether this file is a remnant of a killed writer. Remnants of a killed writer may stay in the
-/// folder of a sweep's point, because they are removed when the point is run again.
+/// Checks whether this file is a remnant of a killed writer. Remnants of a killed writer may stay
+/// in the folder of a sweep's point, because they are removed when the point is run again.
 fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point
 }
 
-/// Returns the size of a disk with room for the existing files and for a random part of the new
-/// files.
+/// Returns the size of a disk that has space for the existing files and for a random part of the
+/// new files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);

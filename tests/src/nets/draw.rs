@@ -1,4 +1,5 @@
-//! Generator of random scenes, as the texts of scene files that use all features.
+//! Generates random scenes as the texts of scene files. The scenes together use all features of
+//! scene files.
 //!
 //! Each scene is a function of the number of the scene. Sizes are in metres and slopes are
 //! tangents, as in any scene file.
@@ -65,7 +66,7 @@ impl BlockerKind {
         }
     }
 
-    /// Whether a closed form exists with which the nets' prediction is compared.
+    /// Checks whether a closed form exists with which the nets' prediction is compared.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,
@@ -164,8 +165,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
 }
 
 /// Draws up to three masks between the light and z = 0.9. Scenes of the kinds `Picture` and
-/// `PointAcross` have at least one opaque mask, because otherwise a quadrature rule predicts them
-/// in place of nets.
+/// `PointAcross` have at least one opaque mask. Without such a mask, a quadrature rule would
+/// predict these scenes, and not nets.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();

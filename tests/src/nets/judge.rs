@@ -1,5 +1,5 @@
-//! Tables of the deviations of predictions from the truth over random scenes, in units of the
-//! stated errors.
+//! Makes tables of the differences between predictions and the truth over random scenes, in units
+//! of the stated errors.
 
 use super::draw::BlockerKind;
 use super::scene::{Measured, SceneOutcome};
@@ -9,8 +9,8 @@ use crate::statistics::{mean, uniformity};
 
 /// Permitted deviation of fractions and means, in standard errors.
 const BORNE: f64 = 3.0;
-/// Maximum permitted L2 ratio. If a prediction were a single real number, a fraction 3·10⁻⁵ of
-/// all scenes would exceed this maximum.
+/// Maximum permitted ratio of the L2 error to the stated error. If a prediction were a single real
+/// number, a fraction 3·10⁻⁵ of all scenes would exceed this maximum.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
@@ -28,7 +28,7 @@ fn beyond(distance: f64) -> f64 {
 /// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// Returns all tables, including those of planted faults.
+/// Returns all tables, including the tables of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);

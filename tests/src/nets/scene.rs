@@ -1,5 +1,5 @@
-//! A random scene, and the deviation of its prediction by nets from the truth, in units of the
-//! prediction's stated error.
+//! Computes, for a random scene, the difference between its prediction by nets and the truth, in
+//! units of the stated error.
 
 use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
@@ -20,8 +20,8 @@ pub(super) struct SceneOutcome {
     pub(super) of_truth: f64,
     /// The prediction compared with the truth.
     pub(super) sound: Measured,
-    /// The comparison after a planted fault: a density of rays that is 2 % too large, and so
-    /// makes weights too small.
+    /// The comparison with a planted fault. The density of rays is 2 % too large, which makes the
+    /// weights of rays too small.
     pub(super) planted: Measured,
 }
 
@@ -30,8 +30,8 @@ pub(super) struct Measured {
     /// ‖F − truth‖/‖truth‖ for the predicted spectrum F, divided by the stated relative error of
     /// F.
     pub(super) ratio: f64,
-    /// The squared ratios for the means of two adjacent nets; the mean of two nets has four times
-    /// the error of the mean of all nets.
+    /// The squared ratios for the means of two adjacent nets. The error of such a mean is four
+    /// times the error of the mean of all nets.
     pub(super) pairs: Vec<f64>,
     /// The deviation at zero frequency: (F − truth)/(standard error).
     pub(super) zero: f64,
@@ -193,8 +193,8 @@ fn truth(
     let enough = OF_STATED * stated;
     if let Theory::Parallel(chain) = theory {
         let window: &Window = &plane.window;
-        // The quadrature over the receiver uses more nodes for higher frequencies, so raising the
-        // frequencies makes it more accurate.
+        // The quadrature over the receiver uses more nodes for higher frequencies. Therefore it
+        // becomes more accurate if higher frequencies are requested.
         for more in [1, 2, 4] {
             let mut grid = plane.grid;
             grid.rho.half *= more;
@@ -224,13 +224,13 @@ fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     lower
 }
 
-/// The residuals of all replicates (single nets) at one frequency.
+/// Returns the residuals of all replicates (single nets) at one frequency.
 fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
     let replicates = found.replicates.iter();
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
 }
 
-/// Student's t of the real value at zero frequency.
+/// Returns Student's t of the real value at zero frequency.
 fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     let zero = [0, 0, truth.grid.nu.half];
     let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
@@ -238,7 +238,7 @@ fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     mean / error
 }
 
-/// Hotelling's T divided by √2, which for circular noise equals |d|/σ.
+/// Returns Hotelling's T divided by √2, which equals |d|/σ for circular noise.
 fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;

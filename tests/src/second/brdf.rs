@@ -1,5 +1,5 @@
-//! BRDFs computed from their definitions, which are Fresnel's equations with complex indices,
-//! microfacets described by their slopes, and Smith's masking as an integral.
+//! Computes BRDFs from their definitions: Fresnel's equations with complex indices, microfacets
+//! that are described by their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
@@ -104,9 +104,9 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Each slope of the microfacets is normally distributed with variance α²/2. The density of
-/// normals per solid angle is the density of slopes times 1/cos⁴ and a constant (Beckmann and
-/// Spizzichino 1963).
+/// Returns Beckmann's density of normals. Each slope of the microfacets is normally distributed
+/// with variance α²/2. The density of normals per solid angle is the density of slopes times 1/cos⁴
+/// and a constant (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = match fault {
         "α² is the variance along an axis" => 2.0 * roughness * roughness,
@@ -131,10 +131,10 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     1.0 / (PI * squared * stretched.powf(power))
 }
 
-/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s − μ)
-/// p(s) ds / μ over s > μ. In Smith's Λ, s is the slope of a microfacet along a direction, and μ
-/// is the cotangent of the angle between this direction and the normal. For Beckmann's
-/// distribution, p = exp(−s²/α²)/(α√π), and the integral is over w = s/α.
+/// Returns Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s
+/// − μ) p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
+/// cotangent of the angle between this direction and the normal. For Beckmann's distribution, p =
+/// exp(−s²/α²)/(α√π), and the integral is over w = s/α.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {
@@ -144,7 +144,8 @@ fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     integral([from, from + 7.0], 600, exceeds) / from
 }
 
-/// Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)); the integral is over ψ, where s = α tan ψ.
+/// Returns Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)). The integral is over ψ, where s = α
+/// tan ψ.
 fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     let cotangent = 1.0 / angle.tan();
     let from = (cotangent / roughness).atan();

@@ -1,5 +1,5 @@
-//! Comparison of a function with its second implementation, without and with faults planted in the
-//! second implementation.
+//! Compares a function with its second implementation, both without a fault and with faults planted
+//! in the second implementation.
 
 use super::SEED;
 use crate::hostile::dice::Dice;

@@ -1,5 +1,5 @@
-//! Triangles are compared with linear equations, and meshes as smooth surfaces with the paraboloid
-//! from which they are sampled.
+//! Compares hits of triangles with solutions of linear equations. Compares meshes that serve as
+//! smooth surfaces with the paraboloids from which they are sampled.
 
 use super::check::{SecondCheck, worse};
 use super::vector::{

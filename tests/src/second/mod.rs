@@ -1,13 +1,13 @@
-//! A second implementation of the code that theory and both tracers share, and of the BRDFs that
-//! theory and the tracers implement separately.
+//! A second implementation of the code that theory and both tracers share. It also implements the
+//! BRDFs, which theory and the tracers implement separately.
 //!
-//! A comparison of photons with theory cannot reveal a mistake in code that the tracers and
-//! theory share. So this module implements every shared function again, in a slow and plain way,
-//! from its documentation: docs/scenes.md, docs/conventions.md, docs/theory.md, and the cited
-//! literature. The second implementation never calls the fast code, and shares only the plain
-//! data that describes a scene. If a function depends on how scene files are read, its test
-//! writes a scene file and reads it. Faults are planted in the second implementation, and the
-//! comparison must detect each of them.
+//! A comparison of photons with theory cannot reveal a mistake in code that the tracers and theory
+//! share. Therefore this module implements every shared function again, in a slow and plain way. It
+//! follows only the documentation: docs/scenes.md, docs/conventions.md, docs/theory.md, and the
+//! cited literature. The second implementation never calls the fast code, and shares only the plain
+//! data that describes a scene. If a function depends on how scene files are read, its test writes
+//! a scene file and reads it. Faults are planted in the second implementation, and the comparison
+//! must detect each of them.
 
 mod brdf;
 mod check;
@@ -63,8 +63,8 @@ pub(crate) fn second() -> io::Result<ReportSection> {
 
 fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
-    // The random numbers of pictures belong to the largest case number, because the case numbers of
-    // points count up from 0.
+    // Pictures use the random numbers of the largest case number, because points use case numbers
+    // from 0 upwards.
     let mut dice = Dice::new(SEED, u64::MAX);
     let picture = files::write_picture(folder.path(), &mut dice)?;
     let map = files::write_map(&folder.path().join(sky::FILE), &mut dice)?;

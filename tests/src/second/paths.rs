@@ -105,8 +105,8 @@ impl Legs {
     }
 
     /// Returns the frame after a change of direction. If the event is a reflection, the frame of
-    /// the arriving ray is mirrored and its X reversed; the frame is then rotated by the smallest
-    /// angle to the new direction.
+    /// the arriving ray is mirrored, and its X is reversed. Then the frame is rotated by the
+    /// smallest angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {

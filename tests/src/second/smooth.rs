@@ -1,4 +1,4 @@
-//! Smooth surfaces as solids: a plane, a ball, a round bar, a paraboloid.
+//! Defines smooth surfaces as solids: a plane, a ball, a round bar and a paraboloid.
 
 use super::vector::{Axes, Vector, aside, between, dot, length, plus, times, unit};
 use super::world::{World, triple};

@@ -1,5 +1,5 @@
-//! Compares smooth surfaces of scene files with equivalent solids, and the directions of single
-//! rays after them with computed angles.
+//! Compares smooth surfaces of scene files with equivalent solids. Also compares the directions of
+//! single rays after these surfaces with computed angles.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
@@ -85,8 +85,9 @@ fn points(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// Compares where rays hit a smooth surface of a scene file and where they hit the equivalent
-/// solid. If a ray hits only one of the two surfaces, the difference counts as one metre.
+/// Compares the points where rays hit a smooth surface of a scene file with the points where they
+/// hit the equivalent solid. If a ray hits only one of the two surfaces, the difference counts as
+/// one metre.
 fn hits(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);
@@ -163,7 +164,8 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
     }
 }
 
-/// Refraction by Snell's law in angles (Born and Wolf 1999, 1.5.1); `None` for total reflection.
+/// Returns the direction after refraction, by Snell's law in angles (Born and Wolf 1999, 1.5.1);
+/// `None` for total reflection.
 fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
     let is_from_front = dot(along, normal) < 0.0;
     let (ahead, ratio) = if is_from_front {

@@ -1,4 +1,4 @@
-//! Comparison of photons at a plane perpendicular to the central ray with the same photons in the
+//! Compares photons at a plane perpendicular to the central ray with the same photons in the
 //! coordinates of planes on a surface.
 
 use super::check::{SecondCheck, relative, worse};
@@ -116,7 +116,7 @@ impl Looking<'_> {
         } else {
             (legs.after, legs.leaving)
         };
-        // If light is rotated about the normal, its longitude becomes that of the mirror
+        // If light is rotated about the normal, its longitude becomes the longitude of the mirror
         // direction.
         let turned = if view == View::Mirrored { -1.0 } else { 1.0 };
         Looking {

@@ -72,8 +72,8 @@ impl World {
         resolve("second", file, folder, u64::MAX).unwrap_or_else(|error| panic!("{error}: {text}"))
     }
 
-    /// Returns a point of the world in the coordinates of the resolved scene, which are those of
-    /// the frame at the light.
+    /// Returns a point of the world in the coordinates of the resolved scene, which are coordinates
+    /// in the frame at the light.
     pub(super) fn resolved(&self, point: Vector) -> Vector {
         self.light.coordinates(point)
     }

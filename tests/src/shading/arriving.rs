@@ -1,13 +1,13 @@
-//! Light of an environment that arrives at a sphere, by a quadrature independent of the nets of
-//! theory.
+//! Computes the light of an environment that arrives at a sphere, by a quadrature that is
+//! independent of the nets of theory.
 
 use etendue_field::{Complex, Environment, Slices, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Numbers of nodes of the midpoint rule: along x and along y, and along θ and along φ. At the
-/// highest frequency the midpoint rule has more than four nodes per cycle.
+/// The number of nodes of the midpoint rule along each of x and y, and the number along each of θ
+/// and φ. At the highest frequency, there are more than four nodes per cycle.
 const NODES: [usize; 2] = [40, 36];
 
 /// A sphere in an unoccluded environment.
@@ -48,8 +48,8 @@ impl Sphere<'_> {
                 .collect();
             for k in 0..grid.azimuths {
                 let (sin, cos) = grid.azimuth(k).sin_cos();
-                // A slice along one azimuth depends only on one component of the position and one
-                // of the angle.
+                // A slice along one azimuth depends only on one component of the position and on
+                // one component of the angle.
                 let place = x * cos + y * sin;
                 for (n, nu) in grid.nu.values().into_iter().enumerate() {
                     let terms = directions.iter().zip(&values).map(|([u, v], value)| {

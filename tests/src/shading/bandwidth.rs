@@ -1,4 +1,4 @@
-//! The sampling criteria of section 6.2 compared with traced rays.
+//! Compares the sampling criteria of section 6.2 with traced rays.
 
 use super::eye::EyeScene;
 use crate::report::Bound::Below;
@@ -101,7 +101,7 @@ pub(super) fn bandwidths() -> ReportSection {
         let (said, said_edge) = (criterion.environment(), criterion.blocker());
         let images = [scene.image(false, said), scene.image(true, said_edge)];
         let bound = criterion.combined();
-        // The sum of two terms reaches the bound if both terms have the same sign.
+        // The sum of two terms equals the bound if both terms have the same sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
         let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");

@@ -1,5 +1,5 @@
-//! Statements of the paper about blockers in 2D: replicas, combinations, wedges, averages, soft
-//! shadows.
+//! Tests statements of the paper about blockers in 2D: replicas, combinations, wedges, averages and
+//! soft shadows.
 
 use super::primal::{about, between, integral, transform, wave};
 use super::strips::{coefficients, in_common, strips};
@@ -163,7 +163,7 @@ fn complementary() -> f64 {
     (product.re - tail - rest).abs() / (size + tail)
 }
 
-/// Two cosine gratings at depths 0 and 1 m.
+/// Tests two cosine gratings at depths 0 and 1 m.
 fn wedge() -> Vec<Statement> {
     let frequency = 2.0;
     let content = |modulation: f64| {
@@ -270,8 +270,8 @@ fn average() -> Vec<Statement> {
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
-            // The spectrum falls with the pitch like the tail of a Gaussian at f d₁/D − 0.7, which
-            // is 1.5 and 3.7 cycles per metre for the two pitches, in a window of 0.4 m.
+            // The spectrum falls with the pitch like the tail of a Gaussian at f d₁/D − 0.7, in a
+            // window of 0.4 m. This number is 1.5 and 3.7 cycles per metre for the two pitches.
             expected: [4.0, 100.0],
             holds: "holds, faster than any power: only replicas' tails arrive",
         },

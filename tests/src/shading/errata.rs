@@ -1,4 +1,4 @@
-//! The paper's misprints about shading, each beside the corrected formula.
+//! Compares each of the paper's misprints about shading with the corrected formula.
 
 use super::bandwidth::criterion;
 use super::brdfs::{
@@ -23,8 +23,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// 10⁻¹², or values traced with six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
-/// Minimum error that a misprinted formula must show if its error is not known in advance. This
-/// minimum is far above [`QUADRATURE`].
+/// If the error of a misprinted formula is not known in advance, it must be at least this number.
+/// The number is far above [`QUADRATURE`].
 const BY_FAR: f64 = 0.02;
 
 struct Erratum {
@@ -258,8 +258,8 @@ fn criteria() -> Vec<Erratum> {
             let traced = EyeScene { criterion }.traced()[usize::from(edge)];
             let [printed, corrected, traced] =
                 [printed, corrected, traced].map(|b| b / criterion.lobe_cutoff);
-            // The errors of both formulas are known from docs/theory.md, section 9, to the digits
-            // stated in this section.
+            // The errors of both formulas are stated in docs/theory.md, section 9, and are compared
+            // to the digits that are stated there.
             let unlike = (printed - known[0]).abs() > 0.01 || (traced - known[1]).abs() > 0.01;
             Erratum {
                 place,

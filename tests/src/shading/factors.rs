@@ -23,7 +23,7 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
 }
 
 /// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
-/// 0; the quadrature panels are finer near θ = 0 and near `end`.
+/// 0. The panels of the quadrature are finer near θ = 0 and near `end`.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;
@@ -115,8 +115,8 @@ fn fresnel() -> Vec<OperatorComparison> {
             fault: (name, apart(&curve(wrong), &primal)),
         }
     };
-    // Fresnel's formulas in a form other than the theory's, with sines and tangents of the
-    // refracted angle.
+    // Fresnel's formulas with sines and tangents of the refracted angle. The theory uses another
+    // form of these formulas.
     let snell = |theta: f64| {
         let theta = theta.max(1e-4);
         let beyond = (theta.sin() / 1.5).asin();
@@ -251,7 +251,7 @@ fn plain_integral(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// Checks dE = ℓ g in slopes, whose spectrum is the convolution of Eq. 7.
+/// Checks dE = ℓ g in slopes. Its spectrum is the convolution of Eq. 7.
 fn differential_irradiance() -> OperatorComparison {
     let bell = &super::light::LIGHT[0];
     let omegas = [[0.0, 0.0], [0.4, 0.2], [-0.3, 0.5], [0.6, -0.9]];

@@ -1,4 +1,5 @@
-//! Sweeps over every length and angle in the sampling criteria of section 6.2, against photons.
+//! Sweeps over every length and angle in the sampling criteria of section 6.2, and compares the
+//! criteria with photons.
 
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -32,7 +33,7 @@ enum Lit {
     Beam,
     /// A point light at this distance.
     Point(f64),
-    /// A slit at this distance, in front of a light that is wider than the slit.
+    /// A slit at this distance, with a light behind it that is wider than the slit.
     Slit(f64),
 }
 
@@ -117,7 +118,8 @@ impl GlossyBench {
                 )
             }
         };
-        // The angle of the normal from Z is π − θ₀, and that of the leaving ray π − 2 θ₀.
+        // The angle between the normal and Z is π − θ₀, and the angle between the leaving ray and Z
+        // is π − 2 θ₀.
         let leaves = std::f64::consts::PI - 2.0 * self.incidence + self.aside;
         let lobe = match self.lobe {
             LobeOwner::Phong(n) => format!("Phong({n})"),
@@ -190,8 +192,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at azimuth 0 integrates over y and v. If the lobe is no product of functions
-        // of u and v, a narrow window in v selects the plane of incidence.
+        // The slice at azimuth 0 integrates over y and v. If the lobe is not a product of a
+        // function of u and a function of v, a narrow window in v selects the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());

@@ -31,8 +31,8 @@ pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;
 
-/// Returns all sections. Sections in 2D need no photons; the other sections trace `photons`
-/// photons in each scene if this number is given, else the number in the scene's file.
+/// Returns all sections. Sections in 2D need no photons. The other sections trace `photons` photons
+/// in each scene. If `photons` is `None`, they trace the number of photons in the scene's file.
 pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
         operators::operators(),

@@ -4,12 +4,12 @@
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Limit of the parameter beyond which nodes of the double exponential rule equal the ends of the
-/// interval up to rounding.
+/// Limit of the parameter of the double exponential rule. Beyond this limit, nodes equal the ends
+/// of the interval up to rounding.
 const LAST: f64 = 3.1;
 
-/// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974):
-/// accurate for functions with kinks or roots at the ends.
+/// Returns nodes and weights of the double exponential rule between two ends (Takahasi and Mori
+/// 1974). The rule is accurate for functions with kinks or roots at the ends.
 pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
     let step = LAST / f64::from(count);
     let half = 0.5 * (high - low);
@@ -23,8 +23,8 @@ pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Nodes and weights of the trapezoid rule over a centre ± a reach: accurate for functions that
-/// vanish at the ends.
+/// Returns nodes and weights of the trapezoid rule over the interval centre ± reach. The rule is
+/// accurate for functions that vanish at the ends.
 pub(super) fn about(middle: f64, reach: f64, count: i32) -> impl Iterator<Item = (f64, f64)> {
     let step = reach / f64::from(count);
     (-count..=count).map(move |i| (middle + f64::from(i) * step, step))

@@ -31,10 +31,11 @@ const SCENES: &[(&str, &str)] = &[
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 
-/// The number of scenes that scatter light, which are all scenes of the list but the last.
+/// The number of scenes that scatter light. These are all scenes of the list except the last.
 const SHADED: usize = 14;
 
-/// Returns every scattering scene, by default with the number of photons in its file.
+/// Returns every scene that scatters light. If `photons` is `None`, each scene has the number of
+/// photons in its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let shaded = SCENES[..SHADED].iter();
     shaded
@@ -46,7 +47,8 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
 /// given order.
 ///
 /// # Panics
-/// Panics if there is no such scene, a text is not in it, or it becomes invalid.
+/// Panics if there is no such scene, if its file does not contain one of the texts, or if the
+/// changed scene is invalid.
 pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> Scene {
     let found = SCENES.iter().find(|(known, _)| *known == name);
     let (_, text) = found.expect("a scene of shading");

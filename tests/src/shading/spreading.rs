@@ -21,9 +21,10 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// cosⁿ on the half-circle has a discontinuous n-th derivative.
+/// Tests cosⁿ on the half-circle, whose n-th derivative is discontinuous.
 fn discontinuity(n: i32) -> Statement {
-    // The frequencies Ω are chosen such that |sin(π²Ω)| or, for even n, |cos(π²Ω)| equals one.
+    // The frequencies Ω are chosen such that |sin(π²Ω)| equals one for odd n, and |cos(π²Ω)| equals
+    // one for even n.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
     let points: Vec<[f64; 2]> = [20, 28, 40, 56, 80, 113, 160]
         .map(|m| {
@@ -176,7 +177,7 @@ fn cosine() -> Vec<Statement> {
                 "irradiance of an environment on a convex surface against env ⊗ cos⁺, as spectra"
                     .to_owned(),
             number: off(&|_| 1.0),
-            // The error of the trapezoid rule across the kink of the cosine: step²/12.
+            // The error of the trapezoid rule at the kink of the cosine is step²/12.
             expected: [0.0, 2e-4],
             holds: "holds for light that depends on direction alone",
         },

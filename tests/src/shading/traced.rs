@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 /// Relative sizes of the neighbourhood of the central ray.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// Maximum error of an exact step, which is that of the trapezoid rule over ± 7 standard
+/// Maximum error of an exact step. It is the error of the trapezoid rule over ± 7 standard
 /// deviations.
 const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
@@ -37,7 +37,7 @@ const SEEN: f64 = 3.0;
 /// A change to the theory's chain.
 type ChainChange = dyn Fn(&mut PlanarReflection<'static>);
 
-/// Returns faults that are planted one at a time, whose effect on the spectrum after the last step
+/// Returns faults that are planted one at a time. Their effect on the spectrum after the last step
 /// is tested.
 fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     let twice: &'static dyn Fn(f64) -> Complex = &|q| cosine_squared_hat(q).into();

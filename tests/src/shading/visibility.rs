@@ -1,4 +1,5 @@
-//! Visibility: theory's prediction of light behind a mask, compared with the light field itself.
+//! Tests visibility: compares theory's prediction of light behind a mask with the light field
+//! itself.
 
 use super::operators::OperatorComparison;
 use super::primal::{between, wave};

@@ -1,4 +1,4 @@
-//! The paper's misprints, one at a time, beside the corrected formulas.
+//! Tests the paper's misprints, one at a time, together with the corrected formulas.
 
 use super::bench::MirrorBench;
 use super::steps::Steps;
@@ -31,7 +31,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // With longitude 0 the shear has no cosines and is M alone; the sign of this shear is
+            // With longitude 0, the shear has no cosines and equals M. The sign of this shear is
             // correct if `sign` is 1.
             let longitude = cosine(theta0);
             steps.curvature =
@@ -114,8 +114,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// Returns one table row for each single misprint. All misprints are tested on a hollow sphere,
-/// and those that concern plane mirrors also on a plane mirror.
+/// Returns one table row for each single misprint. All misprints are tested on a hollow sphere.
+/// Misprints that concern plane mirrors are also tested on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();
@@ -190,8 +190,8 @@ pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     section(&[sphere, flat])
 }
 
-/// Returns the section on scene files that request the printed formulas; such scenes must
-/// disagree, as with `--expect disagreement`.
+/// Returns the section on scene files that request the printed formulas. Such scenes must disagree,
+/// as `--expect disagreement` requires.
 pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();

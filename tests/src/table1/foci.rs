@@ -1,4 +1,4 @@
-//! The foci of the solar oven, determined from photons alone.
+//! Determines the foci of the solar oven from photons alone.
 
 use super::TableRun;
 use crate::predicted;

@@ -1,5 +1,5 @@
-//! Table 1 of Durand et al. 2005, line by line. In 2D, theory is compared with quadrature; in 4D,
-//! photons are compared with theory.
+//! Tests Table 1 of Durand et al. 2005, row by row. In 2D, theory is compared with quadrature; in
+//! 4D, photons are compared with theory.
 
 mod bench;
 mod errata;
@@ -56,8 +56,8 @@ impl TableRun {
     }
 }
 
-/// Returns all sections on Table 1; each scene is traced with `photons` photons if given, else
-/// with the number in its file.
+/// Returns all sections on Table 1. Each scene is traced with `photons` photons; if `photons` is
+/// `None`, with the number of photons in its file.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

@@ -1,5 +1,5 @@
-//! The order at which the error of the first-order chain decreases with the size of the
-//! neighbourhood.
+//! Determines the order with which the error of the first-order chain decreases as the
+//! neighbourhood shrinks.
 
 use super::TableRun;
 use crate::predicted;

@@ -151,9 +151,9 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the order of the error, which is known in advance. The order of the error is 1 at
-    /// oblique incidence. The order of the error is 2 at normal incidence, and also if the only
-    /// approximation replaces tangents by angles.
+    /// Returns the order of the error, which is known in advance. The order is 1 at oblique
+    /// incidence. It is 2 at normal incidence, and also if the only approximation is that angles
+    /// replace tangents.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {

@@ -81,7 +81,8 @@ fn swapped(bench: &MirrorBench<'_>, sign: f64) -> AffineMap<4> {
     map
 }
 
-/// Faults of the affine maps, judged by the rule for first-order chains.
+/// Returns the section on faults of the affine maps, which are judged by the rule for first-order
+/// chains.
 pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in [oblique, normal] {
@@ -189,7 +190,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
     ]
 }
 
-/// Wrong numbers in the exact prediction, which the p-value must reject.
+/// Returns the section on wrong numbers in the exact prediction, which the p-value must reject.
 pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {

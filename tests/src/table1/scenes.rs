@@ -38,7 +38,8 @@ const SCENES: &[(&str, &str)] = &[
     scene!("printed_sagittal"),
 ];
 
-/// Returns every scene that tests Table 1, by default with the number of photons in its file.
+/// Returns every scene that tests Table 1. If `photons` is `None`, each scene has the number of
+/// photons in its file.
 ///
 /// # Panics
 /// Panics if a scene is invalid.

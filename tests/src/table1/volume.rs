@@ -1,4 +1,4 @@
-//! Conservation of étendue along real rays, and reversibility of the rays.
+//! Tests that étendue is conserved along traced rays, and that the rays are reversible.
 
 use super::TableRun;
 use crate::report::Bound::Below;
@@ -23,7 +23,7 @@ struct VolumeRay {
     direction: DVec3,
 }
 
-/// Phase-space volume and reversibility for every scene with surfaces.
+/// Returns the section on phase-space volume and reversibility for every scene with surfaces.
 pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
@@ -85,7 +85,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// Returns the ratio of the index of refraction at the light to that at the plane.
+/// Returns the index of refraction at the light divided by the index at the plane.
 fn index_ratio(system: &SpecularSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
@@ -98,7 +98,7 @@ fn index_ratio(system: &SpecularSystem) -> f64 {
     ratio
 }
 
-/// Ratio of the index before a surface to the index after it.
+/// Returns the index before a surface divided by the index after it.
 fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
     let etendue_field::Specular::Refraction { front, back } = element.event else {
         return 1.0;
@@ -169,8 +169,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Whether the path contains an ideal lens. An ideal lens preserves the volume of positions and
-/// slopes, unlike real lenses.
+/// Checks whether the path contains an ideal lens. An ideal lens preserves the volume of positions
+/// and slopes, unlike real lenses.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events
@@ -221,7 +221,7 @@ fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     })
 }
 
-/// Returns the point where a ray's line crosses a plane, and its direction cosines.
+/// Returns the point where the line of a ray crosses a plane, and the direction cosines of the ray.
 fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),

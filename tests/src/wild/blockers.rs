@@ -11,7 +11,7 @@ use std::io;
 const LEAST: f64 = 1e-9;
 /// Maximum number of products of shapes for which a prediction takes an acceptable time.
 const MOST: f64 = 3e4;
-/// Number of rectangles whose cost of prediction equals that of one disc.
+/// The prediction for one disc costs as much as the prediction for this number of rectangles.
 const STRIPS: f64 = 64.0;
 
 /// Draws up to three layers before the first surface, whose distance from the light is given.

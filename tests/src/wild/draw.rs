@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// The random choices for one scene, in the order in which they are used.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// Average number of drawn values for each extreme value; if the number is 0, no value is
+    /// On average, one of this many drawn values is extreme. If the number is 0, no value is
     /// extreme.
     rarity: usize,
     /// The scale of all lengths in the scene, metres.

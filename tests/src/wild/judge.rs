@@ -1,5 +1,5 @@
-//! Judgement of a run: whether its verdict is wrong, and whether a tracer or the prediction is at
-//! fault.
+//! Judges a run: determines whether its verdict is wrong, and whether a tracer or the prediction
+//! causes this.
 
 use super::run::{PlaneSummary, RunEnding, Runner};
 use crate::scenes::{measured, traced, traced_backwards};

@@ -112,8 +112,8 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
 
 fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
-    // If its direction is random, a lobe must be wide, because otherwise it sends no light
-    // forward.
+    // If the direction of a lobe is random, the lobe must be wide, because a narrow lobe may send
+    // no light forward.
     let (from, width) = if plain {
         let [x, y] = [(); 2].map(|()| draw.between(-0.7, 0.7));
         (draw.along(DVec3::new(x, y, -1.0)), width)

@@ -1,4 +1,4 @@
-//! A search for scenes for which Étendue gives a wrong verdict.
+//! Searches for scenes for which Étendue gives a wrong verdict.
 //!
 //! The search draws scenes that use all features of scene files, and runs them as a user runs
 //! them. If a run panics, hangs or fails with several seeds, the search reduces its scene as far

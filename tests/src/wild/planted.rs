@@ -110,8 +110,8 @@ pub(super) fn planted() -> ReportSection {
     }
 }
 
-/// Returns the p-value for the slices predicted for `view`; all other fields of the prediction
-/// are those of `like`.
+/// Returns the p-value for the slices predicted for `view`. All other fields of the prediction are
+/// taken from `like`.
 fn p_value(
     scene: &Scene,
     measured: &Measurement,

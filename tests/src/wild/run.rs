@@ -1,4 +1,4 @@
-//! Runs of a scene by the program, as a user runs it, in a child process with a time limit.
+//! Runs a scene with the program, as a user does, in a child process with a time limit.
 
 use crate::hostile::child::{self, Ended, Limit};
 use etendue_scene::SceneFile;
@@ -78,8 +78,8 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether a measurement with the other tracer (photons or backward rays) replaced theory at
-    /// this plane.
+    /// Checks whether a measurement with the other tracer (photons or backward rays) replaced
+    /// theory at this plane.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }

@@ -32,7 +32,7 @@ struct Tried {
     seconds: f64,
 }
 
-/// Plants faults in predictions if the options request it, and otherwise tests all scenes.
+/// If the options request planted faults, plants faults in predictions. Otherwise tests all scenes.
 pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());

@@ -1,4 +1,4 @@
-//! Reduction of a scene to a smaller scene with the same fault.
+//! Reduces a scene to a smaller scene with the same fault.
 //!
 //! Reduction treats the scene as a tree of values: it removes elements one at a time, and rounds
 //! numbers. If a reduced scene is invalid, it does not have the same fault, and the reduction
@@ -72,7 +72,8 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// Returns all scenes that are one reduction step smaller, those with the largest removals first.
+/// Returns all scenes that are one reduction step smaller. Scenes from which the most was removed
+/// come first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());

@@ -1,5 +1,5 @@
-//! Small objects at random positions in the light of random scenes: the prediction must include
-//! the object, or no theory may apply to the plane.
+//! Puts small objects at random positions in the light of random scenes. The prediction must
+//! include the object, or no theory may apply to the plane.
 
 use super::draw::SceneDraw;
 use super::run::text;
@@ -49,9 +49,9 @@ const LONGEST_PREDICTION: f64 = 120.0;
 /// Seeds of the first and of a second comparison. One correct plane in a hundred fails the first
 /// comparison by chance.
 const SEEDS: [u64; 2] = [1, 2];
-/// Number of photons in the second comparison, divided by the number in the first comparison.
-/// With more photons, the second prediction also sums more rays; otherwise it would have the same
-/// noise as the first prediction.
+/// Number of photons in the second comparison, divided by the number in the first comparison. The
+/// second prediction also sums more rays. Otherwise it would have the same noise as the first
+/// prediction.
 pub(super) const MORE_PHOTONS: u64 = 8;
 /// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
@@ -145,8 +145,8 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     None
 }
 
-/// Number of cycles across the window at the highest frequency, sufficient for a shadow an eighth
-/// as wide as the window.
+/// Number of cycles across the window at the highest frequency. The number is large enough for a
+/// shadow whose width is an eighth of the window.
 const CYCLES: f64 = 8.0;
 
 /// Gives a scene a window with sharp edges, so that a small object near the edge of the window
@@ -188,8 +188,8 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// Returns a random coordinate in the window, relative to its half-width: anywhere, or near the
-/// edge of the window.
+/// Returns a random coordinate in the window, relative to the half-width of the window. The
+/// coordinate is anywhere in the window or near its edge.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)

@@ -1,4 +1,4 @@
-//! Random surfaces, on the central ray or beside this ray.
+//! Draws random surfaces on the central ray or beside it.
 
 use super::draw::SceneDraw;
 use super::pictures::sheet;
@@ -24,8 +24,8 @@ pub(super) fn surface(
     }
 }
 
-/// Returns a normal that faces the arriving light, at normal or oblique, and sometimes grazing,
-/// incidence.
+/// Returns a normal that faces the arriving light. Incidence is normal or oblique, and sometimes
+/// grazing.
 fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
         return -leg.d;

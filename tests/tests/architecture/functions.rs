@@ -1,5 +1,5 @@
-//! Functions of more than sixty lines need a stated reason; clippy finds such functions without a
-//! stated reason.
+//! Checks that functions of more than sixty lines have a stated reason. clippy finds such functions
+//! without a stated reason.
 
 use super::{crates, root};
 use std::fs;

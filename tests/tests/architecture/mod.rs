@@ -309,7 +309,7 @@ fn files() -> BTreeMap<String, String> {
     found
 }
 
-/// Whether a text begins with a sentence that describes it.
+/// Checks whether a text begins with a sentence that describes it.
 fn has_head(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first

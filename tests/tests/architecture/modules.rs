@@ -101,7 +101,8 @@ fn reached<'a>(
     reached
 }
 
-/// Returns the other modules that a module uses; a module that it only re-exports does not count.
+/// Returns the other modules that a module uses. If a module is only re-exported, it does not count
+/// as used.
 fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     let text = &modules[module];
     let (imports, body) = split(text);

@@ -13,14 +13,14 @@ pub(super) struct PathPiece {
     pub(super) ray: CheckRay,
     /// Distances along the ray at which the piece begins and ends.
     pub(super) extent: [f64; 2],
-    /// The surface that the ray has left, and the surface that ends its leg.
+    /// The surfaces at which the leg of the ray begins (`leaves`) and ends (`ends`).
     pub(super) leaves: Option<Object>,
     pub(super) ends: Option<Object>,
     /// Whether the piece ends at the plane.
     pub(super) is_last: bool,
 }
 
-/// An obstacle that a ray may meet on a leg where theory does not expect the obstacle.
+/// An obstacle that a ray may meet on a leg on which theory does not expect this obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Suspect {
     pub(super) leg: usize,
@@ -40,12 +40,13 @@ pub(super) enum What {
     Object(usize),
 }
 
-/// The share of a distance within which a ray counts as meeting the surface that ends its leg.
+/// A ray counts as meeting the surface that ends its leg if the two distances differ by less than
+/// this share.
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Returns everything that rays may meet on the legs of the given paths. A layer with many
-    /// shapes contributes only the shapes nearest to where the rays cross it.
+    /// Returns everything that rays may meet on the legs of the given paths. If a layer has many
+    /// shapes, only the shapes nearest to the crossings of these rays are returned.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -59,7 +60,7 @@ impl Suspect {
         (0..legs).flat_map(on_leg).collect()
     }
 
-    /// Returns the description of the obstacle, for a ray that meets the obstacle.
+    /// Returns what is reported for a ray that meets the obstacle.
     pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
@@ -79,8 +80,9 @@ impl Suspect {
         }
     }
 
-    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where the
-    /// piece meets the obstacle unexpectedly, infinite where the piece cannot meet the obstacle.
+    /// Returns the distance, in metres, by which a piece of a path misses the obstacle. The
+    /// distance is zero if the piece meets the obstacle unexpectedly, and infinite if the piece
+    /// cannot meet the obstacle.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -115,10 +117,10 @@ impl Suspect {
     }
 }
 
-/// On a leg, all shapes of a layer are considered if there are at most this many.
+/// If a layer has at most this many shapes, all of them are considered on a leg.
 const MAX_SHAPES: usize = 64;
-/// The number of shapes that are considered if a layer has more shapes: each shape costs thousands
-/// of rays.
+/// The number of shapes that are considered if a layer has more than [`MAX_SHAPES`]. The number is
+/// small because each shape requires thousands of rays.
 const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
 const CROSSINGS: usize = 300;
@@ -192,8 +194,8 @@ fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// Returns the distance at which a piece of a path passes a surface of the path that theory does
-/// not expect there.
+/// Returns the distance between a piece of a path and a surface of the path that theory does not
+/// expect on this piece.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
@@ -202,7 +204,8 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
         // Theory expects the ray to end at this surface.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that returns to the surface it has left is lost, for every position of the plane.
+        // If light returns to the surface that it has left, it is lost for every position of the
+        // plane.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };
@@ -216,7 +219,8 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
     }
 }
 
-/// Returns how far a ray passes from a rectangle between two distances.
+/// Returns the distance between a rectangle and the piece of a ray between two distances along the
+/// ray.
 fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let local = ray.seen_from(&surface.frame);
     let t = -local.point.z / local.direction.z;
@@ -256,14 +260,14 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     roots.map(off).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the distance of a piece from a box around a mesh.
+/// Returns the distance between a piece of a ray and a box around a mesh.
 fn box_gap([low, high]: &[DVec3; 2], ray: &CheckRay, [from, to]: [f64; 2]) -> f64 {
     let distance = |t: f64| {
         let at = ray.at(t);
         at.distance(at.clamp(*low, *high))
     };
-    // The distance is convex along a line. An unbounded piece need not be followed farther than the
-    // box.
+    // The distance to the box is convex along a line, so an unbounded piece is not followed beyond
+    // the box.
     let far = (ray.point - 0.5 * (*low + *high)).length() + low.distance(*high);
     let [mut a, mut b] = [from, to.min(from + far)];
     for _ in 0..60 {

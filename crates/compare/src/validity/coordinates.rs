@@ -1,5 +1,5 @@
-//! Converts rays to the coordinates of a plane, independently of theory: from docs/conventions.md
-//! alone.
+//! Converts rays to the coordinates of a plane. The code follows docs/conventions.md alone, so it
+//! is independent of theory.
 
 use super::rays::CheckRay;
 use etendue_field::{Frame, Orientation, TwoPlane};
@@ -27,9 +27,9 @@ fn turned(plane: &Plane) -> f64 {
     }
 }
 
-/// Returns the coordinates of a ray. `on_surface` is the point and the unit normal of the surface
-/// that the plane is on, where the plane needs them. Returns `None` if the ray travels the wrong
-/// way.
+/// Returns the coordinates of a ray. `on_surface` holds a point and the unit normal of the surface
+/// on which the plane lies, if the plane lies on a surface. Returns `None` if the ray travels the
+/// wrong way.
 pub(super) fn coordinates(
     plane: &Plane,
     ray: &CheckRay,
@@ -61,8 +61,8 @@ pub(super) fn coordinates(
     })
 }
 
-/// Returns the direction of light that has these slopes or angles at the plane. The light leaves a
-/// surface at a point with this unit normal.
+/// Returns the direction of light that has these slopes or angles at the plane. `normal` is the
+/// unit normal at the point where the light leaves a surface.
 pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
     if plane.orientation == Orientation::Orthogonal {
         return plane

@@ -5,10 +5,10 @@
 /// the osculating patches.
 #[derive(Clone, Copy, Debug)]
 pub struct OffPatches {
-    /// The distance between the arrival points, in half-widths of the window: the root mean square,
-    /// weighted by light.
+    /// The root mean square distance between the arrival points, weighted by light, in half-widths
+    /// of the window.
     pub apart: f64,
-    /// ‖change of the slices‖, as a share of their value at frequency zero: an upper estimate,
-    /// from a sample of rays with its standard error added.
+    /// ‖change of the slices‖, as a share of their value at frequency zero. The number is an upper
+    /// estimate: the standard error is added to the value that a sample of rays gives.
     pub change: f64,
 }

@@ -16,13 +16,14 @@ const TRIES: u32 = 300_000;
 /// The smallest and the largest number of rays with light in the window that are followed.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
-/// The largest number of triangles tested for all rays together; the smallest number of rays is
-/// followed in any case.
+/// The largest number of triangles that are tested for all rays together. The smallest number of
+/// rays is followed in any case.
 const LOOKED_AT: usize = 30_000_000;
 /// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
 /// point that a ray leaves.
 const NEIGHBOURS: f64 = 5.0;
-/// The displacement assigned to light that meets a surface again: the largest possible one.
+/// The displacement that is assigned to light that meets a surface again. It is the largest
+/// possible displacement.
 const LOST: f64 = 1.0;
 
 /// A ray that brings light into the window: its predicted arrival, and its arrival by triangles, if
@@ -51,7 +52,8 @@ impl Follower<'_> {
         let most = (LOOKED_AT / triangles).clamp(MIN_RAYS, MAX_RAYS);
         let draws = || (0..TRIES).map(RayDraw::new);
         match self.system.light {
-            // Rays are uniform in the window, and their phase-space volume is conserved on the way.
+            // Rays are uniform in the window, and their volume in phase space does not change on
+            // the way.
             Light::Environment { .. } => {
                 self.displacement(draws().filter_map(|draw| self.ray_of_window(&draw)), most)
             }
@@ -68,7 +70,7 @@ impl Follower<'_> {
         let center = patch.frame.to_local(self.scene.path.ends_at(0)?.point);
         let offset = patch.frame.to_local(point) - center;
         let drawn = [offset.x, offset.y].map(|d| d / (2.0 * patch.aperture));
-        // The area seen along the ray, for a unit area on the tangent plane at the vertex.
+        // The apparent area, seen along the ray, of a unit area on the tangent plane at the vertex.
         let area = ray.direction.dot(normal) / normal.dot(patch.frame.d);
         let on_surface = strength * area.abs() / density(drawn);
         let squared = length * length;

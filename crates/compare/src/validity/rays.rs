@@ -27,7 +27,7 @@ impl RayDraw {
 
 /// Returns the first `most` rays that carry light into the window, without relatively dark rays.
 /// Only light inside the window determines which rays count as dark, because the strongest part of
-/// the sky may lie outside it.
+/// the sky may lie outside the window.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ impl CheckRay {
         self.point + t * self.direction
     }
 
-    /// Returns the same ray, starting where it crosses the plane of the light.
+    /// Returns the same ray with its start moved to the plane of the light.
     pub(super) fn begun(&self) -> Self {
         Self {
             point: self.at(-self.point.z / self.direction.z),
@@ -65,7 +65,7 @@ impl CheckRay {
         }
     }
 
-    /// Returns the reversed ray, starting beyond a surface that it meets.
+    /// Returns the reversed ray with its start moved beyond a surface that the ray meets.
     pub(super) fn back(&self, patch: &Patch) -> Self {
         let far = 4.0 * patch.aperture + (self.point - patch.frame.origin).length();
         Self {
@@ -96,8 +96,8 @@ impl CheckRay {
 
     /// Returns the distance at which theory finds the intersection of the ray with a surface.
     /// Theory uses Newton's method from the point where the ray crosses the tangent plane at the
-    /// vertex (`etendue_theory::rays`). So the intersection and that point lie on the same side of
-    /// the quadric's extremum along the ray.
+    /// vertex (`etendue_theory::rays`). Therefore the intersection and that point lie on the same
+    /// side of the extremum that the quadric has along the ray.
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -118,8 +118,8 @@ impl CheckRay {
         found.filter(|t| patch.contains(point + *t * direction))
     }
 
-    /// Returns the distance at which the ray meets a surface from the side of a normal, even if the
-    /// ray meets another object before.
+    /// Returns the distance at which the ray meets a surface from the side to which `side` points,
+    /// even if the ray meets another object before.
     pub(super) fn front_hit(&self, patch: &Patch, side: DVec3) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let side = patch.frame.d.dot(side).signum();
@@ -146,11 +146,11 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     std::array::from_fn(|axis| (2.0 * r[axis] - 1.0) * profiles[axis].half_width())
 }
 
-/// The smallest number that [`centred`] draws densely.
+/// The function [`centred`] draws numbers densely down to this modulus.
 const CENTRE: f64 = 1e-3;
 
-/// Returns a number in [−1, 1]: every other number is uniform, and the rest are distributed
-/// logarithmically around zero, down to a thousandth.
+/// Returns a number in [−1, 1]. Every second number is uniform, and the other numbers are
+/// distributed logarithmically around zero, down to a thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;
     if index.is_multiple_of(2) {
@@ -171,8 +171,8 @@ pub(super) fn density(pair: [f64; 2]) -> f64 {
     0.5 * (0.25 + dense[0] * dense[1])
 }
 
-/// Returns a ray of the light through a point, and its strength; `None` where the light has no such
-/// ray.
+/// Returns a ray of the light through a point, and the strength of this ray; `None` where the light
+/// has no such ray.
 pub(super) fn ray_to(
     light: &Light,
     point: DVec3,
@@ -192,8 +192,8 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // Rays of a lobe are also drawn far from its centre, because only that light may
-                // travel forward.
+                // Rays of a lobe are also drawn far from the centre of the lobe, because it is
+                // possible that only light far from the centre travels forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);
@@ -231,8 +231,8 @@ pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     }
 }
 
-/// Returns the point of a shape at an offset from its centre, given as a share of the shape's
-/// size; a point outside a disc is pulled in.
+/// Returns the point of a shape at an offset from the centre of the shape. The offset is given in
+/// units of the shape's size. For a disc, the square of offsets is mapped to the disc.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -269,8 +269,8 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     }
 }
 
-/// Returns a point of a surface, drawn from the whole surface but mostly near the point that the
-/// central ray hits.
+/// Returns a point of a surface. Points are drawn from the whole surface, but most of them are near
+/// the point that the central ray hits.
 pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
     let center = patch.frame.to_local(hit);
     let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));

@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Describes the objects that light for a plane meets before or behind a surface with a BRDF and
-/// that theory ignores. Also returns the blockers that theory includes.
+/// Describes objects that theory ignores although light for a plane meets them before or behind a
+/// surface with a BRDF. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -89,7 +89,7 @@ impl Followed for CheckedScatterer<'_> {
     }
 }
 
-/// A light path that comes to the surface and leaves it into the window.
+/// A path of light that arrives at the surface and goes from the surface into the window.
 struct LightPath {
     light: f64,
     arriving: CheckRay,
@@ -123,8 +123,8 @@ impl CheckedScatterer<'_> {
         })
     }
 
-    /// Returns a ray that leaves the surface. The ray starts at a point of the surface. For every
-    /// other draw of a plane across the leg, the ray is traced back from the window.
+    /// Returns a ray that leaves the surface. The ray starts at a point of the surface. If the
+    /// plane lies across the leg, every second ray is traced back from the window instead.
     fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);

@@ -1,10 +1,10 @@
-//! Searches for light in the window that meets objects theory ignores.
+//! Searches for light in the window that meets objects that theory ignores.
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
 //! object that occludes little of the light may lie between these rays, at the edge or in the
 //! corner of the window. For each object that theory ignores, the rays that pass nearest are moved
-//! until they meet the object or come no nearer. The distance falls along a smooth path, so even
-//! the smallest object is found.
+//! until they meet the object or come no nearer. The distance to the object decreases smoothly
+//! during these moves, so even the smallest object is found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -18,26 +18,28 @@ const TRIED_RAYS: u32 = 60_000;
 const STARTS: usize = 4;
 /// Number of moves of each ray.
 const MOVES: u32 = 300;
-/// Length of the first moves: the spacing of 3000 rays, which fill a window of four axes with seven
-/// rays along each axis.
+/// Length of the first moves. It is the spacing of 3000 rays, which fill a window of four axes with
+/// seven rays along each axis.
 const FIRST_MOVE: f64 = 0.15;
-/// Factor by which a move that comes nearer lengthens the next move. A move that comes no nearer
-/// shortens the next move. The two factors keep the length constant if one move in twelve comes
-/// nearer, because most moves fail in a corner, where most axes are at their ends.
+/// If a move brings the ray nearer, the next move is longer by this factor; otherwise the next move
+/// is shorter. The two factors keep the length constant if one move in twelve brings the ray
+/// nearer. This share is small because most moves fail in a corner of the window, where most axes
+/// are at their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
 /// An object is out of reach if its distance from the nearest ray exceeds this share of the range
-/// of distances. The nearest corner of a window of four axes lies only a seventh of the range
-/// beyond the nearest ray.
+/// of distances. The nearest corner of a window of four axes is only a seventh of the range away
+/// from the nearest ray.
 const REACH: f64 = 0.5;
-/// A shadow in light with this share of the largest strength has 10⁻⁶ of the power of a shadow in
-/// the strongest light, which 10⁹ photons cannot resolve.
+/// Light whose strength is below this share of the largest strength is ignored. A shadow in such
+/// light has 10⁻⁶ of the power of a shadow in the strongest light, and 10⁹ photons cannot resolve
+/// it.
 const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
-    /// Returns the amount of light that a ray brings into the window, and the first thing on its
-    /// way that theory ignores, if any. Returns `None` if the ray brings no light.
+    /// Returns the amount of light that a ray brings into the window, and the first object on its
+    /// way that theory ignores, if there is one. Returns `None` if the ray brings no light.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
     /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
@@ -97,8 +99,8 @@ impl<R: Followed> Search<'_, R> {
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
-    /// Returns the rays that pass the object nearest, with their distances; empty if the object is
-    /// out of reach.
+    /// Returns the rays that pass nearest to the object, with their distances. The list is empty if
+    /// the object is out of reach.
     fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
         let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
@@ -138,7 +140,7 @@ impl<R: Followed> Search<'_, R> {
 }
 
 /// Returns a draw that differs from another by at most `length` along each axis. Two of three moves
-/// go along one axis, since in a corner of the window few other moves stay inside.
+/// go along one axis, because in a corner of the window few other moves stay inside the window.
 fn moved(from: &RayDraw, length: f64, number: u32) -> RayDraw {
     let step = lattice(number);
     let mut numbers = from.numbers;

@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// Describes the objects that light for a plane meets between or at the surfaces of a system and
-/// that theory ignores. Also returns the blockers that theory includes. `off` is the displacement
+/// Describes objects that theory ignores although light for a plane meets them between or at the
+/// surfaces of a system. Also returns the blockers that theory includes. `off` is the displacement
 /// by meshes, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
@@ -50,8 +50,8 @@ pub(crate) fn off_patches(
 }
 
 /// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. A displacement of rays changes a spectrum by some ten
-/// times this distance, and the change is reported.
+/// patch, in half-widths of the window. A displacement of rays by this distance changes a spectrum
+/// by about ten times as much, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -110,8 +110,8 @@ impl<'a> Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// Returns the amount of light that a ray brings into the window, and the first thing on its
-    /// way that theory ignores, if any. Returns `None` if the ray brings no light.
+    /// Returns the amount of light that a ray brings into the window, and the first object on its
+    /// way that theory ignores, if there is one. Returns `None` if the ray brings no light.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -147,10 +147,10 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// Returns a ray that theory predicts to arrive in the window. Rays drawn at the light may
-    /// rarely reach a narrow window, or the part of a wide window that is close to the light, so
-    /// rays are also drawn in the window. Light without extent is aimed at places in the window if
-    /// no surface deflects it first.
+    /// Returns a ray that theory predicts to arrive in the window. Rays are also drawn in the
+    /// window, because rays drawn at the light may rarely reach a narrow window, or the part of a
+    /// wide window that is close to the light. Light without extent is aimed at points of the
+    /// window if no surface deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -207,8 +207,8 @@ impl Follower<'_> {
         Some((coordinates(self.at, &ray, self.counted_at(&ray)?)?, share))
     }
 
-    /// Returns the length of a ray of the last leg: to the plane, or to the surface that the plane
-    /// is on.
+    /// Returns the length of a ray of the last leg. The ray ends at the plane, or at the surface on
+    /// which the plane lies.
     fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
@@ -241,7 +241,8 @@ impl Follower<'_> {
         Some(Some(on(patch, point)))
     }
 
-    /// Returns the arrival of a photon, and the first thing it meets that theory ignores.
+    /// Returns the arrival of a photon, and the first object that the photon meets and that theory
+    /// ignores.
     fn photon(&self, light: CheckRay) -> (PlaneArrival, Option<Meets>) {
         let mut ray = light;
         let mut share = 1.0;
@@ -335,8 +336,8 @@ impl Follower<'_> {
 
     /// Returns the point at which a plane on a surface counts a photon. An arriving photon counts
     /// where it meets the front of the surface. The line of a leaving photon may intersect the
-    /// surface twice, and the photon counts at the intersection nearest to the hit of the central
-    /// ray.
+    /// surface twice. The photon then counts at the intersection that is nearest to the hit of the
+    /// central ray.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));

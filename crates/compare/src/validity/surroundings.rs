@@ -13,7 +13,8 @@ pub(super) enum Meets {
     Layer { index: usize, leg: usize },
     /// A surface of the path, met out of turn.
     OutOfTurn(Object),
-    /// The surface that the ray has just left, or another part of the surface it comes to.
+    /// The surface that the ray has just left, or another part of the surface at which the ray
+    /// arrives.
     Itself(Object),
 }
 
@@ -36,8 +37,9 @@ impl Meets {
     }
 }
 
-/// Returns descriptions of what light meets and theory ignores, each once. Also returns the
-/// blockers that light meets at places where the central ray does not; theory then includes them.
+/// Describes the objects that light meets and theory ignores, without duplicates. Also returns the
+/// blockers that light meets at places where the central ray does not meet them. Theory then
+/// includes these blockers.
 ///
 /// A ray reports only the first thing that it meets. Therefore these blockers are included in the
 /// theory and rays are traced again, until the rays meet no further blockers.
@@ -79,7 +81,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
     pub(super) objects: Vec<(Object, SurroundingForm<'a>)>,
-    /// Blockers that theory includes wherever light meets them.
+    /// Blockers that theory includes at every place where light meets them.
     pub(super) taken: Vec<TakenLayer>,
 }
 
@@ -103,8 +105,9 @@ pub(super) enum SurroundingForm<'a> {
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Collects the surroundings. Meshes that the plane's light has left are excluded: theory
-    /// represents each mesh by the surface that osculates the mesh where the central ray hits.
+    /// Collects the surroundings. Meshes that the plane's light has left are excluded, because
+    /// theory represents each of them by a surface that osculates the mesh at the hit of the
+    /// central ray.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
@@ -133,8 +136,9 @@ impl<'a> Surroundings<'a> {
         ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
     }
 
-    /// Returns the distance to the plane along a ray of its leg; for a plane on a surface, the
-    /// distance to the plane across the leg where the central ray hits.
+    /// Returns the distance along a ray of the last leg at which the ray crosses the plane. If the
+    /// plane lies on a surface, the function uses a plane across the leg through the point that the
+    /// central ray hits.
     pub(super) fn to_plane(&self, ray: &CheckRay) -> f64 {
         let path = &self.scene.path;
         let leg = &path.legs[self.plane.leg];
@@ -143,7 +147,8 @@ impl<'a> Surroundings<'a> {
         -local.point.z / local.direction.z
     }
 
-    /// Returns the surface that a ray meets first beyond `from`, and where; `ignored` is skipped.
+    /// Returns the surface that a ray meets first beyond `from`, and the distance of this hit. The
+    /// object `ignored` is skipped.
     pub(super) fn first(
         &self,
         ray: &CheckRay,
@@ -171,8 +176,9 @@ impl<'a> Surroundings<'a> {
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
-    /// Returns the share of a ray of the first leg that passes the blockers before `end`, and the
-    /// share that passes those that theory places before the plane.
+    /// Returns two shares of the light on a ray of the first leg: the share that passes the
+    /// blockers before `end`, and the share that passes the blockers that theory places before the
+    /// plane.
     pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
@@ -216,7 +222,8 @@ impl<'a> Surroundings<'a> {
         Some(Meets::Layer { index, leg })
     }
 
-    /// Whether the prediction includes every place on a leg where light meets these blockers.
+    /// Checks whether the prediction includes every place on a leg where light meets these
+    /// blockers.
     pub(super) fn has_taken(&self, index: usize, leg: usize) -> bool {
         let mut taken = self.taken.iter();
         taken.any(|layer| layer.index == index && layer.from <= leg)
@@ -246,7 +253,8 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// Returns the distances at which a ray meets the form; NaN if the ray misses the form.
+    /// Returns the distances at which a ray meets the box or the surface, or NaN if the ray misses
+    /// it.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {

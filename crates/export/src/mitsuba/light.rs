@@ -45,8 +45,8 @@ impl Writer {
         Ok(())
     }
 
-    /// Mitsuba's irradiance is the intensity divided by π (1 + u² + v²)^(3/2) (measured with
-    /// 3.9.1); its picture has −x to the right and y up.
+    /// The irradiance of Mitsuba's projector is the intensity divided by π (1 + u² + v²)^(3/2), as
+    /// measured with 3.9.1. In its picture, −x points to the right and y points up.
     fn projector(&mut self, intensity: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {
@@ -83,8 +83,8 @@ impl Writer {
     }
 }
 
-/// The error of a picture of a smooth function, interpolated linearly between pixels: an eighth of
-/// the second derivative times the squared pixel width.
+/// Returns the error of a picture of a smooth function that is interpolated linearly between
+/// pixels. The error is an eighth of the second derivative times the squared pixel width.
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;
     let narrow = image.width[0].min(image.width[1]);

@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Writes `inside` within the edge of a picture and `outside` beyond it, because Mitsuba
-    /// itself can only continue the picture there.
+    /// Writes `inside` within the edge of a picture and `outside` beyond the edge, because Mitsuba
+    /// itself can only continue the picture beyond its edge.
     fn inside(
         &mut self,
         pattern: &Pattern,
@@ -142,8 +142,8 @@ fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     }
 }
 
-/// A lobe times the Fresnel factor of the angle of incidence. Mitsuba has no such plugin:
-/// `tests/peers/etendue_bsdfs.py` adds this plugin, without which the scene does not load.
+/// Writes a lobe times the Fresnel factor of the angle of incidence. Mitsuba has no plugin for this
+/// product. `tests/peers/etendue_bsdfs.py` adds a plugin, without which the scene does not load.
 fn factored(fresnel: &Fresnel, lobe: String) -> String {
     match index(fresnel) {
         None => lobe,
@@ -159,7 +159,7 @@ fn blended(weight: &str, zero: &str, one: &str) -> String {
     format!("<bsdf type=\"blendbsdf\">{weight}{zero}{one}</bsdf>")
 }
 
-/// Whether a picture covers a circle of this radius around its centre.
+/// Checks whether a picture covers a circle of this radius around its centre.
 fn covers(picture: &Picture, radius: f64) -> bool {
     picture.size.iter().all(|side| 0.5 * side >= radius)
 }

@@ -1,5 +1,5 @@
-//! Smooth surfaces as fine meshes, because Mitsuba has whole spheres and cylinders, but no pieces
-//! of them around a vertex.
+//! Converts smooth surfaces to fine meshes, because Mitsuba has whole spheres and cylinders, but no
+//! pieces of spheres or cylinders around a vertex.
 
 use etendue_field::Patch;
 use glam::{DVec2, DVec3};
@@ -10,8 +10,8 @@ const RINGS: [usize; 2] = [16, 256];
 /// Maximum distance of the triangles from the surface, relative to the aperture. The distance is
 /// larger for patches that already have the maximum number of rings.
 const NEAR: f64 = 1e-5;
-/// The number of corners of ring i, divided by i. With 6 corners, triangles at the edge are about
-/// as long as wide, because 2π/6 ≈ 1.
+/// The number of corners of ring i, divided by i. With 6 corners, the length of triangles at the
+/// edge is about equal to their width, because 2π/6 ≈ 1.
 const SECTORS: usize = 6;
 /// The number of corners of the edge of a flat patch. The edge deviates from a circle by
 /// (π/512)²/2 = 2·10⁻⁵ of its radius.
@@ -37,7 +37,7 @@ pub(super) struct MeshVertex {
     pub(super) uv: DVec2,
 }
 
-/// The mesh of a patch; its texture coordinates are (s, t).
+/// Returns the mesh of a patch; its texture coordinates are (s, t).
 pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     if patch.curvature.iter().all(|k| *k == 0.0) {
         return rings(patch, 1, EDGE);
@@ -52,7 +52,7 @@ pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     }
 }
 
-/// The centre of the patch, and rings of corners around this centre.
+/// Returns the centre of the patch, and rings of corners around this centre.
 fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     let vertex = |r: f64, turn: f64| {
         let (sin, cos) = libm::sincos(TAU * turn);
@@ -110,8 +110,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     }
 }
 
-/// The distance of a triangle from the patch, at its centre and the midpoints of its sides, to
-/// first order.
+/// Returns the distance between a triangle and the patch, to first order. The distance is evaluated
+/// at the centre of the triangle and at the midpoints of its sides.
 fn off(patch: &Patch, [a, b, c]: [DVec3; 3]) -> f64 {
     let middles = [
         (a + b + c) / 3.0,

@@ -1,5 +1,5 @@
-//! Pictures as PFM files (Debevec 1998): one 32-bit number per pixel, the precision that Mitsuba
-//! keeps.
+//! Writes pictures as PFM files (Debevec 1998), with one 32-bit number per pixel. Mitsuba keeps the
+//! same precision.
 
 /// Encodes rows from the top, each from the left; the file has the lowest row first.
 pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
@@ -17,8 +17,8 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// A picture that samples a function at pixel centres, given in pixels from the left and from the
-/// top.
+/// Returns a picture that samples a function at pixel centres, given in pixels from the left and
+/// from the top.
 pub(super) fn sampled(
     [width, height]: [usize; 2],
     value: impl Fn(f64, f64) -> f64,

@@ -47,15 +47,15 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     (width, pixels.collect())
 }
 
-/// The subdivision factor of pixels. This factor is odd, so the centres of old pixels are also
-/// centres of new pixels.
+/// Returns the factor by which pixels are subdivided. This factor is odd, so the centres of old
+/// pixels are also centres of new pixels.
 fn finer(width: usize) -> usize {
     let least = AROUND.div_ceil(width);
     if width >= AROUND / 2 { 1 } else { least | 1 }
 }
 
-/// The direction at a fraction `around` of the full azimuth and a fraction `down` of the way from
-/// the upper to the lower pole.
+/// Returns the direction at a fraction `around` of the full azimuth and a fraction `down` of the
+/// way from the upper to the lower pole.
 fn toward(around: f64, down: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(TAU * (0.5 - around));
     let (across, up) = libm::sincos(PI * down);

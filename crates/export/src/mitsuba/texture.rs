@@ -1,5 +1,5 @@
-//! Parameters that vary over a surface, as pictures over its texture coordinates, which are (s, t)
-//! in metres.
+//! Writes parameters that vary over a surface, as pictures over the texture coordinates of the
+//! surface. Texture coordinates are (s, t) in metres.
 
 use super::Writer;
 use super::picture::{pfm, sampled};
@@ -114,8 +114,8 @@ impl Writer {
     }
 }
 
-/// The map from (s, t) to the coordinates of a picture, which go from (0, 0) at its top left to (1,
-/// 1): a factor and an offset.
+/// Returns the map from (s, t) to the coordinates of a picture, as a factor and an offset for each
+/// axis. The coordinates of a picture go from (0, 0) at its top left to (1, 1).
 fn placed(picture: &Picture) -> [[f64; 2]; 2] {
     let [width, height] = picture.size;
     [[1.0 / width, -1.0 / height], [0.5; 2]]

@@ -4,7 +4,8 @@ use etendue_field::{Disc, Frame, Rectangle, Shape, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// A scene file being written. Numbers are written in Rust's shortest form that reads back exactly.
+/// A scene file that is being written. Each number is written in Rust's shortest form that reads
+/// back exactly.
 pub(super) struct Xml(String);
 
 impl Xml {
@@ -39,7 +40,7 @@ impl Xml {
         xml
     }
 
-    /// A comment. XML forbids double hyphens in comments, so spaces separate the hyphens.
+    /// Writes a comment. XML forbids double hyphens in comments, so spaces separate the hyphens.
     pub(super) fn comment(&mut self, text: &str) {
         let text = text.replace("--", "- -").replace("--", "- -");
         self.line(&format!("<!-- {text} -->"));
@@ -62,7 +63,7 @@ impl Xml {
         ));
     }
 
-    /// A disc that faces along D of a frame.
+    /// Writes a disc that faces along D of a frame.
     pub(super) fn disk(&mut self, id: &str, frame: &Frame, radius: f64, looks: &str) {
         let axes = [frame.x * radius, frame.y * radius, frame.d, frame.origin];
         self.line(&format!(
@@ -71,15 +72,15 @@ impl Xml {
         ));
     }
 
-    /// A mesh with normals.
+    /// Writes a mesh with normals.
     pub(super) fn smooth_mesh(&mut self, id: &str, file: &str, looks: &str) {
         self.line(&format!(
             "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>{looks}</shape>"
         ));
     }
 
-    /// A projector at the origin that emits along z, with y up and −x to the right in its square
-    /// picture.
+    /// Writes a projector at the origin that emits along z. In its square picture, y points up and
+    /// −x points to the right.
     pub(super) fn projector(&mut self, file: &str, degrees: f64) {
         self.line(&format!(
             "<emitter type=\"projector\" id=\"light\"><float name=\"fov\" value=\"{degrees:?}\"/>\
@@ -88,8 +89,8 @@ impl Xml {
         ));
     }
 
-    /// Distant light, given by a picture of all directions. In the picture, Y of the frame is up
-    /// and D is at the centre.
+    /// Writes distant light that is given by a picture of all directions. In the picture, Y of the
+    /// frame is up and D is at the centre.
     pub(super) fn sky(&mut self, file: &str, frame: &Frame) {
         let axes = [frame.x, frame.y, frame.d, DVec3::ZERO];
         self.line(&format!(
@@ -98,7 +99,7 @@ impl Xml {
         ));
     }
 
-    /// A mesh from a file in the same folder.
+    /// Writes a mesh that is read from a file in the same folder.
     pub(super) fn mesh(&mut self, id: &str, file: &str, looks: &str) {
         self.line(&format!(
             "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>\
@@ -131,13 +132,15 @@ pub(super) fn emitter(radiance: f64) -> String {
     format!("<emitter type=\"area\">{radiance}</emitter>")
 }
 
-/// A Lambertian material, the same on both sides; Mitsuba's diffuse material has a black back.
+/// Returns a Lambertian material that is the same on both sides. Mitsuba's diffuse material has a
+/// black back.
 pub(super) fn diffuse(albedo: f64) -> String {
     let albedo = spectrum("reflectance", albedo);
     format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{albedo}</bsdf></bsdf>")
 }
 
-/// A black material, because Mitsuba's default material reflects half of the light.
+/// Returns a black material. It is needed because Mitsuba's default material reflects half of the
+/// light.
 pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }

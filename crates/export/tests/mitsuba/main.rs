@@ -1,4 +1,4 @@
-//! The files written for Mitsuba, read back.
+//! Reads back the files that are written for Mitsuba.
 
 mod smooth;
 
@@ -17,7 +17,7 @@ fn stored(name: &str) -> Scene {
     scene(name, &std::fs::read_to_string(path).expect("scenes/"))
 }
 
-/// A scene with the given light and blockers, above a floor of 1/3 by 0.1 m.
+/// Returns a scene with the given light and blockers, above a floor of 1/3 by 0.1 m.
 fn of(light: &str, blockers: &str) -> Scene {
     let text = format!(
         r#"(
@@ -41,7 +41,7 @@ fn text<'a>(export: &'a Export, name: &str) -> &'a str {
     std::str::from_utf8(file(export, name)).expect("text")
 }
 
-/// Whether a mesh file states these numbers of vertices and faces.
+/// Checks whether a mesh file states these numbers of vertices and faces.
 fn counts(export: &Export, name: &str, [vertices, faces]: [usize; 2]) -> bool {
     let ply = String::from_utf8_lossy(file(export, name));
     ply.contains(&format!("element vertex {vertices}\n"))
@@ -55,7 +55,7 @@ fn of_type<'a>(xml: &'a Document<'a>, kind: &str) -> Vec<Node<'a, 'a>> {
         .collect()
 }
 
-/// The numbers in the attributes of the first descendant with this tag.
+/// Returns the numbers in the attributes of the first descendant with this tag.
 fn numbers(node: &Node<'_, '_>, tag: &str, names: &[&str]) -> Vec<f64> {
     let mut inside = node.descendants().filter(|n| n.has_tag_name(tag));
     let element = inside.next().expect("such an element");

@@ -73,7 +73,7 @@ impl GltfReader<'_> {
         }))
     }
 
-    /// Whether the surface encloses a volume.
+    /// Checks whether the surface encloses a volume.
     fn has_volume(&self, draft: &Draft<'_>) -> bool {
         let extensions = draft.source.extensions.as_ref();
         let Some(volume) = extensions.and_then(|of| of.volume.as_ref()) else {

@@ -1,4 +1,4 @@
-//! Lights of `KHR_lights_punctual`.
+//! Converts lights of `KHR_lights_punctual`.
 
 use super::node::PlacedNode;
 use super::reader::{GltfReader, MAX_SHAPES};

@@ -12,8 +12,8 @@ use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
 impl<'a> GltfReader<'a> {
-    /// Returns the material with a given number in the file or, without a number, the default
-    /// material of the specification. Returns `None` if a cause of refusal was reported.
+    /// Returns the material with a given number in the file. If no number is given, returns the
+    /// default material of the specification. Returns `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();
@@ -170,7 +170,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Whether a material emits light.
+/// Checks whether a material emits light.
 fn is_lit(source: &BufferSource) -> bool {
     source.emissive_factor.0.iter().any(|v| *v > 0.0)
 }

@@ -1,8 +1,8 @@
 //! Complex indices of refraction of named conductors, as colours in linear sRGB.
 //!
-//! Mitsuba 3.9.1 converted these indices from its tables of n and k by wavelength (from
-//! luxpop.com, Palik and others), by the rule stated at [`Color`](crate::Color). Negative
-//! components of a colour are set to 0.
+//! The indices were computed by Mitsuba 3.9.1 from its tables of n and k by wavelength, which are
+//! from luxpop.com, Palik and others. The rule of this conversion is stated at
+//! [`Color`](crate::Color). Negative components of a colour are set to 0.
 
 /// Red, green and blue.
 type MetalRgb = [f64; 3];

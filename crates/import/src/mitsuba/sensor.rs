@@ -92,8 +92,8 @@ impl<'a> MitsubaReader<'a> {
             if is_lens || !self.has(object, name) {
                 return 0.0;
             }
-            // The sign of the shift is reversed, because Mitsuba shifts the position in the
-            // picture, not the picture itself.
+            // The sign of the shift is reversed, because Mitsuba shifts the position in the picture
+            // and not the picture itself.
             -self.number(object, name).unwrap_or_default()
         });
         let lens = if is_lens {

@@ -122,7 +122,8 @@ impl<'a> MitsubaReader<'a> {
         let radius = self.radius(object)?;
         let placed =
             own * DAffine3::from_translation(center?) * DAffine3::from_scale(DVec3::splat(radius));
-        // In Mitsuba, a mirror turns the normals of spheres inwards, but not those of cylinders.
+        // In Mitsuba, a mirroring transform turns the normals of spheres inwards, but not the
+        // normals of cylinders.
         let is_mirrored = own.matrix3.determinant() < 0.0;
         let is_flipped = self.flips(object) != is_mirrored;
         if is_similarity(placed.matrix3) || placed.matrix3.determinant().abs() <= 0.0 {

@@ -1,10 +1,10 @@
-//! A file being read, with lines and columns.
+//! Describes a file that is being read, with lines and columns.
 
 use crate::report::SourcePlace;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// A file being read.
+/// A file that is being read.
 pub(super) struct SourceFile {
     pub(super) name: Rc<str>,
     /// The search folders: first the folders that this file adds, then the folders of the

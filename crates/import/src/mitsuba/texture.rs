@@ -13,8 +13,8 @@ use glam::{DAffine2, DAffine3, DMat2, DVec2};
 const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the texture of a property, or a constant if the property is missing, or `None` if a
-    /// cause of refusal was reported.
+    /// Returns the texture of a property. If the property is missing, returns a constant. Returns
+    /// `None` if a cause of refusal was reported.
     pub(super) fn texture_or(
         &mut self,
         object: &'a MitsubaObject,

@@ -88,14 +88,14 @@ fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     ))
 }
 
-/// Whether a map is rigid, within the rounding of numbers with few digits.
+/// Checks whether a map is rigid, within the rounding of numbers with few digits.
 pub(super) fn is_rigid(map: DAffine3) -> bool {
     let gram = map.matrix3.transpose() * map.matrix3;
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// Returns the map that is given, row by row, by 16 numbers, or by the 9 numbers of its linear
-/// part.
+/// Returns the map of a matrix. The matrix is given row by row, by 16 numbers, or by the 9 numbers
+/// of its linear part.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
         DMat4::from_cols_array(&all).transpose()

@@ -1,9 +1,9 @@
-//! Names of properties before version 2, as Mitsuba 3 renames them.
+//! Renames properties of files older than version 2, as Mitsuba 3 does.
 
 use super::object::{MitsubaObject, ObjectProperty, Value};
 use glam::{DAffine3, DVec3};
 
-/// Converts names: Converts names such as `toWorld` to `to_world`, and `intIOR` to `int_ior`.
+/// Converts names such as `toWorld` to `to_world`, and `intIOR` to `int_ior`.
 pub(super) fn underscored(name: &str) -> String {
     let mut made = String::with_capacity(name.len() + 4);
     let mut before: Option<char> = None;

@@ -48,8 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A word that begins with a hyphen and is not a known option is taken as a file
-                // name.
+                // If a word begins with a hyphen but is not a known option, it is a file name.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
@@ -72,8 +71,8 @@ impl MtlMap {
             report.cause(&place, message);
             return None;
         }
-        // In the file v points upwards and v' = s v + o, which becomes 1 − v' = s (1 − v) + 1 − s
-        // − o with v downwards.
+        // In the file, v points upwards and v' = s v + o. With v downwards, the map is 1 − v' = s
+        // (1 − v) + 1 − s − o.
         let moved = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
         Some(Self {
             place,

@@ -227,7 +227,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Checks a box filter; a note states if its width is not one pixel.
+    /// Checks the width of a box filter, and adds a note if the width is not one pixel.
     fn check_box(&self, entity: &Entity) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {
@@ -261,7 +261,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Whether a window is smaller than the whole picture.
+/// Checks whether a window is smaller than the whole picture.
 fn is_part(window: [f64; 4], whole: [f64; 4]) -> bool {
     let inward = [1.0, -1.0, 1.0, -1.0];
     (0..4).any(|i| (window[i] - whole[i]) * inward[i] > 0.0)

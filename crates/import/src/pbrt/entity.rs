@@ -30,7 +30,7 @@ pub(super) struct Entity {
 }
 
 impl Entity {
-    /// The default plugin of pbrt, which is used if a file names no plugin.
+    /// Returns the default plugin of pbrt, which is used if a file names no plugin.
     pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
         Self {
             kind,

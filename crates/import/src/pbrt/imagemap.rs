@@ -93,8 +93,8 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Returns the map that flips v, which points upwards in pbrt's pictures and downwards in those of
-/// a world.
+/// Returns the map that flips v. In the pictures of pbrt, v points upwards; in the pictures of a
+/// world, v points downwards.
 pub(super) fn upside_down() -> DAffine2 {
     let linear = DMat2::from_diagonal(DVec2::new(1.0, -1.0));
     DAffine2::from_mat2_translation(linear, DVec2::Y)

@@ -112,7 +112,7 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // As in pbrt, the mean falloff between both cones, averaged over the cosine, is taken as
+        // As in pbrt, the falloff between both cones, averaged over the cosine, is assumed to be
         // one half.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;

@@ -279,8 +279,8 @@ fn both_sides(material: Material) -> Material {
     Material::TwoSided(Box::new([material.clone(), material]))
 }
 
-/// Whether a material depends on texture coordinates, either because the material varies or because
-/// it is anisotropic along u and v.
+/// Checks whether a material depends on texture coordinates, either because the material varies or
+/// because it is anisotropic along u and v.
 pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {

@@ -61,8 +61,8 @@ impl PbrtReader<'_> {
         made.map_err(|_| CauseGiven)
     }
 
-    /// Adds a cause for a file that cannot be used, and returns an error to be cached; with the
-    /// cached error, the cause is added only once.
+    /// Adds a cause for a file that cannot be used, and returns an error. The error is cached, so
+    /// that the cause is added only once.
     fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
         self.unread(entity, name, &error);
         error

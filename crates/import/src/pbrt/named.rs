@@ -1,8 +1,8 @@
 //! Named spectra of pbrt-v4, as colours in linear sRGB.
 //!
 //! The colours are pbrt's tables of n and k by wavelength, converted by the rule stated at
-//! [`Color`](crate::Color) and weighted with D65. The colours of metals differ from those of
-//! Mitsuba, because Mitsuba weights its tables with the equal-energy white, and because the tables
+//! [`Color`](crate::Color) and weighted with D65. The colours of metals differ from the colours in
+//! Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and the tables
 //! of pbrt and Mitsuba contain different numbers.
 
 /// Returns red, green and blue of the spectrum of a glass or metal, or `None` for an unknown name.
@@ -11,7 +11,7 @@ pub(super) fn index(name: &str) -> Option<[f64; 3]> {
     Some(found.1)
 }
 
-/// Whether a name denotes a standard illuminant.
+/// Checks whether a name denotes a standard illuminant.
 pub(super) fn is_illuminant(name: &str) -> bool {
     let Some(which) = name.strip_prefix("stdillum-") else {
         return false;

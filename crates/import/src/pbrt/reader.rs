@@ -94,7 +94,7 @@ impl<'a> PbrtReader<'a> {
         }
     }
 
-    /// Whether a message was not given before.
+    /// Checks whether a message was not given before.
     pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));

@@ -20,7 +20,7 @@ const ALLOWED: &str = "sphere, disk, cylinder, trianglemesh, plymesh, bilinearme
 /// The geometry of a surface and its placement, without material.
 pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
-    /// The map from the geometry's coordinates to those of the shape.
+    /// The map from the coordinates of the geometry to the coordinates of the shape.
     pub(super) placement: DAffine3,
     /// The area by which pbrt divides a given power; `None` for a shape of several surfaces.
     pub(super) area: Option<f64>,

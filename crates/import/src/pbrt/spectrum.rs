@@ -72,8 +72,8 @@ impl PbrtReader<'_> {
             PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
                 "stdillum-A" => blackbody(TUNGSTEN),
-                // For a conversion to luminance only the illuminant's luminance is needed, which
-                // is 1.
+                // For a conversion to luminance, only the luminance of the illuminant is needed,
+                // and this luminance is 1.
                 _ if named::is_illuminant(&name) && self.color == Color::Luminance => {
                     return Ok([1.0; 3]);
                 }

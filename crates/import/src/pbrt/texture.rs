@@ -136,7 +136,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns a checkerboard with squares of one unit: the first value applies where the
+    /// Returns a checkerboard with squares of one unit. The first value applies where the two
     /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
@@ -189,7 +189,7 @@ impl PbrtReader<'_> {
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
     }
 
-    /// Returns a texture whose values are those of a parameter's texture with a function applied.
+    /// Returns a texture whose values are a function of the values of a parameter's texture.
     pub(super) fn mapped(
         &self,
         entity: &Entity,

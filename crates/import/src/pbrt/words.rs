@@ -45,7 +45,7 @@ const DIRECTIVES: [&str; 38] = [
 /// Directives of pbrt-v3, replaced by `AttributeBegin` and `AttributeEnd`.
 const LEGACY: [&str; 2] = ["TransformBegin", "TransformEnd"];
 
-/// Whether a word is a directive.
+/// Checks whether a word is a directive.
 pub(super) fn is_directive(word: &str) -> bool {
     DIRECTIVES.binary_search(&word).is_ok() || LEGACY.contains(&word)
 }

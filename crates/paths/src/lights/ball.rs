@@ -26,8 +26,8 @@ impl ShiningSphere {
         }
     }
 
-    /// Returns the cone that the sphere subtends, or `None` for a point inside, where the sphere
-    /// does not emit.
+    /// Returns the cone that the sphere subtends at a point. Returns `None` for a point inside the
+    /// sphere, because the sphere emits no light inwards.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }
@@ -55,8 +55,8 @@ impl ShiningSphere {
         })
     }
 
-    /// Returns a point sampled uniformly by area, its normal, and the radiance there divided by
-    /// the density.
+    /// Returns a point sampled uniformly by area, its normal, and the radiance at this point
+    /// divided by the density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;

@@ -1,5 +1,5 @@
-//! Emission of photons from lights: half of the photons follow the natural distribution, and half
-//! of them are aimed.
+//! Emits photons from lights. Half of the photons follow the natural distribution, and the other
+//! half are aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
@@ -42,7 +42,8 @@ struct Draw<'a> {
 }
 
 impl LightSampler {
-    /// Emits a photon from seven numbers; `None` for a photon without flux.
+    /// Emits a photon that is drawn with seven random numbers. Returns `None` if the photon has no
+    /// flux.
     pub(crate) fn emit(
         &self,
         geometry: &SceneGeometry,
@@ -173,8 +174,8 @@ impl Draw<'_> {
     }
 }
 
-/// Returns the target at which a photon is aimed, if any. Half of the photons are aimed, equally
-/// many at each target.
+/// Returns the target at which a photon is aimed, or `None` if the photon is not aimed. Half of the
+/// photons are aimed, with the same probability for each target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
     #[expect(
@@ -186,8 +187,8 @@ pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTar
     found.and_then(|number| targets.get(number))
 }
 
-/// Returns the density of a mixture in which half of the samples have the density `plain`, and the
-/// others are aimed at the targets in equal parts.
+/// Returns the density of a mixture. Half of the samples have the density `plain`, and the other
+/// half are divided equally among the targets.
 pub(crate) fn mixed(
     plain: f64,
     targets: &[EmissionTarget],

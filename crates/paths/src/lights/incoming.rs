@@ -11,7 +11,7 @@ pub(crate) struct Incoming {
     /// The distance along the direction that must be free of occluders; for distant light, this
     /// distance is beyond all surfaces.
     pub(crate) distance: f64,
-    /// Radiance divided by the density or, without a density, the irradiance of a surface
+    /// Radiance divided by the density. If there is no density, this is the irradiance of a surface
     /// perpendicular to `toward`.
     pub(crate) weight: f64,
     /// Density per solid angle; `None` if only this direction is possible.
@@ -25,7 +25,8 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     (between / distance, distance)
 }
 
-/// Returns the emission of a shape at texture coordinates in a direction: uniform over the front.
+/// Returns the radiance that a shape emits in a direction, at given texture coordinates. The
+/// radiance is the same in all directions on the front.
 pub(super) fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
         emission.value(uv)

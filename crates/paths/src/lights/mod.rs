@@ -1,5 +1,5 @@
-//! Light sampling: a direction to a light, the radiance from there, and the density of such
-//! directions.
+//! Samples lights: draws a direction to a light, and returns the radiance from this direction and
+//! the density of the drawn directions.
 
 mod ball;
 mod emit;
@@ -22,7 +22,7 @@ use sky::SampledSky;
 #[derive(Debug)]
 pub(crate) struct LightSampler {
     lights: Vec<SampledLight>,
-    /// For each shape, the index of its light if it emits.
+    /// For each shape that emits, the index of its light.
     of_shape: Vec<Option<usize>>,
 }
 
@@ -61,7 +61,8 @@ impl LightSampler {
         Self { lights, of_shape }
     }
 
-    /// Samples incident light at a point, from four numbers; `None` if there is none.
+    /// Samples incident light at a point with four random numbers. Returns `None` if no light
+    /// arrives.
     pub(crate) fn sample(
         &self,
         geometry: &SceneGeometry,
@@ -87,7 +88,7 @@ impl LightSampler {
         Some((light, place.fract()))
     }
 
-    /// Whether all lights are surfaces or skies.
+    /// Checks whether all lights are surfaces or skies.
     pub(crate) fn are_extended(&self) -> bool {
         let is_extended = |light: &SampledLight| {
             matches!(

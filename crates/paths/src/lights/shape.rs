@@ -56,7 +56,7 @@ impl ShiningShape {
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
-    /// Returns a point, its normal, and the radiance there divided by the density.
+    /// Returns a point, its normal, and the radiance at this point divided by the density.
     pub(super) fn emit(
         &self,
         geometry: &SceneGeometry,
@@ -66,7 +66,8 @@ impl ShiningShape {
         Some((place, normal, self.emission.value(uv) * self.area()))
     }
 
-    /// Density per solid angle of a point at a distance, seen at an angle of this cosine.
+    /// Returns the density, per solid angle, of a point at a distance. `cosine` is the cosine of
+    /// the angle between the normal at the point and the direction to it.
     fn density(&self, distance: f64, cosine: f64) -> f64 {
         distance * distance / (cosine.abs() * self.area())
     }

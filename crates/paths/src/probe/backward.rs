@@ -42,8 +42,8 @@ impl<'a> BackwardProbe<'a> {
         }
     }
 
-    /// Finds lights only by directions sampled from BSDFs: a second estimate of the same light, with
-    /// more noise. Returns `None` if the world has lights that such rays never find.
+    /// Finds lights only by directions sampled from BSDFs. This gives a second estimate of the same
+    /// light, with more noise. Returns `None` if the world has lights that such rays never find.
     #[must_use]
     pub fn by_bsdf(self) -> Option<Self> {
         let search = LightSearch::Bsdf;
@@ -51,8 +51,8 @@ impl<'a> BackwardProbe<'a> {
         is_possible.then_some(Self { search, ..self })
     }
 
-    /// Traces the ray with this number through a plane; a point of a net gives its first random
-    /// numbers.
+    /// Traces the ray with this number through a plane. A point of a net gives the first random
+    /// numbers of the ray.
     fn crossing(&self, plane: &VirtualPlane, number: u64, (net, point): (&Net, u32)) -> Crossing {
         let Probe { paths, legs, .. } = self.probe;
         let mut numbers = PathNumbers::new(self.budget.seed, number).of_net(net, point);
@@ -75,8 +75,8 @@ impl<'a> BackwardProbe<'a> {
             self.search,
             &mut numbers,
         );
-        // The last factor is the volume of the window; the division by the number of rays is done
-        // by their mean.
+        // The last factor is the volume of the window. The weights are not divided by the number of
+        // rays here, because their mean is computed later.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();
         Crossing { ray, weight }
     }

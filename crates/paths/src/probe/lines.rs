@@ -1,4 +1,4 @@
-//! Legs of the central ray of a probe, and lines in the coordinates of its planes.
+//! Defines the legs of the central ray of a probe, and converts lines to the coordinates of planes.
 
 use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_field::{Frame, TwoPlane};
@@ -7,14 +7,14 @@ use glam::DVec3;
 /// A leg of the central ray.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceLeg {
-    /// The frame at the end of the leg, on the side of the camera; D is the direction of light.
+    /// The frame at the end of the leg that is nearer to the camera. D is the direction of light.
     pub(super) frame: Frame,
     /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
     /// Half-width along x and y of the window at the end of the leg.
     pub(super) position: f64,
-    /// The maximum distance from the plane at the end of the leg within which a line may hit the
-    /// shape there.
+    /// The maximum distance between the plane at the end of the leg and a point where a line hits
+    /// the shape at this end.
     pub(super) reach: f64,
     /// Half-width of the windows in slope.
     pub(super) slope: f64,
@@ -28,7 +28,7 @@ impl SurfaceLeg {
     }
 
     /// Returns the line with the coordinates `seen` in a plane of this leg. The line starts at the
-    /// end of the leg, the camera or a surface, and runs back towards the light.
+    /// end of the leg, which is the camera or a surface, and runs back towards the light.
     pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let along = plane
@@ -46,8 +46,8 @@ impl SurfaceLeg {
         }
     }
 
-    /// Returns the point at which the line through a point meets the surface at the end of the
-    /// leg: the point that is nearest to the plane at the end.
+    /// Returns the point at which the line through a point meets the surface at the end of the leg.
+    /// If there are several such points, returns the point nearest to the plane at the end.
     pub(super) fn start(
         &self,
         geometry: &SceneGeometry,

@@ -1,5 +1,5 @@
-//! The light field behind a pixel: the ray through its centre, traced back from surface to surface,
-//! with virtual planes along it.
+//! Defines the light field behind a pixel. The ray through the centre of the pixel is traced back
+//! from surface to surface, and virtual planes are placed along this ray.
 
 mod backward;
 mod lines;
@@ -41,15 +41,15 @@ pub struct Question {
 #[derive(Debug)]
 pub struct Probe<'a> {
     paths: &'a Paths,
-    /// The surfaces; the first is the one the camera sees.
+    /// The surfaces. The camera sees the first of them.
     pub stops: Vec<Stop>,
-    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on. A
-    /// `leaving` plane sees light that leaves the surface towards the camera, an `arriving` plane
+    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on. A `leaving`
+    /// plane sees light that leaves the surface towards the camera, and an `arriving` plane sees
     /// light that arrives along the mirror direction.
     pub planes: Vec<VirtualPlane>,
     legs: Vec<SurfaceLeg>,
-    /// Further surfaces along the ray, up to the first that is not a mirror; also the surface that
-    /// the lobe of the last surface sees.
+    /// Further surfaces along the ray, up to the first surface that is not a mirror. If the last
+    /// surface has a lobe, the list includes the surface that this lobe sees.
     beyond: Vec<Stop>,
     /// The slope difference between adjacent pixels.
     pub pixel_slope: f64,
@@ -67,9 +67,9 @@ const POINT: f64 = 1e-9;
 /// Number of frequencies on either side of zero in the spectrum of a picture, up to 6 cycles per
 /// half-width of the window.
 const PICTURE_FREQUENCIES: usize = 24;
-/// Number of azimuths of the spectrum of a picture. At the highest frequency adjacent azimuths are
-/// half a cycle per half-width apart, less than the width of the main lobe of the window's
-/// spectrum.
+/// Number of azimuths of the spectrum of a picture. At the highest frequency, adjacent azimuths are
+/// half a cycle per half-width apart. This distance is smaller than the width of the main lobe of
+/// the window's spectrum.
 const PICTURE_AZIMUTHS: usize = 40;
 
 impl<'a> Probe<'a> {
@@ -107,7 +107,8 @@ impl<'a> Probe<'a> {
         probe.add_plane("camera", left, 0, [half * first.distance, half], question);
         let (mut travelled, mut spread) = (0.0, half);
         for (i, stop) in all.iter().enumerate() {
-            // Legs beyond the last plane are for photons that mirrors send to the windows.
+            // Legs beyond the last plane are needed only for photons that mirrors send to the
+            // windows.
             if i >= asked && [&all[i - 1], stop].map(|of| of.reflects) != [Reflects::Mirror; 2] {
                 break;
             }
@@ -124,7 +125,8 @@ impl<'a> Probe<'a> {
             let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
             let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
             let widths = [wide, spread.min(WIDEST)];
-            // The window at the next surface sees the most of this one.
+            // Among all windows, the window at the next surface sees the largest part of this
+            // surface.
             let seen = all
                 .get(number)
                 .map_or(wide, |next| wide + (half + widths[1]) * next.distance);
@@ -138,8 +140,9 @@ impl<'a> Probe<'a> {
         Some(probe)
     }
 
-    /// Replaces the planes by one: the light that arrives at the middle of the camera's lens, as a
-    /// function of direction alone. X points to the right of the picture, Y up.
+    /// Replaces the planes by a single plane, which records the light that arrives at the middle of
+    /// the camera's lens as a function of direction alone. X points to the right of the picture,
+    /// and Y points up.
     ///
     /// The window has the requested width, frequencies are a quarter of a cycle per half-width
     /// apart, and there are enough azimuths to reach all directions of the picture's spectrum.
@@ -177,13 +180,15 @@ impl<'a> Probe<'a> {
             // The sphere covers the corners of the window, also on an inclined surface.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
         };
-        // Photons aimed at a region as large as the scene would reach the windows less often.
+        // If photons were aimed at a region as large as the scene, they would reach the windows
+        // less often.
         let largest = 0.5 * self.paths.geometry.radius;
         let targets = stops.zip(&self.legs).map(target);
         targets.filter(|target| target.radius < largest).collect()
     }
 
-    /// Adds a leg, given by the frame at its end, along which light travels towards the camera.
+    /// Adds a leg, along which light travels towards the camera. The leg is given by the frame at
+    /// its end.
     fn add_leg(
         &mut self,
         frame: Frame,

@@ -11,10 +11,11 @@ use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
-/// These photons leave the lights. Wherever a photon hits or leaves a surface, a direction through
-/// the windows is drawn for it, also by reflection in the smooth surfaces on the central ray. Light
-/// of the sky is drawn in the same directions. Photons cannot find light that other smooth surfaces
-/// send into a window; [`PhotonProbe::misses`] reports where this matters.
+/// These photons leave the lights. At each point where a photon hits or leaves a surface, a
+/// direction through the windows is drawn for it. The direction leads to the windows directly, or
+/// by reflection in the smooth surfaces on the central ray. Directions for light of the sky are
+/// drawn in the same way. Photons cannot find light that other smooth surfaces send into a window.
+/// [`PhotonProbe::misses`] reports the planes that such light reaches.
 #[derive(Debug)]
 pub struct PhotonProbe<'a> {
     probe: &'a Probe<'a>,
@@ -39,8 +40,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Returns the reason why photons miss light of a plane, found from what is seen through its
-    /// window.
+    /// Returns the reason why photons miss light of a plane. The reason follows from the objects
+    /// that are seen through the window of the plane.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
         self.windows.misses(plane)
@@ -83,7 +84,8 @@ impl<'a> PhotonProbe<'a> {
                 record,
             );
         }
-        // A photon without flux ends here, but its emission point has already lit the windows.
+        // A photon without flux ends here, but light of its emission point has already been sent to
+        // the windows.
         let first = flux;
         if first <= 0.0 {
             return;
@@ -140,7 +142,7 @@ impl<'a> PhotonProbe<'a> {
     }
 
     /// Returns how a photon continues from a hit; `None` if it is absorbed. Half of the photons
-    /// follow the material; the other half are aimed at what the windows see.
+    /// follow the material, and the other half are aimed at the regions that the windows see.
     fn onward(&self, hit: &Hit, arriving: DVec3, numbers: &mut PathNumbers<'_>) -> Option<Onward> {
         let scatter = self.probe.paths.scatter(hit);
         let wi = hit.frame.transpose() * -arriving;
@@ -157,7 +159,7 @@ impl<'a> PhotonProbe<'a> {
                 if bounce.density.is_none() {
                     // For mirrors and smooth glass, the factor undoes the division by squared
                     // indices, which applies to radiance and not to power. Only photons that are
-                    // not aimed come here.
+                    // not aimed get this factor.
                     let half = if scatter.is_smooth() { 1.0 } else { 2.0 };
                     return Some(Onward {
                         along,
@@ -198,8 +200,8 @@ struct Onward {
     density: Option<f64>,
 }
 
-/// Returns the factor on the BSDF times the cosine to the shading normal that gives flux, for
-/// which both cosines are to the geometric normal.
+/// Returns the factor by which the BSDF times the cosine to the shading normal is multiplied to
+/// obtain flux. For flux, both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

@@ -21,8 +21,8 @@ pub struct Stop {
     pub arriving: DVec3,
     /// The distance to the camera, or to the previous surface.
     pub distance: f64,
-    /// Curvatures in the plane of incidence and across it, positive if convex, by finite
-    /// differences over the footprint.
+    /// Curvatures in the plane of incidence and across it, positive if the surface is convex. They
+    /// are computed by finite differences over the region that the window sees.
     pub curvature: [f64; 2],
     /// The kind of reflection.
     pub reflects: Reflects,
@@ -47,7 +47,7 @@ impl Stop {
     }
 }
 
-/// Returns the surfaces along a camera ray that continues by mirror reflection; `half` is half of
+/// Returns the surfaces along a camera ray that continues by mirror reflection. `half` is half of
 /// the angle of the window.
 pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
@@ -89,8 +89,8 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     stops
 }
 
-/// Returns the surfaces beyond a last one that windows see in mirrors, up to the first that is not
-/// a mirror.
+/// Returns the surfaces beyond the surface `last` that windows see in mirrors, up to the first
+/// surface that is not a mirror.
 pub(super) fn visible(last: &Stop, beyond: Vec<Stop>) -> Vec<Stop> {
     let mut is_shown = last.reflects == Reflects::Mirror;
     let shown = beyond.into_iter().take_while(|stop| {
@@ -104,8 +104,8 @@ pub(super) fn visible(last: &Stop, beyond: Vec<Stop>) -> Vec<Stop> {
 /// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 
-/// Returns the curvatures, from normals one step to either side; the step is the largest that stays
-/// on the surface.
+/// Returns the curvatures, computed from normals at a distance of one step to either side. The step
+/// is the largest step that stays on the surface.
 fn curvature(
     geometry: &SceneGeometry,
     hit: &Hit,
@@ -121,8 +121,8 @@ fn curvature(
     })
 }
 
-/// Returns the curvature between points of a shape one step to either side, or `None` if one of
-/// them misses the shape.
+/// Returns the curvature between two points of a shape, one step to either side. Returns `None` if
+/// there is no point of the shape on one of the sides.
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {
@@ -138,8 +138,8 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
     Some((m - n).dot(step) / (p - q).dot(step))
 }
 
-/// Returns the component of a normal across a direction, normalised; `None` if the normal is along
-/// the direction.
+/// Returns the normalised component of a normal perpendicular to a direction. Returns `None` if the
+/// normal is parallel to the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
     let across = normal - normal.dot(along) * along;
     (across.length() > 1e-6).then(|| across.normalize())

@@ -1,4 +1,4 @@
-//! Connections of photons to the windows of a probe, directly and by reflection in smooth surfaces.
+//! Connects photons to the windows of a probe, directly and by reflection in smooth surfaces.
 
 use super::Probe;
 use super::lines::seen_by;
@@ -7,9 +7,10 @@ use crate::space::{Hit, Ray};
 use etendue_field::{Crossing, Frame, TwoPlane, VirtualPlane};
 use glam::DVec3;
 
-/// Number of lines through a window that are traced to find out what is seen through it.
+/// Number of lines through a window that are traced to find the objects that are seen through the
+/// window.
 const LINES: u64 = 4096;
-/// Factor by which the region of connections exceeds that of the traced lines, because further
+/// Factor by which the region of connections exceeds the region of the traced lines, because other
 /// lines may lie slightly outside.
 const MARGIN: f64 = 1.1;
 /// Maximum slope of a connection.
@@ -26,13 +27,14 @@ struct LineRegion {
     slope: f64,
     /// Whether some of the lines reach the sky.
     sees_sky: bool,
-    /// Whether the surface at the end of the leg sends light on by reflection or refraction.
+    /// Whether the surface at the end of the leg is smooth, so that light continues by reflection
+    /// or refraction.
     is_smooth: bool,
 }
 
 impl LineRegion {
-    /// Samples a direction from a point, from two random numbers; `None` if no line of the region
-    /// passes the point.
+    /// Samples a direction from a point with two random numbers. Returns `None` if no line of the
+    /// region passes through the point.
     fn sample(&self, from: DVec3, random: [f64; 2]) -> Option<DVec3> {
         let slopes = self.slopes(from)?;
         let [u, v] = [0, 1].map(|axis: usize| {
@@ -90,7 +92,7 @@ pub(super) struct LightSource<'s> {
     pub(super) intensity: &'s dyn Fn(DVec3) -> f64,
     /// Density per solid angle with which photons continue along a direction and are recorded.
     pub(super) density: &'s dyn Fn(DVec3) -> f64,
-    /// Number of surfaces met so far, this one included.
+    /// Number of surfaces that the light has met so far, including this surface.
     pub(super) met: u32,
 }
 
@@ -105,7 +107,7 @@ pub(super) struct WindowConnector<'a> {
 }
 
 impl<'a> WindowConnector<'a> {
-    /// Traces lines back from all windows to find what is seen through them.
+    /// Traces lines back from all windows to find the objects that are seen through the windows.
     pub(super) fn new(probe: &'a Probe<'a>, seed: u64) -> Self {
         let region = |leg: usize| {
             let planes = probe.planes.iter().filter(|plane| plane.leg == leg);
@@ -200,8 +202,8 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Draws a direction from a light source through the windows of each leg, and records it if
-    /// nothing occludes it.
+    /// Draws a direction from a light source through the windows of each leg. Records the light
+    /// along this direction if nothing occludes it.
     pub(super) fn connect(
         &self,
         source: &LightSource<'_>,
@@ -224,8 +226,8 @@ impl<'a> WindowConnector<'a> {
     }
 
     /// Records a photon that continues from a source in a direction drawn with the density
-    /// `density`, if windows see it. [`Self::connect`] finds the same light; the two are combined
-    /// by the balance heuristic (Veach and Guibas 1995).
+    /// `density`, if windows see it. [`Self::connect`] finds the same light, so both results are
+    /// combined by the balance heuristic (Veach and Guibas 1995).
     pub(super) fn continued(
         &self,
         (position, met): (DVec3, u32),
@@ -242,7 +244,7 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Whether light that has met `met` surfaces counts as light on a leg.
+    /// Checks whether light that has met `met` surfaces counts as light on a leg.
     fn is_counted(&self, leg: usize, met: u32) -> bool {
         let paths = self.probe.paths;
         let all = met.saturating_add(u32::try_from(leg).unwrap_or(u32::MAX));
@@ -281,8 +283,8 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Records light that travels from a point along a leg, in all windows of this leg, and passes
-    /// it on to the next leg if the surface at the end is smooth.
+    /// Records light that travels from a point along a leg in all windows of this leg. If the
+    /// surface at the end of the leg is smooth, passes the light on to the next leg.
     fn pass(
         &self,
         number: usize,
@@ -330,8 +332,9 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Returns the point at which a line meets the smooth surface at the end of a leg, if the leg
-    /// ends at one and windows may see the line there.
+    /// Returns the point at which a line meets the smooth surface at the end of a leg. Returns
+    /// `None` if the leg does not end at a smooth surface, or if windows cannot see the line at
+    /// this point.
     fn smooth_end(&self, number: usize, from: DVec3, along: DVec3) -> Option<Hit> {
         let region = &self.regions[number];
         if !region.is_smooth {
@@ -342,11 +345,12 @@ impl<'a> WindowConnector<'a> {
         (at.x.abs().max(at.y.abs()) <= region.position).then_some(hit)
     }
 
-    /// Whether the line through a point, traced back from the end of a leg, hits that point first.
+    /// Checks whether the line through a point, traced back from the end of a leg, hits this point
+    /// before any other.
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
-        // If the line begins at the point itself, light leaves on the other side of the surface.
+        // If the line begins at the point itself, light leaves from the other side of the surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].position;
         is_before && paths.geometry.is_clear(line.from, position)
     }

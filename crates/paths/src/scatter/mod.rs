@@ -1,5 +1,5 @@
-//! Scattering at surfaces, as traced back from a camera: from the leaving direction `wo` to the
-//! incident direction `wi`.
+//! Computes scattering at surfaces for paths that are traced back from a camera, from the leaving
+//! direction `wo` to the incident direction `wi`.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
 //! are BSDFs for radiance, times |cos| of wi. Radiance is divided by the squared index of its
@@ -173,8 +173,8 @@ impl Scatter {
         }
     }
 
-    /// Samples one of two materials, chosen by weight; the returned density is that of the
-    /// mixture.
+    /// Samples one of two materials, which is chosen by weight. The returned density is the density
+    /// of the mixture.
     fn blended(
         &self,
         share: f64,
@@ -200,8 +200,8 @@ impl Scatter {
         })
     }
 
-    /// Returns the squared index on the side of `to` divided by that on the side of `from`. The
-    /// result is 1 unless light is refracted.
+    /// Returns the ratio of two squared indices: the squared index on the side of `to`, divided by
+    /// the squared index on the side of `from`. The ratio is 1 unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
@@ -219,8 +219,8 @@ impl Scatter {
         }
     }
 
-    /// Returns the kind of reflection on the side of `wo`; for a mixture, that of the part with
-    /// more weight.
+    /// Returns the kind of reflection on the side of `wo`. For a mixture, returns the kind of the
+    /// part with more weight.
     pub(crate) fn kind(&self, uv: DVec2, wo: DVec3) -> Reflects {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
@@ -254,8 +254,8 @@ impl Scatter {
         }
     }
 
-    /// Returns the texture factors of both parts of a material: of the base, and of the lobe or
-    /// mirror above it. A material with a single part has only a base.
+    /// Returns the texture factors of both parts of a material, which are the base, and the lobe or
+    /// mirror above the base. A material with a single part has only a base.
     pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
         match self {
             Self::TwoSided(sides) => {
@@ -291,7 +291,7 @@ impl Scatter {
         }
     }
 
-    /// Whether the material has a delta component.
+    /// Checks whether the material has a delta component.
     pub(crate) fn has_mirror(&self) -> bool {
         match self {
             Self::Plastic(of) => of.coat.facets().is_none(),
@@ -301,7 +301,7 @@ impl Scatter {
         }
     }
 
-    /// Whether the material has only delta components, so that light sampling is impossible.
+    /// Checks whether the material has only delta components, so that light sampling is impossible.
     pub(crate) fn is_smooth(&self) -> bool {
         match self {
             Self::Conductor(of) => of.roughness.is_none(),
@@ -313,10 +313,10 @@ impl Scatter {
     }
 }
 
-/// A function that flips directions to put a chosen side in front.
+/// A function that flips directions so that a chosen side is in front.
 type Turn = fn(DVec3) -> DVec3;
 
-/// Returns the flip that puts `wo` in front.
+/// Returns the flip after which `wo` is in front.
 fn to_front(wo: DVec3) -> Turn {
     if wo.z > 0.0 {
         |v| v

@@ -1,4 +1,4 @@
-//! Materials at a surface point, as BSDFs of `etendue_scatter`.
+//! Converts materials at a surface point to BSDFs of `etendue_scatter`.
 
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_scatter::{
@@ -42,7 +42,7 @@ pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> 
     }
 }
 
-/// Returns the ratio of the index on the far side of an interface to that on the side of `wo`. A
+/// Returns the index on the far side of an interface divided by the index on the side of `wo`. A
 /// thin sheet has the same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
@@ -52,7 +52,7 @@ fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     }
 }
 
-/// Returns a rough interface as `wo` sees it, or `None` for a smooth one.
+/// Returns a rough interface as seen from the side of `wo`, or `None` if the interface is smooth.
 pub(super) fn rough_dielectric(
     of: &world::Dielectric,
     uv: DVec2,
@@ -63,7 +63,7 @@ pub(super) fn rough_dielectric(
     Some(RoughDielectric { facets, index })
 }
 
-/// Returns a smooth interface as `wo` sees it.
+/// Returns a smooth interface as seen from the side of `wo`.
 pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDielectric {
     SmoothDielectric {
         index: index(of, wo),

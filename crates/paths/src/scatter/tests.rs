@@ -1,5 +1,6 @@
-//! Checks for each material: value over density equals the weight of a sample, the density
-//! integrates to one minus the absorbed part, and the mean weight equals the integral of the value.
+//! Checks three properties of each material. The value divided by the density equals the weight of
+//! a sample. The density integrates to one minus the absorbed part. The mean weight equals the
+//! integral of the value.
 
 use super::*;
 use etendue_transform::random::{Stream, unit, words};
@@ -94,7 +95,8 @@ fn materials() -> Vec<(&'static str, Material)> {
                 of: Box::new([diffuse(), glass(1.5, rough(Ggx, [0.4, 0.4]))]),
             },
         ),
-        // Directions that the black material samples carry light that the other material scatters.
+        // If the black material samples a direction, this direction carries light that the other
+        // material scatters.
         (
             "half black",
             Material::Blend {

@@ -1,4 +1,4 @@
-//! Geometries in local coordinates, with ray intersection and area sampling.
+//! Intersects rays with geometries in local coordinates, and samples the areas of geometries.
 
 use super::local::Local;
 use super::mesh::WorldMesh;
@@ -73,8 +73,8 @@ impl Form {
         }
     }
 
-    /// Whether a ray hits the geometry at a distance strictly within bounds. `along` has unit
-    /// length.
+    /// Checks whether a ray hits the geometry at a distance strictly within bounds. `along` has
+    /// unit length.
     pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
         match self {
             Self::Mesh(mesh) => mesh.is_met(start, along, within),
@@ -142,8 +142,8 @@ impl Form {
 /// coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // Distances on the line are measured from its point nearest to the axis or centre, so that far
-    // points keep their precision.
+    // Distances on the line are measured from the point nearest to the axis or centre, so that they
+    // are also precise for rays that start far away.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);

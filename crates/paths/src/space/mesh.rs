@@ -60,8 +60,8 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Of hits at the same distance, the hit with the lowest index counts, so the result
-                // does not depend on the traversal order.
+                // Among hits at the same distance, the hit with the lowest index is used, so the
+                // result does not depend on the traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
                 first = Some((at, i, place));
@@ -72,7 +72,7 @@ impl WorldMesh {
         first.map(|(at, i, place)| (at, self.local(self.ordered[i], place)))
     }
 
-    /// Whether a ray hits the mesh at a distance strictly within bounds.
+    /// Checks whether a ray hits the mesh at a distance strictly within bounds.
     pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
         let sight = TriangleRay::new(start, along);
         let mut is_met = false;
@@ -87,7 +87,8 @@ impl WorldMesh {
         is_met
     }
 
-    /// Returns the point with these barycentric coordinates of the second and the third corner.
+    /// Returns the point whose barycentric coordinates for the second and the third corner are
+    /// given.
     fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);

@@ -1,4 +1,4 @@
-//! Ray intersection with all surfaces: first hits and visibility.
+//! Intersects rays with all surfaces, to find first hits and to test visibility.
 
 mod form;
 mod local;
@@ -13,7 +13,7 @@ use local::Local;
 use mesh::WorldMesh;
 use std::sync::Arc;
 
-/// A ray; distances along it are multiples of `along`, which has length 1.
+/// A ray. Distances along the ray are multiples of `along`, which has length 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     /// Its origin.
@@ -51,7 +51,8 @@ pub struct Hit {
 pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: WideHierarchy,
-    /// Minimum distance of a hit; a nearer hit is on the surface from which the ray starts.
+    /// Minimum distance of a hit. A hit at a smaller distance is on the surface from which the ray
+    /// starts.
     nearest: f64,
     /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,
@@ -68,8 +69,8 @@ pub(crate) struct Placed {
     side: f64,
 }
 
-/// Minimum hit distance relative to the size of the world: f64 represents points with a relative
-/// error of some 10⁻¹⁵, and roots of quadratics with 10⁻¹².
+/// Minimum hit distance relative to the size of the world. The relative error of points in f64 is
+/// about 10⁻¹⁵, and the relative error of roots of quadratics is about 10⁻¹².
 const NEAREST: f64 = 1e-9;
 
 impl SceneGeometry {
@@ -130,7 +131,7 @@ impl SceneGeometry {
         Some(self.placed[shape].hit(ray, distance, shape, &local))
     }
 
-    /// Whether nothing is between two points.
+    /// Checks whether nothing is between two points.
     pub(crate) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
         let between = to - from;
         let distance = between.length();
@@ -138,7 +139,7 @@ impl SceneGeometry {
         self.is_free(&Ray { from, along }, distance)
     }
 
-    /// Whether a ray hits nothing before a distance.
+    /// Checks whether a ray hits nothing before a distance.
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let until = distance - self.nearest;
@@ -200,8 +201,8 @@ impl Placed {
         self.form.is_met(start, along, within.map(|at| at * scale))
     }
 
-    /// Returns origin and direction of a ray in local coordinates, and the scale of distances
-    /// there.
+    /// Returns the origin and the direction of a ray in local coordinates, and the scale of
+    /// distances in these coordinates.
     fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
         let start = self.to_local.transform_point3(ray.from);
         let along = self.to_local.transform_vector3(ray.along);
@@ -237,7 +238,8 @@ impl Placed {
     }
 }
 
-/// Returns a frame around a normal, with X along the component of a direction across it.
+/// Returns a frame whose Z is a normal, and whose X is along the component of a direction
+/// perpendicular to this normal.
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
     let across = along - along.dot(normal) * normal;
     let x = across

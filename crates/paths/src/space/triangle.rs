@@ -1,4 +1,4 @@
-//! Ray–triangle intersection without gaps at shared edges.
+//! Intersects rays with triangles, without gaps at shared edges.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 /// direction (x, y, 1).
 pub(super) struct TriangleRay {
     start: DVec3,
-    /// The axis along which the direction is largest; it becomes the last axis.
+    /// The axis along which the component of the direction is largest. This axis becomes the last
+    /// axis.
     last: usize,
     slopes: DVec2,
     /// The ratio of distances along the ray to depths along the last axis.
@@ -25,10 +26,10 @@ impl TriangleRay {
         }
     }
 
-    /// Returns the distance of the hit, and the barycentric coordinates of the second and the
-    /// third corner there (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). A
-    /// shared edge gives both triangles the same number with opposite sign, so no ray passes
-    /// between them.
+    /// Returns the distance of the hit, and the barycentric coordinates of the hit for the second
+    /// and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*).
+    /// For a shared edge, both triangles compute the same number with opposite signs, so no ray
+    /// passes between the triangles.
     #[inline]
     pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
@@ -77,7 +78,7 @@ mod tests {
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
             let sight = TriangleRay::new(start, (place - start).normalize());
-            // The two triangles have a common edge, which they traverse in opposite directions.
+            // The two triangles have a common edge. They list its two corners in opposite order.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");

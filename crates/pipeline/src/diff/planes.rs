@@ -64,15 +64,15 @@ pub(super) struct PredictionDiff {
     pub(super) is_wrong: bool,
 }
 
-/// The relative difference below which two numbers are assumed to differ only because their sums
-/// are rounded differently.
+/// If the relative difference between two numbers is below this limit, they are assumed to differ
+/// only because their sums are rounded differently.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// The largest accepted relative difference between the closed forms of two versions of the
 /// program, which may add terms in different orders. This difference allows for the rounding
 /// errors of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
-/// The number of combined standard errors above which the difference between two predictions
-/// counts as real. The difference is a norm over all frequencies, so its random variation is
+/// The difference between two predictions counts as real if it exceeds this number of combined
+/// standard errors. The difference is a norm over all frequencies, so its random variation is
 /// small.
 const APART: f64 = 3.0;
 /// The probability, over all planes, that independent noise is mistaken for the noise of shared
@@ -348,7 +348,8 @@ fn view(scene_file: &Value, name: &str) -> Value {
     } else {
         own
     };
-    // By default the profiles along y and v are those along x and u.
+    // By default, the profile along y is the profile along x, and the profile along v is the
+    // profile along u.
     let profile = |name: &str, along: &str| {
         let own = &window[name];
         if own.is_null() {

@@ -17,9 +17,9 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
     }
 }
 
-/// Packs a unit vector as version 3 does, by adaptive projection (Kittelmann et al. 2017, section
-/// 3.2): the component of largest modulus is omitted except for its sign. If the omitted component
-/// is x or y, 1/z takes its place. The modulus of 1/z is larger than 1, which shows which
+/// Packs a unit vector as in version 3, by adaptive projection (Kittelmann et al. 2017, section
+/// 3.2). The component with the largest modulus is omitted, except for its sign. If the omitted
+/// component is x or y, 1/z takes its place. The modulus of 1/z is larger than 1, which shows which
 /// component was omitted.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
@@ -60,8 +60,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Unpacks a direction of version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower
-/// half folded out. `flat` means that z is 0.
+/// Unpacks a direction of version 2. The direction is stored as a point of the octahedron |x| + |y|
+/// + |z| = 1, whose lower half is folded out into a square. `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
     // The numbers are coordinates in a square. Rounding to f32 may move a point outside the
     // square by up to 1e-6.
@@ -98,8 +98,8 @@ mod tests {
                     let (packed, negative) = pack(d);
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
-                        // The limit covers two rounding errors of numbers up to 1; the square
-                        // root of a sum of at least 1/3 at most doubles these errors.
+                        // The limit covers two rounding errors of numbers up to 1. The square root,
+                        // whose argument is at least 1/3, multiplies these errors by at most two.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

@@ -10,7 +10,7 @@ pub const WATTS: &str = "power: the weight of a particle is its power in W";
 /// The header of a file, without the number of its particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McplHeader {
-    /// Version 2 or 3, which differ in how directions are packed.
+    /// The version, 2 or 3. The two versions pack directions differently.
     pub version: u32,
     /// Whether numbers are stored with the lowest byte first.
     pub little_endian: bool,

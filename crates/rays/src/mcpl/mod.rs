@@ -30,8 +30,8 @@ pub struct McplFile {
     header: McplHeader,
     count: usize,
     records: Vec<u8>,
-    /// Bytes after the last record, too few for another record; for example, a public test file
-    /// ends with a line feed.
+    /// The bytes after the last record, which are too few for another record. For example, a public
+    /// test file ends with a line feed.
     rest: Vec<u8>,
 }
 
@@ -119,7 +119,7 @@ impl McplFile {
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// Returns the bytes of the file; for a file that was read, these are the original bytes.
+    /// Returns the bytes of the file. If the file was read, these bytes are the original bytes.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);

@@ -94,9 +94,10 @@ impl Particle {
     /// Appends the record of a file with this header, packed as in version 3.
     ///
     /// # Errors
-    /// When the file cannot hold the particle: a number is not finite or not in the file's
-    /// precision, the energy is negative, the direction is not a unit vector, or the weight or PDG
-    /// code differs from that of all particles.
+    /// When the file cannot hold the particle. This is so if a number is not finite or cannot be
+    /// stored in the file's precision, if the energy is negative, or if the direction is not a unit
+    /// vector. It is also so if the weight or the PDG code differs from the universal value of the
+    /// file.
     pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header

@@ -1,4 +1,4 @@
-//! The header, section 4.7 of the standard, in the order of the file.
+//! Reads and writes the header (section 4.7 of the standard), in the order of the file.
 
 use super::text;
 use crate::Fault;

@@ -5,12 +5,12 @@
 //! Sources", section 4.7, and files of LED makers and of LightTools. All numbers are little-endian; the numbers of
 //! rays are f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
-//! A file that is read and written again has the same bytes, except for bytes after the end of a
-//! text, and for invalid characters. Each of these differences causes a note.
+//! If a file is read and written again, its bytes do not change, except for bytes after the end of
+//! a text and for invalid characters. Each of these changes causes a note.
 //!
-//! Three deviations are accepted with a note. The total flux in the header may differ from the sum over the rays
-//! (LightTools writes 1). Directions may have a length other than 1 (the set has unit vectors). Fields on which no
-//! ray depends may have values out of range.
+//! Three deviations are accepted with a note. The total flux in the header may differ from the sum
+//! over the rays (LightTools writes 1). Directions may have a length other than 1 (in the
+//! [`RaySet`] they have length 1). Fields that affect no ray may have values out of range.
 
 mod header;
 mod text;
@@ -30,11 +30,11 @@ pub struct Tm25File {
     notes: Vec<String>,
 }
 
-/// The largest deviation of the length of a direction from 1 that causes no note: ten rounding
-/// errors of f32.
+/// If the length of a direction differs from 1 by at most this number, there is no note. The number
+/// is ten rounding errors of f32.
 const LENGTH_SLACK: f64 = 1e-6;
-/// The largest relative difference between the flux of the header and the sum over rays that causes
-/// no note: the error of f32 and of four printed digits.
+/// If the relative difference between the flux of the header and the sum over rays is at most this
+/// number, there is no note. The number allows for rounding to f32 and to four printed digits.
 const FLUX_SLACK: f64 = 1e-3;
 
 impl Tm25File {

@@ -43,7 +43,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// All segments of the cut, each with the leg on which light arrives at it.
+    /// Returns all segments of the cut, each with the leg on which light arrives at the segment.
     pub(super) fn pieces(&self, planes: &[&VirtualPlane]) -> Vec<(usize, Segment)> {
         let scene = self.scene;
         let half_width = self.half_width(planes);
@@ -92,8 +92,8 @@ impl CuttingPlane<'_> {
         pieces
     }
 
-    /// The coordinates of a point in a leg's frame: along the leg, across the leg within the cut,
-    /// and across the cut.
+    /// Returns the coordinates of a point in a leg's frame: the coordinate along the leg, the
+    /// coordinate across the leg within the cut, and the coordinate across the cut.
     fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
         let local = leg.frame.to_local(point);
         let [within, off] = if self.axis == 0 {
@@ -104,8 +104,8 @@ impl CuttingPlane<'_> {
         [leg.start + local.z, within, off]
     }
 
-    /// The half-width of the drawing: slightly more than the light, the bounded blockers and the
-    /// windows.
+    /// Returns the half-width of the drawing, which is slightly larger than the half-widths of the
+    /// light, of the bounded blockers and of the windows.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
         let light = self.light();
@@ -136,16 +136,16 @@ impl CuttingPlane<'_> {
         1.12 * reach.map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// The leg on which light arrives at an object; the first leg for objects that the path does
-    /// not visit.
+    /// Returns the leg on which light arrives at an object. For an object that the path does not
+    /// visit, returns the first leg.
     fn arriving(&self, object: Object) -> usize {
         let path = &self.scene.path;
         let ends = |leg: &usize| path.ends_at(*leg).is_some_and(|hit| hit.object == object);
         (0..path.legs.len()).find(ends).unwrap_or(0)
     }
 
-    /// The segment (z, x) in which the cut of a leg meets a flat outline; z is the distance along
-    /// the path.
+    /// Returns the segment (z, x) in which the cut of a leg meets a flat outline, where z is the
+    /// distance along the path.
     fn cut(&self, corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
         let corners: Vec<[f64; 3]> = corners.iter().map(|p| self.local(leg, *p)).collect();
         let mut points = Vec::new();
@@ -162,7 +162,8 @@ impl CuttingPlane<'_> {
         points.try_into().ok()
     }
 
-    /// The curve (z, x) in which the cut of a leg meets a smooth surface through its vertex.
+    /// Returns the curve (z, x) in which the cut of a leg meets a smooth surface. The curve passes
+    /// through the vertex of the surface.
     fn profile(&self, patch: &Patch, leg: &Leg) -> Vec<[f64; 2]> {
         const STEPS: i32 = 24;
         let off = [leg.frame.y, leg.frame.x][self.axis];
@@ -202,8 +203,8 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// The intervals in which a layer is opaque, or at least half opaque. Gratings extend slightly
-    /// beyond the visible range.
+    /// Returns the intervals in which a layer stops at least half of the light. The intervals of
+    /// gratings extend slightly beyond the visible range.
     fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
         let axis = self.axis;
         match &layer.mask {
@@ -251,7 +252,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// The outline in which the cut of a leg meets a mesh.
+    /// Returns the outline in which the cut of a leg meets a mesh.
     fn mesh(&self, mesh: &MeshObject, leg: &Leg) -> Vec<Segment> {
         let kind = mesh
             .albedo
@@ -279,7 +280,7 @@ impl CuttingPlane<'_> {
     }
 }
 
-/// Segments across the central ray; the first segment carries the name.
+/// Returns segments across the central ray. The first segment has the name of the object.
 fn labelled(
     kind: SegmentKind,
     name: &str,
@@ -297,16 +298,16 @@ fn labelled(
 
 /// The interval that covers the whole axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-/// The largest number of periods of a grating on either side of the ray at which single periods
-/// can still be distinguished.
+/// If a grating has more periods than this number on either side of the ray, single periods cannot
+/// be distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
-/// The bits of a point's coordinates, as a key of a map.
+/// Returns the bits of a point's coordinates, which serve as the key of a map.
 fn key(point: [f64; 2]) -> [u64; 2] {
     point.map(f64::to_bits)
 }
 
-/// Returns the closed lines that segments with common ends form.
+/// Joins segments with common ends, and returns the closed lines that result.
 fn outlines(pieces: &[Segment]) -> Vec<Vec<[f64; 2]>> {
     let mut at: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
     for (i, piece) in pieces.iter().enumerate() {

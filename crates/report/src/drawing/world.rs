@@ -1,4 +1,4 @@
-//! Draws a scene whose path turns, to scale, in the plane of D and X at the light.
+//! Draws a scene to scale in the plane of D and X at the light, if the path of the scene turns.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
@@ -8,11 +8,11 @@ use glam::DVec3;
 
 /// The length in metres at which infinite objects are cut off; it is larger than any drawn scene.
 const ENDLESS_METRES: f64 = 1e4;
-/// A turn of the path counts as straight if the modulus of its cosine differs from 1 by less than
-/// this number.
+/// Two legs of the path count as parallel if the modulus of the cosine between them differs from 1
+/// by less than this number.
 const STRAIGHT: f64 = 1e-9;
 
-/// The scene to scale; `None` if the path stays on one line.
+/// Returns the drawing of the scene to scale; `None` if the path stays on one line.
 pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorld> {
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;

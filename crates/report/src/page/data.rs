@@ -28,12 +28,12 @@ struct RunData<'a> {
     words: String,
     provenance: String,
     scene_file: &'a SceneFile,
-    /// The address that shows the scene in the explorer.
+    /// The address at which the explorer shows the scene.
     explorer: Option<&'a str>,
     /// The strip along the path, SVG.
     path: &'a str,
     planes: Vec<PlaneData<'a>>,
-    /// The tables of the terminal, with headers first.
+    /// The tables that the terminal also shows. The first row of each table is its header.
     tables: [Vec<Vec<String>>; 2],
 }
 
@@ -50,7 +50,7 @@ struct PlaneData<'a> {
     field: Grids,
     /// The unit of the light field.
     field_unit: String,
-    /// The radial spectrum for ρ ≥ 0, like the slices.
+    /// The radial spectrum for ρ ≥ 0; the slices also have ρ ≥ 0.
     radial: Grids,
     /// A slice for each azimuth; `None` if the slices are too large.
     slices: Option<Vec<Grids>>,
@@ -121,8 +121,8 @@ fn encoded(values: ArrayView2<'_, f64>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// The data of a run as JSON, with the strip along its path as SVG and, if there is one, the
-/// address that shows the scene in the explorer.
+/// Returns the data of a run as JSON. The data include the strip along the path as SVG, and the
+/// address at which the explorer shows the scene, if there is one.
 pub fn data(
     case: &MeasuredScene,
     summary: &Summary,
@@ -212,7 +212,7 @@ impl<'a> PlaneData<'a> {
     }
 }
 
-/// The pictures |S|², |F|² and |S − F|/σ at each azimuth.
+/// Returns the pictures |S|², |F|² and |S − F|/σ at each azimuth.
 fn slices(found: &PlaneComparison) -> Vec<Grids> {
     let measured = found.measured.half.outer_iter();
     let predicted = found.predicted.half.outer_iter();

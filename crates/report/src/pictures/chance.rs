@@ -1,4 +1,4 @@
-//! The number of cells in the picture of a difference that exceed the range of colors by chance.
+//! Computes how many cells in the picture of a difference exceed the range of colors by chance.
 
 use etendue_compare::PlaneComparison;
 use etendue_store::arrays::radial_z;
@@ -7,8 +7,8 @@ use ndarray::Axis;
 /// The difference at which the range of colors ends, in standard deviations.
 const BEYOND: f64 = 4.0;
 
-/// The number of independent frequencies, the number of frequencies beyond 4 σ in the difference,
-/// and the number expected from noise alone.
+/// Three numbers: the independent frequencies, the frequencies at which the difference exceeds 4 σ,
+/// and the number of such frequencies that noise alone would cause.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outliers {
     cells: usize,
@@ -18,9 +18,9 @@ pub(super) struct Outliers {
 
 impl Outliers {
     /// Power is not normally distributed. Without light, power is the mean of one exponential
-    /// variable per azimuth, so large values are more frequent than for a normal variable. A
-    /// shifted gamma variable with the same first three moments is used. The gamma variable has
-    /// exactly the right distribution if all azimuths have the same noise.
+    /// variable per azimuth, so large values are more frequent than for a normal variable. The
+    /// function uses a shifted gamma variable with the same first three moments. Its distribution
+    /// is exact if all azimuths have the same noise.
     pub(super) fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
         let z = radial_z(plane);
@@ -57,8 +57,8 @@ impl Outliers {
     }
 }
 
-/// The probability that a shifted gamma variable of mean 0, variance 1 and this skewness exceeds
-/// 4 in modulus, by the approximation of Wilson and Hilferty (1931).
+/// Returns the probability that a shifted gamma variable of mean 0, variance 1 and this skewness
+/// exceeds 4 in modulus, by the approximation of Wilson and Hilferty (1931).
 fn beyond(skewness: f64) -> f64 {
     let shape = 4.0 / skewness.max(1e-6).powi(2);
     let tail = |z: f64| {

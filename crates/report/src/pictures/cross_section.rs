@@ -5,7 +5,8 @@ use etendue_field::{Complex, FrequencyAxis, SliceGrid, Slices, cis};
 use ndarray::{Array2, ArrayView1};
 use std::f64::consts::TAU;
 
-/// Whether the light differs between (y, v) and (x, u): compares the slices at azimuths 0 and 90°.
+/// Checks whether the light in (y, v) differs from the light in (x, u). The function compares the
+/// slices at azimuths 0 and 90°.
 pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     const SHARE: f64 = 0.3;
     let slices = plane.predicted.half.view();
@@ -16,9 +17,9 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
 }
 
-/// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill
-/// ± `half_widths`. The spectrum of this light field is the slice at azimuth 90°, within the
-/// range of the frequencies. Returns `None` if there is no slice at azimuth 90°.
+/// Returns the light field over (y, v) in 64 × 64 cells that fill ± `half_widths`. The field is
+/// multiplied by the window and integrated over x and u. Within the range of the frequencies, its
+/// spectrum is the slice at azimuth 90°. Returns `None` if there is no slice at azimuth 90°.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
     const CELLS: usize = 64;
     let SliceGrid { azimuths, rho, nu } = &slices.grid;

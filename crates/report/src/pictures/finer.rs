@@ -3,16 +3,16 @@
 //! The window bounds the light field, so the spectrum between given frequencies is determined by
 //! these frequencies. Of all windowed light fields W ℓ with the given spectrum, the one with the
 //! least ∫ ℓ² is drawn. The spectrum of the drawn light field is a weighted sum of the given
-//! values. The weights follow from the covariance of white noise behind the window, K(Ω) = ∫ W²
-//! e^(−2πi Ω z) dz / ∫ W².
+//! values. The weights follow from the covariance of the spectrum of white noise times the window,
+//! K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
 
-/// The number of cells along an axis above which single cells are not visible.
+/// If an axis has more cells than this number, single cells are not visible.
 const SMOOTH: usize = 160;
-/// The largest share of the variance of an intermediate value that the given values may leave
+/// The given values may leave at most this share of the variance of an intermediate value
 /// undetermined.
 const OPEN: f64 = 0.01;
 
@@ -24,8 +24,9 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// Finer frequencies over the same range. Returns `None` if the scene's frequencies are fine
-    /// enough for the picture, or too far apart to determine the values between them.
+    /// Returns finer frequencies over the same range. Returns `None` if the scene's frequencies are
+    /// fine enough for the picture, or if they are too far apart to determine the values between
+    /// them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,
@@ -51,7 +52,7 @@ impl Finer {
         })
     }
 
-    /// The spectrum on the finer frequencies.
+    /// Returns the spectrum on the finer frequencies.
     pub(super) fn of(&self, slices: &Slices) -> Slices {
         let mut finer = Slices::zeros(self.grid);
         let full = slices.full();
@@ -65,8 +66,8 @@ impl Finer {
     }
 }
 
-/// The mean power over azimuths at the finer frequencies. The noise that was removed from `power`,
-/// at the frequencies of the scene, is also removed here.
+/// Returns the mean power over azimuths at the finer frequencies. The noise that was removed from
+/// `power`, at the frequencies of the scene, is also removed here.
 pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
     let noise = slices.radial_power() - power;
     let (from, to) = (&slices.grid, &finer.grid);
@@ -84,7 +85,7 @@ pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) 
     finer
 }
 
-/// There is an odd number of finer frequencies for each given frequency, so each given frequency
+/// Returns finer frequencies. Their number for each given frequency is odd, so each given frequency
 /// is also a finer frequency.
 fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     let parts = SMOOTH.div_ceil(axis.count());
@@ -95,7 +96,7 @@ fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     }
 }
 
-/// The two given frequencies around each finer frequency, with their weights.
+/// Returns the two given frequencies around each finer frequency, with their weights.
 fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     let last = from.count() - 1;
     let place = |value: f64| {
@@ -112,7 +113,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     to.values().into_iter().map(place).collect()
 }
 
-/// The covariance, along a slice, of the spectrum of white noise behind a window.
+/// The covariance between frequencies of a slice, for white noise that is multiplied by a window.
 struct WindowCovariance {
     /// Points of the squares of both profiles along the slice, with their weights.
     profiles: [Vec<(f64, f64)>; 2],
@@ -150,8 +151,8 @@ impl WindowCovariance {
     }
 }
 
-/// The weights of given frequencies for finer frequencies, [finer, given]; `None` if the given
-/// frequencies do not determine all intermediate values.
+/// Returns the weights of given frequencies for finer frequencies, [finer, given]; `None` if the
+/// given frequencies do not determine all intermediate values.
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
@@ -222,8 +223,8 @@ impl Cholesky {
     }
 }
 
-/// The product A Bᵀ. The sum is written out, because matrix products of the array library differ
-/// in their bits between processors.
+/// Returns the product A Bᵀ. The sum is written out, because matrix products of the array library
+/// differ in their bits between processors.
 fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
     let sum = |a: ArrayView1<'_, f64>, b: ArrayView1<'_, Complex>| {
         let terms = a.iter().zip(b).map(|(a, b)| b * *a);
@@ -244,7 +245,7 @@ mod tests {
         v: Profile::Hann(0.4),
     };
 
-    /// The slices of a few rays, each with the weight of the window.
+    /// Returns the slices of a few rays, each with the weight of the window.
     fn of_rays(grid: SliceGrid) -> Slices {
         let rays = [
             [0.1, -0.2, 0.3, 0.05],

@@ -63,7 +63,7 @@ pub fn strip_of(
         && (section.other.is_some() || planes.iter().any(differs_across));
     let is_seen = !is_figure && differs;
     if is_figure {
-        // A figure has no room for a second cut and its light field.
+        // A figure has no space for a second cut and the light field of this cut.
         section.other = None;
     }
     let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
@@ -105,11 +105,11 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// The note below a strip whose light differs between azimuths 0 and 90°.
+/// The note below a strip if the light at azimuth 0 differs from the light at 90°.
 const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
     in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
     at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
-/// The warning in a figure that shows the mean over azimuths, although the slices at 0 and 90°
+/// The warning in a figure that shows the mean over azimuths although the slices at 0 and 90°
 /// differ.
 const MIXED: &str = "; the light differs between azimuths 0 and 90°";
 
@@ -120,7 +120,7 @@ struct PlaneOnPath<'a> {
     theory: &'a Applicability,
 }
 
-/// The planes in the order in which light meets them.
+/// Returns the planes in the order in which light meets them.
 fn in_order<'a>(
     scene: &'a Scene,
     theories: &'a [Applicability],
@@ -139,7 +139,7 @@ fn in_order<'a>(
 }
 
 impl PlaneOnPath<'_> {
-    /// The measured radial power between the frequencies of the scene.
+    /// Returns the measured radial power between the frequencies of the scene.
     fn finer_power(&self) -> Option<Array2<f64>> {
         let PlaneComparison {
             measured, radial, ..
@@ -214,7 +214,8 @@ impl BothSlices {
     }
 }
 
-/// The differences from the first-order chains, if the map of one chain is wrong.
+/// Returns the differences between the photons and the first-order chains, if the map of one chain
+/// is wrong.
 fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     let fails = along.iter().any(|at| {
         let chain = at.compared.report.first_order.as_ref();
@@ -224,7 +225,7 @@ fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     each.map(|at| off_chain(at.compared)).collect()
 }
 
-/// A description of which spectra of planes are drawn.
+/// Describes which spectra of planes are drawn.
 pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'static str {
     let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
     match counts.iter().filter(|count| **count == 1).count() {
@@ -234,7 +235,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     }
 }
 
-/// A description of the predicted lines of a strip.
+/// Returns a description of the predicted lines of a strip.
 fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
@@ -248,8 +249,8 @@ fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &
     }
 }
 
-/// The difference of the photons from the first-order chain, in percent of the largest measured
-/// |S|, [ρ, ν].
+/// Returns the difference between the photons and the first-order chain, in percent of the largest
+/// measured |S|, [ρ, ν].
 fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     let power = &compared.radial.power;
     let peak = power.iter().copied().fold(0.0, f64::max);
@@ -259,7 +260,7 @@ fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     }
 }
 
-/// The full radial spectrum of a plane, measured and predicted.
+/// Returns the full radial spectrum of a plane, measured and predicted.
 pub fn full_radial<'a>(
     plane: &VirtualPlane,
     compared: &'a FullRadialComparison,
@@ -272,7 +273,7 @@ pub fn full_radial<'a>(
     })
 }
 
-/// The column of pictures under a plane.
+/// Returns the column of pictures under a plane.
 fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColumn<'a> {
     let PlaneOnPath {
         plane,
@@ -306,18 +307,19 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // After a mirror, light lies along a line of the spectrum; after a lobe, light does
-            // not lie along a line.
+            // After a mirror, the power of the spectrum lies along a line; after a lobe, it does
+            // not.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }
 }
 
-/// Lines along which theory predicts the light. After light has travelled a distance d, its
-/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, the spectrum
-/// also lies along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve
-/// these lines. A diffuse surface keeps only ν = 0, and d is counted from this surface.
+/// Returns lines along which theory predicts the power of the spectrum. After light has travelled a
+/// distance d, its spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f,
+/// the spectrum also lies along parallel lines through (± f, ∓ h f), if the window and the
+/// frequencies resolve these lines. After a diffuse surface, only ν = 0 remains, and d is measured
+/// from this surface.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -342,9 +344,10 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Lines along which the chain predicts the light of a picture, in the plane of incidence and
-/// across it. At the light, a projector's spectrum lies along ρ and a beam's along ν. The map of
-/// the chain moves the content of the spectrum at Ω to A⁻ᵀ Ω.
+/// Returns lines along which the chain predicts the spectrum of a picture, in the plane of
+/// incidence and across it. At the light, the spectrum of a projector lies along ρ, and the
+/// spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω to
+/// A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
@@ -366,5 +369,6 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
 /// The relative difference of two slopes that coincide up to rounding.
 const NEAR: f64 = 1e-9;
 
-/// The distance in metres beyond which a line is vertical in any picture.
+/// A line is left out if the modulus of its slope, in metres, is at least this limit, because the
+/// line would be vertical in any picture.
 const STEEPEST: f64 = 1e6;

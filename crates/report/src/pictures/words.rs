@@ -1,10 +1,11 @@
-//! Names of a plane's coordinates, and axes with them.
+//! Names the coordinates of a plane, and returns axes with these names.
 
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{Axis, AxisQuantity};
 use etendue_spectrum::field::FullRadial;
 
-/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
+/// The names of a plane's coordinates. A plane across the central ray has slopes, and a plane on a
+/// surface has angles.
 pub(super) struct CoordinateNames {
     pub(super) along: [&'static str; 2],
     pub(super) across: [&'static str; 2],
@@ -60,18 +61,18 @@ impl CoordinateNames {
     }
 }
 
-/// The axes of the light field of a plane, (x, u) across its ray.
+/// Returns the axes of the light field of a plane, (x, u) across its ray.
 pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     CoordinateNames::of(plane).projection_axes(grid)
 }
 
-/// The axes of the spectrum of a plane, (ρ, ν).
+/// Returns the axes of the spectrum of a plane, (ρ, ν).
 pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     CoordinateNames::of(plane).frequency_axes(&plane.grid)
 }
 
-/// The axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each axis
-/// contains zero. The first ring is half as wide as the others, but is drawn at equal width.
+/// Returns the axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each
+/// axis contains zero. The first ring is half as wide as the others, but is drawn at equal width.
 pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
     let axis = |name, unit, edges: &[f64]| {
@@ -86,12 +87,12 @@ pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     ]
 }
 
-/// The quantity of a full radial spectrum.
+/// Returns the quantity of a full radial spectrum.
 pub fn full_radial_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
 
-/// The axes of the light field across the other two coordinates, (y, v).
+/// Returns the axes of the light field across the other two coordinates, (y, v).
 pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
     CoordinateNames {
@@ -101,12 +102,12 @@ pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     .projection_axes(grid)
 }
 
-/// The quantity of a light field across the ray.
+/// Returns the quantity of a light field across the ray.
 pub fn light_field_quantity() -> AxisQuantity {
     CoordinateNames::ACROSS.light_field_quantity()
 }
 
-/// The quantity of a radial spectrum.
+/// Returns the quantity of a radial spectrum.
 pub fn spectrum_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }

@@ -5,8 +5,8 @@ use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The smallest allowed cosine, that of 89.4°, between the normal of a vertex and the normals of
-/// the triangles around it.
+/// The smallest allowed cosine of the angle between the normal of a vertex and the normals of the
+/// triangles around it. It is the cosine of 89.4°.
 ///
 /// An interpolated normal is a weighted mean of the normals of three vertices, with weights from 0
 /// to 1. The component of each vertex normal along the normal of the triangle is at least the

@@ -13,8 +13,8 @@ use glam::DVec3;
 /// the ray leaves are ignored.
 const MIN_LEG_SHARE: f64 = 1e-9;
 
-/// The cosine of the angle between the ray and the normal below which a surface counts as
-/// edge-on.
+/// A surface counts as edge-on if the cosine of the angle between the ray and the normal is below
+/// this limit.
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {

@@ -262,7 +262,7 @@ impl Resolver<'_> {
             .find(beside)
         {
             // If the plane were at the object's distance, only rounding errors would determine
-            // whether light that travels back crosses the plane before or after the object.
+            // whether light on its way back crosses the plane before or after the object.
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("a distance at which {name} does not lie in the plane");
             self.faults.add_on_path(of, value(), allowed);

@@ -8,8 +8,8 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The ratio of a triangle's height to the largest coordinate of the scene. At smaller ratios, a
-/// triangle cannot be distinguished from a line.
+/// The smallest ratio of a triangle's height to the largest coordinate of the scene at which the
+/// triangle can be distinguished from a line.
 ///
 /// Rounding changes a coordinate in the frame of a leg by up to 4e-16 of the largest coordinate. At
 /// a ratio of 1e-12, rounding tilts the normal of a triangle by 4e-4 radians and changes the

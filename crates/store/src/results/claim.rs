@@ -1,4 +1,4 @@
-//! Checks what is in a results folder before anything is written there.
+//! Checks the content of a results folder before anything is written to it.
 
 use super::{LINKED, Results, TIMING, UNFINISHED, has_hash, inside, listed, sealed_bytes};
 use crate::Failure;
@@ -15,8 +15,8 @@ impl Results {
         listed(&self.folder.join(self.plan.index)).unwrap_or_default()
     }
 
-    /// Returns the path of a file of the folder; `None` if the path leads out of the folder, by
-    /// `..` or by a link.
+    /// Returns the path of a file of the folder. Returns `None` if the path leads out of the
+    /// folder, through `..` or through a link.
     pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
         inside(&self.folder, name)
     }
@@ -46,7 +46,7 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses to write if etendue did not write a file that is in the way; with `force`, refuses
+    /// Refuses to write if a file is in the way that etendue did not write. With `force`, refuses
     /// only if this file is not a regular file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();

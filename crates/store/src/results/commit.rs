@@ -1,9 +1,9 @@
 //! Replaces earlier files by new files.
 //!
 //! Before the first file moves, all files are complete and synced, and their index is ready beside
-//! them. If this process is ended at any step, the next process that writes to the folder can
-//! therefore continue. Earlier files move aside and are removed last, so all moves can be undone
-//! if one fails.
+//! them. If this process ends at any step, the next process that writes to the folder can therefore
+//! continue. Earlier files are first moved aside, and are removed at the end, so all moves can be
+//! undone if one move fails.
 
 use super::{
     LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
@@ -174,7 +174,7 @@ impl Results {
     }
 }
 
-/// Removes a tree of folders without files.
+/// Removes a folder and its subfolders if they contain no files.
 fn remove_empty(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         remove_empty(&entry.path());

@@ -78,7 +78,8 @@ impl Backward {
         })
     }
 
-    /// The ray of one plane with number `index`, and its weight in radiance space.
+    /// Returns the ray with number `index` of one plane, and the weight of this ray in radiance
+    /// space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
         // The ray itself uses one block of random numbers, and so does each surface that it meets.
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
@@ -188,7 +189,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // The normal is on the side of the surface to which the light travels.
+                // The normal points to the side to which the light travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -245,8 +246,9 @@ impl Backward {
         })
     }
 
-    /// The radiance that arrives along a ray at a point, at distance `end`, of the surface that
-    /// ends its leg. If the surface is concave or solid, another part of it may block this ray.
+    /// Returns the radiance that arrives along a ray at a point of the surface that ends its leg.
+    /// The point is at the distance `end`. If the surface is concave or solid, another part of it
+    /// may block this ray.
     fn arriving(
         &self,
         incoming: &IncomingRay,
@@ -275,8 +277,9 @@ impl Backward {
         self.incident(incoming, End::Surface(end), block, words)
     }
 
-    /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
-    /// or light at the beginning of the leg. All vectors are in the frame at the light.
+    /// Returns the irradiance at a point with a given normal at the end of a leg. The light comes
+    /// from one point of the surface, or of the light source, at the beginning of the leg. All
+    /// vectors are in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -387,10 +390,11 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
-    /// drawn by the lobe of the BRDF. On the first leg, half of the directions are drawn by the
-    /// lobe, and half towards a point of the light. The estimate divides by the density of this
-    /// mixture (the balance heuristic of Veach and Guibas 1995 for one sample).
+    /// Returns the radiance reflected at the end of a leg, estimated from one direction. On later
+    /// legs, the direction is drawn by the lobe of the BRDF. On the first leg, half of the
+    /// directions are drawn by the lobe, and half of them towards a point of the light. The
+    /// estimate divides by the density of this mixture (the balance heuristic of Veach and Guibas
+    /// 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,

@@ -12,7 +12,7 @@ use glam::DVec3;
 pub use mixture::sum;
 pub(crate) use mixture::{densities, towards};
 
-/// The BRDF, sr⁻¹.
+/// Returns the BRDF, sr⁻¹.
 #[inline]
 #[must_use]
 pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {

@@ -1,5 +1,5 @@
-//! Covariances of the spectra along the ray of a pixel: measured, and propagated from the first
-//! surface to the camera by covariance tracing.
+//! Computes covariances of the spectra along the ray of a pixel. They are measured, and the
+//! covariance at the first surface is also propagated to the camera by covariance tracing.
 
 use super::scene::{BATCHES, FREQUENCIES};
 use etendue_compare::AXES;
@@ -12,9 +12,9 @@ use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::AffineMap;
 use serde_json::{Value, json as tree_of};
 
-/// The number of frequencies on either side of zero over which covariances are computed. This is
-/// half of the number at the plane, because the noise of a second moment grows as the fourth power
-/// of the band, and half of the band contains the spectra of the windows.
+/// The number of frequencies on either side of zero over which covariances are computed. It is half
+/// of the number at the plane, because the noise of a second moment grows with the fourth power of
+/// the band. Half of the band contains the spectra of the windows.
 const BAND: usize = FREQUENCIES / 2;
 
 /// The covariance of the spectrum of a plane.
@@ -24,8 +24,8 @@ pub(super) struct FoundCovariance {
     band: [f64; 4],
     pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
-    /// Only at the camera: the covariance that covariance tracing computes there from light that
-    /// leaves the first surface.
+    /// The covariance that covariance tracing computes at the camera from the light that leaves the
+    /// first surface; `None` at all other planes.
     pub(super) propagated: Option<MatrixEstimate>,
 }
 
@@ -86,9 +86,9 @@ pub(super) fn measured(
     Ok(found)
 }
 
-/// Propagates the covariance of light that leaves the first surface to the camera: the covariance
-/// due to the window there is subtracted, travel is applied, and that due to the window at the
-/// camera is added.
+/// Propagates the covariance of light from the first surface to the camera. Subtracts the
+/// covariance due to the window at the surface, applies the travel, and adds the covariance due to
+/// the window at the camera.
 fn propagated(probe: &Probe<'_>, leaving: &FieldCovariance) -> Option<MatrixEstimate> {
     let [camera, surface] = [0, 1].map(|i: usize| window(&probe.planes[i].window));
     let less = surface.map(|row| row.map(|entry| -entry));

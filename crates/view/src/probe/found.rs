@@ -9,17 +9,17 @@ use etendue_spectrum::bandwidth::Widest;
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) comparison: PlaneComparison,
-    /// The bandwidths of the light less its mean.
+    /// The bandwidths of the light after its mean is subtracted.
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
     pub(super) judge: SecondEstimate,
-    /// Why photons do not find all light of the plane.
+    /// The reason why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
     /// The covariance of the plane's spectrum, if requested.
     pub(super) covariance: Option<FoundCovariance>,
 }
 
-/// What the backward rays are compared with.
+/// The measurement with which the backward rays are compared; below it is called the judge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SecondEstimate {
     /// Photons from the lights.
@@ -37,8 +37,8 @@ impl SecondEstimate {
     }
 }
 
-/// Returns the verdict on a plane: undecided if the judge does not find all light, and pass if
-/// neither rays nor the judge find light.
+/// Returns the verdict on a plane. The plane is undecided if the judge does not find all light. The
+/// plane passes if neither the rays nor the judge find light.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {
         Some(_) if found.judge == SecondEstimate::Photons => Verdict::Undecided,
@@ -48,7 +48,7 @@ pub(super) fn verdict(found: &Found) -> Verdict {
 }
 
 impl Found {
-    /// Whether neither rays nor photons found light.
+    /// Checks whether neither rays nor photons found light.
     pub(super) fn is_dark(&self) -> bool {
         self.comparison.measured.is_dark() && self.comparison.predicted.is_dark()
     }

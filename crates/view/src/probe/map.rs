@@ -1,5 +1,5 @@
-//! Maps how fast light changes with angle at the camera, over a picture: measured, and by the
-//! criterion of Durand et al. 2005.
+//! Makes maps over a picture of how fast light changes with angle at the camera, as measured and by
+//! the criterion of Durand et al. 2005.
 
 use super::picture::PictureBandwidth;
 use super::scene::{ProbeRequest, ProbedScene};
@@ -19,20 +19,20 @@ use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
 
-/// The results for a pixel; numbers are NaN where there is no light, or too much noise.
+/// The results for a pixel. A number is NaN if there is no light or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    /// The bandwidth of the picture less its mean along the direction where it is largest, cycles
-    /// per slope, with its standard error.
+    /// The bandwidth of the picture after its mean is subtracted, in cycles per slope, along the
+    /// direction in which the bandwidth is largest; `error` is its standard error.
     measured: f64,
     error: f64,
     /// The direction of the largest bandwidth, radians from the right, counter-clockwise.
     azimuth: f64,
-    /// The bandwidth perpendicular to the direction of the largest one.
+    /// The bandwidth perpendicular to the direction of the largest bandwidth.
     across: f64,
     /// The bandwidth by Eq. 20, corrected.
     criterion: f64,
-    /// The bandwidth of the window alone, a lower bound of the measured one.
+    /// The bandwidth of the window alone, which is a lower bound of the measured bandwidth.
     window: f64,
     /// Width of the window, pixels.
     pixels: f64,
@@ -194,10 +194,10 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the expected measurement: the bandwidth of the criterion, or of the window where that
-/// is larger.
+/// Returns the expected measurement, which is the larger of two bandwidths: the bandwidth by the
+/// criterion, and the bandwidth of the window.
 fn expected(point: &MapPoint) -> f64 {
-    // NaN is kept.
+    // This comparison is false for NaN, so NaN is returned.
     if point.criterion < point.window {
         point.window
     } else {

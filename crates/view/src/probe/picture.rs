@@ -1,4 +1,5 @@
-//! The bandwidth of the picture around a pixel, and the window that shows it.
+//! Measures the bandwidth of the picture around a pixel, and chooses the window for this
+//! measurement.
 
 use super::scene::{BATCHES, ProbedScene};
 use etendue_field::Slices;
@@ -10,19 +11,20 @@ use etendue_store::Failure;
 use serde_json::{Value, json as tree_of};
 use std::f64::consts::FRAC_PI_2;
 
-/// The smallest window that is tried, pixels.
+/// The width, in pixels, of the smallest window that is tried.
 const NARROWEST: f64 = 16.0;
-/// The ratio of a measured bandwidth to the bandwidth of the window above which the window is wide
-/// enough.
+/// The window is wide enough if the measured bandwidth exceeds the bandwidth of the window by this
+/// factor.
 const CLEAR: f64 = 3.0;
-/// The ratio up to which a bandwidth may be due to the window: light that is linear across the
-/// window has 1.49 times its bandwidth, and quadratic light 1.89 times.
+/// A measured bandwidth may be due to the window if it is at most this multiple of the window's
+/// bandwidth. If light is linear across the window, the multiple is 1.49; if light is quadratic,
+/// the multiple is 1.89.
 const SMOOTH: f64 = 1.9;
 /// A picture is found to vary if the power of its variation exceeds this many standard errors.
 const FOUND: f64 = 5.0;
-/// Largest power of noise, relative to that of the variation. Beyond a bandwidth lies a twentieth
-/// of the power. The noise has some 450 independent frequencies, so noise with this share
-/// fluctuates by a 150th of the power.
+/// The largest allowed ratio of the power of noise to the power of the variation. Beyond a
+/// bandwidth lies a twentieth of the power. The noise has about 450 independent frequencies, so
+/// noise with this share fluctuates by a 150th of the power.
 const MAX_NOISE: f64 = 0.1;
 /// A bandwidth with a larger relative standard error is not reported, because with few rays its
 /// jackknife is unreliable.
@@ -30,13 +32,14 @@ const MAX_ERROR: f64 = 0.1;
 /// The largest number of rays that are traced to choose the window.
 const RAYS_OF_TRIAL: u64 = 1 << 17;
 
-/// The bandwidth of the picture around a pixel, which is that of light at the middle of the lens
-/// as a function of direction.
+/// The bandwidth of the picture around a pixel. It is the bandwidth of the light at the middle of
+/// the lens as a function of direction.
 #[derive(Clone, Debug)]
 pub(super) struct PictureBandwidth {
     /// Width of the window, pixels.
     pub(super) pixels: f64,
-    /// The bandwidth of the picture less its mean; `None` if noise hides it.
+    /// The bandwidth of the picture after its mean is subtracted; `None` if noise hides this
+    /// bandwidth.
     pub(super) variation: Option<DirectionalBandwidth>,
     /// Whether the picture varies by more than noise.
     pub(super) varies: bool,
@@ -51,11 +54,11 @@ pub(super) struct PictureBandwidth {
 }
 
 impl PictureBandwidth {
-    /// Measures the picture around a pixel, in the requested window, or in the narrowest in which
-    /// the bandwidth is well above that of the window. Returns `None` if the ray through the pixel
-    /// meets nothing.
+    /// Measures the picture around a pixel in the requested window. If no window is requested, uses
+    /// the narrowest window whose own bandwidth is well below the measured bandwidth. Returns
+    /// `None` if the ray through the pixel meets nothing.
     ///
-    /// `progress` is called with the number of rays as they are traced.
+    /// While rays are traced, `progress` is called with their number.
     pub(super) fn new(
         scene: &ProbedScene<'_>,
         pixel: [usize; 2],
@@ -82,8 +85,8 @@ impl PictureBandwidth {
         is_above.then_some(widest)
     }
 
-    /// Returns the bandwidth perpendicular to the direction of the largest one, if it is above the
-    /// limit that the window sets.
+    /// Returns the bandwidth perpendicular to the direction of the largest bandwidth, if it is
+    /// above the limit that the window sets.
     pub(super) fn across(&self) -> Option<Uncertain> {
         let widest = self.widest()?;
         let across = self.variation.as_ref()?.across;
@@ -102,9 +105,9 @@ impl PictureBandwidth {
         SMOOTH * self.of_window()
     }
 
-    /// Returns an estimate of the largest bandwidth without the blur of the window, by subtraction
-    /// of variances. The estimate is exact for a Gaussian, and for a single frequency it is too
-    /// high by at most 0.84 bandwidths of the window.
+    /// Returns an estimate of the largest bandwidth without the blur of the window. The variances
+    /// are subtracted. The estimate is exact for a Gaussian. For a single frequency, it is too high
+    /// by at most 0.84 bandwidths of the window.
     pub(super) fn unblurred(&self) -> Option<f64> {
         let Widest { azimuth, value } = self.widest()?;
         let own = self.window.at(azimuth);
@@ -161,8 +164,8 @@ impl PictureBandwidth {
     }
 }
 
-/// Measures the picture in the narrowest window in which the bandwidth is well above that of the
-/// window, or in one as wide as the picture.
+/// Measures the picture in the narrowest window whose own bandwidth is well below the measured
+/// bandwidth. If there is no such window, uses a window as wide as the picture.
 fn widened(
     scene: &ProbedScene<'_>,
     pixel: [usize; 2],

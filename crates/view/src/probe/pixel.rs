@@ -17,10 +17,10 @@ use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
-/// Number of rays that find lights only by directions sampled from BSDFs, as a multiple of the
-/// number of backward rays, because their noise is larger.
+/// For rays that find lights only by directions sampled from BSDFs, the number of backward rays is
+/// multiplied by this factor, because the noise of such rays is larger.
 const BSDF_RAYS: u64 = 4;
-/// Difference of the seed of these rays from that of the backward rays.
+/// The difference between the seed of these rays and the seed of the backward rays.
 const BSDF_SEED: u64 = 1 << 63;
 
 /// The result of probing a pixel.
@@ -28,7 +28,7 @@ const BSDF_SEED: u64 = 1 << 63;
 pub struct ProbedPixel {
     /// The results folder.
     pub folder: PathBuf,
-    /// The verdict on rays against photons.
+    /// The verdict of the comparison of rays with photons.
     pub verdict: Verdict,
     /// Surfaces, planes and bandwidths, line by line.
     pub lines: Vec<String>,
@@ -166,8 +166,8 @@ impl Comparisons<'_> {
     }
 }
 
-/// Compares backward rays and photons at all planes. Where this does not decide, compares backward
-/// rays with rays that find lights only by directions sampled from BSDFs.
+/// Compares backward rays and photons at all planes. If a plane is then undecided, compares the
+/// backward rays with rays that find lights only by directions sampled from BSDFs.
 fn measured(
     request: &ProbeRequest,
     probe: &Probe<'_>,

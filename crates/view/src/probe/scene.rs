@@ -9,11 +9,12 @@ use etendue_world::Camera;
 use serde_json::{Value, json as tree_of};
 use std::path::{Path, PathBuf};
 
-/// Number of batches of rays and of photons, whose differences give errors and p-values.
+/// Number of batches of rays, and of photons. Errors and p-values are computed from the differences
+/// between batches.
 pub(super) const BATCHES: u32 = 64;
 /// The level of the test over all planes together.
 pub(super) const ALPHA: f64 = 0.01;
-/// The largest noise, as a share of the spectrum, with which a plane can pass.
+/// A plane can pass only if its noise, as a share of the spectrum, is at most this number.
 pub(super) const RESOLUTION: f64 = 0.1;
 
 /// Number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per
@@ -40,7 +41,7 @@ pub struct ProbeRequest {
     pub seed: u64,
     /// Whether the covariance of each plane's spectrum is measured too.
     pub covariance: bool,
-    /// The results folder; by default one below `out`.
+    /// The results folder; by default a folder below `out`.
     pub out: Option<PathBuf>,
     /// Whether files that Étendue did not write may be replaced.
     pub force: bool,

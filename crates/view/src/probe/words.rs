@@ -15,7 +15,7 @@ use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
 
-/// The share of noise in a spectrum above which the noise is underestimated.
+/// If noise is more than this share of a spectrum, the noise is underestimated.
 const NOISY: f64 = 0.3;
 
 /// Returns the angle of the central ray to the normal of a surface, radians.
@@ -101,7 +101,8 @@ pub(super) fn lines(
     let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
     lines.extend(open.filter_map(|found| {
         let report = &found.comparison.report;
-        // The reason of the comparison names only photons, but rays may be too few as well.
+        // The comparison states only that there are too few photons, but there may also be too few
+        // rays.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
         let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
         let times = report.photons_needed.map(|n| n / request.rays as f64);
@@ -200,7 +201,8 @@ fn planes(found: &[&Found]) -> Vec<String> {
     table(head, rows)
 }
 
-/// Bandwidths of the picture, and the distances of shading samples that they require.
+/// Returns lines on the bandwidths of the picture, and on the distances between shading samples
+/// that these bandwidths require.
 fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<String> {
     let line = |what: &str, cycles: String, bandwidth: f64| {
         let samples = picture.spacing(bandwidth);
@@ -264,7 +266,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
 }
 
 /// Returns, for each plane, the entries of the covariance along x, which lies in the plane of
-/// incidence; the camera also has a row with the propagated covariance.
+/// incidence. The camera also has a row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
     let row = |name: String, of: &MatrixEstimate| {

@@ -22,7 +22,7 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     // Each distinct corner becomes a vertex.
     let triangles = triangles(bytes, |word, before| {
         let key = key(word, before, counts)?;
-        // A file that fits into memory cannot hold more distinct corners than a u32 counts.
+        // A file that fits into memory has fewer distinct corners than the largest u32.
         let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
         let index = *known.entry(key).or_insert(next);
         if index == next {
