@@ -7,7 +7,7 @@
 //! writes one part of `results/validation.md`. `all` writes the whole of `results/validation.md`,
 //! with every row of the paper's Table 1. `second` compares the code shared by theory and tracers
 //! with a second implementation. `hostile` and `kills` attack the program `etendue` from outside;
-//! `wild` searches for scenes on which it is wrong. `assumptions` disables the checks of a scene
+//! `wild` and `worlds` search for scenes on which it is wrong. `assumptions` disables the checks of a scene
 //! that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
@@ -34,6 +34,7 @@ mod statistics;
 mod suite;
 mod table1;
 mod wild;
+mod worlds;
 
 use clap::{Parser, Subcommand};
 use etendue_scene::Sampling;
@@ -57,6 +58,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs for etendue in the same folder
   cargo run --release -p etendue-validation -- kills        200 kills of etendue in the same folder
   cargo run --release -p etendue-validation -- wild         100 random scenes for etendue in the same folder
+  cargo run --release -p etendue-validation -- worlds       100 random worlds, probed by etendue in the same folder
   cargo run --release -p etendue-validation -- small        20 minutes; small objects in the light of 2,000 random scenes
   cargo run --release -p etendue-validation -- assumptions  minutes; random scenes with the checks of theory switched off
   cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
@@ -157,6 +159,9 @@ enum ValidationCommand {
     /// Run random scenes with several reflecting or refracting surfaces; exit code 1 if photons reject
     /// a prediction.
     Several(wild::SmallOptions),
+    /// Probe random worlds; exit code 1 if backward rays disagree with photons, or with rays that
+    /// never sample a light.
+    Worlds(worlds::WorldOptions),
     /// Measure pulls of parameters and slopes over random scenes, and the cost of predictions; exit
     /// code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
@@ -197,6 +202,9 @@ fn main() -> ExitCode {
     }
     if let ValidationCommand::Several(options) = &command {
         return printed(wild::several(options).map(|section| vec![section]));
+    }
+    if let ValidationCommand::Worlds(options) = &command {
+        return printed(worlds::worlds(options).map(|section| vec![section]));
     }
     if let ValidationCommand::Assumptions(options) = &command {
         return printed(assumptions::assumptions(options).map(|section| vec![section]));
@@ -372,6 +380,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
         | ValidationCommand::Kills(_)
         | ValidationCommand::Wild(_)
         | ValidationCommand::Small(_)
+        | ValidationCommand::Worlds(_)
         | ValidationCommand::Several(_)
         | ValidationCommand::Assumptions(_)
         | ValidationCommand::Pulls(_) => Vec::new(),

@@ -5,6 +5,7 @@
 use crate::common::{assert_close, causes, folder, read_in, world};
 use etendue_import::Color;
 use etendue_world::{Light, Texture};
+use std::f64::consts::PI;
 
 fn light(plugin: &str, inside: &str) -> Light {
     world(&format!("<emitter type=\"{plugin}\">{inside}</emitter>"))
@@ -67,6 +68,15 @@ fn spots_have_two_angles() {
         panic!("not a spot");
     };
     assert!(matches!(picture, Some(Texture::Checkerboard { .. })));
+}
+
+#[test]
+fn projectors_have_the_shape_of_their_picture() {
+    let inside = "<float name=\"fov\" value=\"90\"/><float name=\"scale\" value=\"2\"/>";
+    let Light::Projector { half, scale, .. } = light("projector", inside) else {
+        panic!("not a projector");
+    };
+    assert_close(&[half.x, half.y, scale], &[1.0, 1.0, 2.0 * PI], 1e-12);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use etendue_world::{
     Camera, Dielectric, Falloff, Geometry, Lens, Light, Material, Projection, Shape, SkyMap,
     Texture, Triangles, World,
 };
-use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -76,10 +76,10 @@ fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
 fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     let (mean, error) = seen(world, from, at, 20_000);
     assert!(
-        (mean - expected).abs() < 5.0 * error + 1e-9 * expected,
+        (mean - expected).abs() <= 5.0 * error + 1e-9 * expected,
         "{mean} ± {error}, not {expected}"
     );
-    assert!(error < 0.02 * expected, "{mean} ± {error}");
+    assert!(error <= 0.02 * expected, "{mean} ± {error}");
 }
 
 const ASIDE: DVec3 = DVec3::new(1.0, 0.5, 1.0);
@@ -414,5 +414,41 @@ fn spots_may_have_pictures() {
         let cosine = (1.0 + there.length_squared()).sqrt().recip();
         let expected = 0.5 / PI * 4.0 * value * cosine.powi(3);
         assert_seen(&floor(vec![], vec![spot]), ASIDE, there, expected);
+    }
+}
+
+/// A projector lights a plane that faces it with the same pattern of irradiance everywhere, and
+/// nothing outside its picture. Texture coordinates decrease along X and Y of the projector, which are
+/// X and −Y of the floor.
+#[test]
+fn projectors_light_a_plane_evenly() {
+    let picture = Texture::Checkerboard {
+        to_uv: DAffine2::IDENTITY,
+        values: [0.2, 0.8],
+    };
+    for (x, y, value) in [
+        (0.1, -0.1, 0.2),
+        (0.1, 0.1, 0.8),
+        (-0.2, 0.1, 0.2),
+        (0.28, 0.14, 0.8),
+        (0.32, 0.1, 0.0),
+        (0.1, -0.16, 0.0),
+    ] {
+        let projector = Light::Projector {
+            to_world: DAffine3::from_mat3_translation(
+                DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+                DVec3::new(0.0, 0.0, 2.0),
+            ),
+            half: DVec2::new(0.15, 0.075),
+            picture: picture.clone(),
+            scale: 4.0,
+        };
+        let expected = 0.5 / PI * 4.0 * value / 4.0;
+        assert_seen(
+            &floor(vec![], vec![projector]),
+            ASIDE,
+            DVec3::new(x, y, 0.0),
+            expected,
+        );
     }
 }

@@ -86,6 +86,7 @@ fn counts(world: &World) -> Vec<(&'static str, usize)> {
         let kind = match light {
             Light::Point { .. } => "point lights",
             Light::Spot { .. } => "spotlights",
+            Light::Projector { .. } => "projectors",
             Light::Directional { .. } => "directional lights",
             Light::Constant { .. } => "constant environments",
             Light::Sky(_) => "environment maps",

@@ -2,7 +2,7 @@
 
 use crate::Texture;
 use etendue_field::LatLong;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 /// A light that is not a surface.
@@ -31,6 +31,19 @@ pub enum Light {
         /// the light, the factor is the value at the texture coordinates ½ + ½ (x, y)/(z tan
         /// `cutoff`).
         picture: Option<Texture>,
+    },
+    /// A point light that projects a picture along the Z axis of `to_world`, as in Mitsuba 3.
+    Projector {
+        /// The position and orientation of the light, without scale.
+        to_world: DAffine3,
+        /// Half of the width and height of the picture at distance 1.
+        half: DVec2,
+        /// Intensity along Z, W sr⁻¹; it is larger by 1/cos³ θ at an angle θ to Z, so that the picture is
+        /// even on a plane. In the direction (x, y, z) of the light, the value is that at the
+        /// texture coordinates ½ − ½ (x, y)/(z `half`).
+        picture: Texture,
+        /// A factor on the picture.
+        scale: f64,
     },
     /// A distant light in a single direction.
     Directional {

@@ -5,12 +5,14 @@ use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::transform::is_rigid;
 use etendue_field::{LatLong, Raster};
-use etendue_world::{Falloff, Light, SkyMap};
-use glam::{DAffine3, DVec3};
+use etendue_world::{Falloff, Light, SkyMap, Texture};
+use glam::{DAffine3, DVec2, DVec3};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Plugins supported as lights.
-const ALLOWED: &str = "point, spot, directional, constant, envmap, and area within a shape";
+const ALLOWED: &str =
+    "point, spot, projector, directional, constant, envmap, and area within a shape";
 
 /// Default half-angle of a spot, degrees.
 const CUTOFF: f64 = 20.0;
@@ -21,6 +23,7 @@ impl<'a> MitsubaReader<'a> {
         let light = match object.plugin.as_str() {
             "point" => self.point(object),
             "spot" => self.spot(object),
+            "projector" => self.projector(object),
             "directional" => self.directional(object),
             "constant" => self
                 .strength(object, "radiance")
@@ -132,6 +135,28 @@ impl<'a> MitsubaReader<'a> {
             cutoff: cutoff.to_radians(),
             falloff: Falloff::Angle,
             picture: picture?,
+        })
+    }
+
+    fn projector(&mut self, object: &'a MitsubaObject) -> Option<Light> {
+        let picture = self.emission(object, "irradiance");
+        let scale = match self.has(object, "scale") {
+            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
+            false => Some(1.0),
+        };
+        let rigid = self.rigid(object);
+        let picture = picture?;
+        let size = match &picture {
+            Texture::Bitmap(bitmap) => [bitmap.pixels.width(), bitmap.pixels.height()],
+            _ => [1, 1],
+        };
+        let half = self.half_width(object, size)?;
+        Some(Light::Projector {
+            to_world: rigid?,
+            half: DVec2::new(half, half * size[1] as f64 / size[0] as f64),
+            picture,
+            // Mitsuba's irradiance is that of a plane at distance 1 divided by π.
+            scale: PI * scale?,
         })
     }
 

@@ -119,8 +119,12 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns half of the width of the picture at distance 1.
-    fn half_width(&self, object: &'a MitsubaObject, [width, height]: [usize; 2]) -> Option<f64> {
+    /// Returns half of the width of the picture at distance 1, of a camera or a projector.
+    pub(super) fn half_width(
+        &self,
+        object: &'a MitsubaObject,
+        [width, height]: [usize; 2],
+    ) -> Option<f64> {
         let aspect = width as f64 / height as f64;
         let diagonal = |tangent: f64| tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt();
         if !self.has(object, "fov") {

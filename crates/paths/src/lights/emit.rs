@@ -80,6 +80,14 @@ impl SampledLight {
                 let cone = Cone::new(to_world.matrix3.z_axis, libm::cos(*cutoff));
                 Some(draw.away(to_world.translation, &cone, &intensity))
             }
+            Self::Projector { to_local, half, .. } => {
+                let to_world = to_local.inverse();
+                let intensity = |along| self.intensity(to_local.transform_vector3(along));
+                // The cone through the corners of the picture.
+                let cosine = (1.0 + half.length_squared()).sqrt().recip();
+                let cone = Cone::new(to_world.matrix3.z_axis, cosine);
+                Some(draw.away(to_world.translation, &cone, &intensity))
+            }
             Self::Directional { toward, irradiance } => {
                 Some(draw.afar(geometry, *toward, *irradiance))
             }

@@ -12,7 +12,7 @@ use ball::ShiningSphere;
 pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use etendue_field::whole;
 use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 pub(crate) use incoming::Incoming;
 use incoming::way;
 use shape::ShiningShape;
@@ -41,6 +41,12 @@ enum SampledLight {
         cutoff: f64,
         falloff: Falloff,
         picture: Option<Texture>,
+    },
+    Projector {
+        to_local: DAffine3,
+        half: DVec2,
+        picture: Texture,
+        scale: f64,
     },
     Directional {
         toward: DVec3,
@@ -163,6 +169,17 @@ impl From<&Light> for SampledLight {
                 falloff: *falloff,
                 picture: picture.clone(),
             },
+            Light::Projector {
+                to_world,
+                half,
+                picture,
+                scale,
+            } => Self::Projector {
+                to_local: to_world.inverse(),
+                half: *half,
+                picture: picture.clone(),
+                scale: *scale,
+            },
             Light::Directional {
                 direction,
                 irradiance,
@@ -195,7 +212,7 @@ impl SampledLight {
                     density: None,
                 })
             }
-            Self::Spot { to_local, .. } => {
+            Self::Spot { to_local, .. } | Self::Projector { to_local, .. } => {
                 let (toward, distance) = way(at, to_local.inverse().translation);
                 let intensity = self.intensity(to_local.transform_vector3(-toward));
                 (intensity > 0.0).then_some(Incoming {
@@ -226,27 +243,42 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// Returns the intensity of a spot along a direction in the spot's own coordinates, W sr⁻¹.
+    /// Returns the intensity of a spot or projector along a direction in the light's own
+    /// coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
-        let Self::Spot {
-            intensity,
-            beam,
-            cutoff,
-            falloff,
-            picture,
-            ..
-        } = self
-        else {
-            return 0.0;
-        };
-        let angle = libm::atan2(local.truncate().length(), local.z);
-        let plain = intensity * falloff.share(angle, *beam, *cutoff);
-        match picture {
-            Some(picture) if plain > 0.0 => {
-                let at = local.truncate() / (local.z * libm::tan(*cutoff));
-                plain * picture.value(0.5 + 0.5 * at)
+        match self {
+            Self::Spot {
+                intensity,
+                beam,
+                cutoff,
+                falloff,
+                picture,
+                ..
+            } => {
+                let angle = libm::atan2(local.truncate().length(), local.z);
+                let plain = intensity * falloff.share(angle, *beam, *cutoff);
+                match picture {
+                    Some(picture) if plain > 0.0 => {
+                        let at = local.truncate() / (local.z * libm::tan(*cutoff));
+                        plain * picture.value(0.5 + 0.5 * at)
+                    }
+                    _ => plain,
+                }
             }
-            _ => plain,
+            Self::Projector {
+                half,
+                picture,
+                scale,
+                ..
+            } => {
+                let at = local.truncate() / (local.z * *half);
+                if local.z <= 0.0 || at.abs().max_element() > 1.0 {
+                    return 0.0;
+                }
+                let secant = local.length() / local.z;
+                scale * picture.value(0.5 - 0.5 * at) * secant * secant * secant
+            }
+            _ => 0.0,
         }
     }
 }
