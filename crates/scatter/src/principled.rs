@@ -1,10 +1,12 @@
 //! A mixture of a metal and a diffuse base below a dielectric interface, with few parameters
 //! (Burley 2012, *Physically Based Shading at Disney*), in the form of Mitsuba's `principled`.
 
-use crate::bsdf::before;
+use crate::bsdf::{before, mirrored};
 use crate::fresnel::Interface;
 use crate::{Bsdf, Microfacets, lambertian};
+use etendue_field::{MicrofacetDistribution, power};
 use glam::DVec3;
+use std::f64::consts::{PI, TAU};
 
 /// The smallest share of directions that the facets sample, because Schlick's factor is larger at
 /// grazing angles than the share of the lobe that is estimated.
@@ -23,18 +25,32 @@ pub struct Principled {
     pub metallic: f64,
     /// Burley's roughness of the base.
     pub roughness: f64,
+    /// The share of Schlick's approximation in the reflectance of the interface.
+    pub tint: f64,
+    /// The share of flat subsurface scattering in the base.
+    pub flatness: f64,
+    /// The strength of the reflection at grazing angles, as of cloth.
+    pub sheen: f64,
+    /// The strength of the clear coat.
+    pub clearcoat: f64,
+    /// The roughness α of the clear coat, below 1.
+    pub coat_alpha: f64,
 }
 
 impl Principled {
     /// Returns the contribution of the base to the BRDF. The base reflects more light back to where
     /// it comes from if it is rough, and less light at grazing angles if it is smooth (Burley 2012,
-    /// section 5.3, with the retro-reflection apart as in Burley 2015, section 3).
+    /// section 5.3; Burley 2015, *Extending the Disney BRDF to a BSDF with integrated subsurface
+    /// scattering*, section 3).
     #[must_use]
     pub fn base_value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let [i, o] = [wi, wo].map(|w| schlick(w.z));
         let half = (wi + wo).normalize().dot(wo);
         let retro = 2.0 * self.roughness * half * half;
-        let shape = (1.0 - 0.5 * i) * (1.0 - 0.5 * o) + retro * (i + o + i * o * (retro - 1.0));
+        let diffuse = (1.0 - 0.5 * i) * (1.0 - 0.5 * o) + retro * (i + o + i * o * (retro - 1.0));
+        let grazing = |weight: f64| 1.0 + (0.5 * retro - 1.0) * weight;
+        let flat = 1.25 * (grazing(i) * grazing(o) * (1.0 / (wi.z + wo.z) - 0.5) + 0.5);
+        let shape = diffuse + self.flatness * (flat - diffuse);
         self.base() * shape * lambertian::VALUE
     }
 
@@ -47,21 +63,58 @@ impl Principled {
     /// Returns the reflectance of the facets at an angle of this cosine. Schlick's approximation
     /// describes the metal, and Fresnel's equations the dielectric.
     fn reflected(&self, cosine: f64) -> f64 {
-        let metal = self.color + (1.0 - self.color) * schlick(cosine);
         let dielectric = Interface::new(self.index, cosine).reflected;
-        self.metallic * metal + (1.0 - self.metallic) * dielectric
+        let normal = (self.index - 1.0) / (self.index + 1.0);
+        let tinted = raised(normal * normal, cosine);
+        self.metallic * raised(self.color, cosine)
+            + (1.0 - self.metallic) * (dielectric + self.tint * (tinted - dielectric))
     }
 
-    /// Returns the share of directions that are sampled by the facets: approximately their share of
-    /// the light.
-    fn facet_share(&self, wo: DVec3) -> f64 {
+    /// Returns the BRDF of the clear coat, with the distribution GTR1 (Burley 2012, section 5.4).
+    fn coat_value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        /// The roughness of Smith's masking, whatever the roughness of the distribution is.
+        const MASKING: f64 = 0.25;
+        let normal = (wi + wo).normalize();
+        let facets = Microfacets::isotropic(MicrofacetDistribution::Ggx, MASKING);
+        let masking = facets.g1(wi) * facets.g1(wo);
+        0.25 * self.clearcoat * raised(0.04, normal.dot(wo)) * self.coat_d(normal) * masking
+    }
+
+    /// Returns D of the clear coat's normals, per steradian.
+    fn coat_d(&self, normal: DVec3) -> f64 {
+        let squared = self.coat_alpha * self.coat_alpha;
+        let less = squared - 1.0;
+        less / (PI * libm::log(squared) * (1.0 + less * normal.z * normal.z))
+    }
+
+    /// Samples the mirror direction of wo at a normal of the clear coat, in proportion to D cos θ.
+    fn coat_sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        let squared = self.coat_alpha * self.coat_alpha;
+        let height = (1.0 - power(squared, 1.0 - b)) / (1.0 - squared);
+        let (sin, cos) = libm::sincos(TAU * a);
+        let radius = (1.0 - height).max(0.0).sqrt();
+        let normal = DVec3::new(radius * cos, radius * sin, height.max(0.0).sqrt());
+        mirrored(wo, normal)
+    }
+
+    fn coat_density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(normal) = (wi + wo).try_normalize() else {
+            return 0.0;
+        };
+        self.coat_d(normal) * normal.z / (4.0 * normal.dot(wo))
+    }
+
+    /// Returns the shares of directions that the facets and the clear coat sample: approximately
+    /// their shares of the light.
+    fn shares(&self, wo: DVec3) -> [f64; 2] {
         let facets = self.reflected(wo.z);
-        let base = self.base();
-        if facets + base > 0.0 {
-            (facets / (facets + base)).max(MIN_SHARE)
-        } else {
-            0.5
+        let coat = 0.25 * self.clearcoat;
+        let all = facets + coat + self.base() + (1.0 - self.metallic) * self.sheen;
+        if all <= 0.0 {
+            return [0.5, 0.0];
         }
+        let coat = coat / all;
+        [(facets / all).clamp(MIN_SHARE, 1.0 - coat), coat]
     }
 }
 
@@ -71,24 +124,42 @@ impl Bsdf for Principled {
             return 0.0;
         }
         let (value, cosine) = self.facets.value(wi, wo);
-        value * self.reflected(cosine) + self.base_value(wi, wo)
+        let sheen = (1.0 - self.metallic) * self.sheen * schlick(cosine);
+        let coat = match self.clearcoat {
+            0.0 => 0.0,
+            _ => self.coat_value(wi, wo),
+        };
+        value * self.reflected(cosine) + self.base_value(wi, wo) + sheen + coat
     }
 
     fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 {
             return 0.0;
         }
-        let share = self.facet_share(wo);
-        share * self.facets.density(wi, wo) + (1.0 - share) * lambertian::density(wi)
+        let [facets, coat] = self.shares(wo);
+        let of_coat = match coat {
+            0.0 => 0.0,
+            _ => coat * self.coat_density(wi, wo),
+        };
+        let rest = (1.0 - facets - coat).max(0.0);
+        facets * self.facets.density(wi, wo) + of_coat + rest * lambertian::density(wi)
     }
 
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
-        before(if c < self.facet_share(wo) {
+        let [facets, coat] = self.shares(wo);
+        before(if c < facets {
             self.facets.sample(wo, [a, b])
+        } else if c < facets + coat {
+            self.coat_sample(wo, [a, b])
         } else {
             lambertian::sample([a, b])
         })
     }
+}
+
+/// Returns Schlick's reflectance for a reflectance at normal incidence.
+fn raised(normal: f64, cosine: f64) -> f64 {
+    normal + (1.0 - normal) * schlick(cosine)
 }
 
 /// Returns (1 − cos)⁵, the weight in Schlick's approximation (Schlick 1994).

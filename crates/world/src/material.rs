@@ -21,7 +21,7 @@ pub enum Material {
     /// A diffuse base below a dielectric coat, on the front.
     Plastic(Plastic),
     /// A mixture of a metal and a diffuse base below a dielectric interface, on the front.
-    Principled(Principled),
+    Principled(Box<Principled>),
     /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, with α the angle to the mirror direction (Lafortune and Willems 1994).
     Phong {
         /// kd.
@@ -107,6 +107,16 @@ pub struct Principled {
     pub roughness: Texture,
     /// The anisotropy, 0 to 1.
     pub anisotropic: Texture,
+    /// The share of Schlick's approximation in the reflectance of the interface, 0 to 1.
+    pub tint: Texture,
+    /// The share of flat subsurface scattering in the base, 0 to 1.
+    pub flatness: Texture,
+    /// The strength of the reflection at grazing angles, 0 to 1.
+    pub sheen: Texture,
+    /// The strength of the clear coat, 0 to 1.
+    pub clearcoat: Texture,
+    /// The gloss of the clear coat, 0 to 1: its α is 0.1 to 0.001.
+    pub gloss: Texture,
     /// Index of refraction of the interface relative to the outside, at least 1.
     pub index: f64,
 }

@@ -7,31 +7,38 @@ use crate::range::MAX_SHARE;
 use crate::spectrum::Role;
 use etendue_world::{Material, Principled, Texture};
 
-/// Parameters of lobes that a world does not have. These parameters must be zero.
-const MISSING: [&str; 5] = ["spec_trans", "spec_tint", "sheen", "clearcoat", "flatness"];
-/// Parameters without effect where the missing lobes are zero.
-const IDLE: [&str; 2] = ["sheen_tint", "clearcoat_gloss"];
-
 impl<'a> MitsubaReader<'a> {
     pub(super) fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
-        for name in IDLE {
-            let _ = self.property(object, name);
-        }
-        let missing = MISSING.map(|name| self.is_zero(object, name));
+        // A tint does not change luminance.
+        let _ = self.property(object, "sheen_tint");
+        let is_opaque = self.is_opaque(object);
         let index = self.principled_index(object);
         let color = self.reflectance(object, "base_color", 0.5);
         let metallic = self.parameter(object, "metallic", 0.0);
         let roughness = self.parameter(object, "roughness", 0.5);
-        let anisotropic = self.parameter(object, "anisotropic", 0.0);
+        let mut zero = |name| self.parameter(object, name, 0.0);
+        let [anisotropic, tint, flatness, sheen, clearcoat, gloss] = [
+            "anisotropic",
+            "spec_tint",
+            "flatness",
+            "sheen",
+            "clearcoat",
+            "clearcoat_gloss",
+        ]
+        .map(&mut zero);
         let of = Principled {
             color: color?,
             metallic: metallic?,
             roughness: roughness?,
             anisotropic: anisotropic?,
+            tint: tint?,
+            flatness: flatness?,
+            sheen: sheen?,
+            clearcoat: clearcoat?,
+            gloss: gloss?,
             index: index?,
         };
-        let is_supported = missing.into_iter().all(|found| found == Some(true));
-        is_supported.then_some(Material::Principled(of))
+        is_opaque?.then(|| Material::Principled(Box::new(of)))
     }
 
     /// Reads a parameter from 0 to 1.
@@ -51,12 +58,13 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// Checks that a parameter is zero everywhere; any other value is a cause of refusal.
-    fn is_zero(&mut self, object: &'a MitsubaObject, name: &str) -> Option<bool> {
-        let largest = self.parameter(object, name, 0.0)?.largest();
+    /// Checks that the material transmits no light; otherwise, this is a cause of refusal.
+    fn is_opaque(&mut self, object: &'a MitsubaObject) -> Option<bool> {
+        let largest = self.parameter(object, "spec_trans", 0.0)?.largest();
         if largest > 0.0 {
-            let message = format!("{name} of principled is {largest}; allowed: 0");
-            self.report.cause(self.place_of(object, name), message);
+            let message = format!("spec_trans of principled is {largest}; allowed: 0");
+            let place = self.place_of(object, "spec_trans");
+            self.report.cause(place, message);
         }
         Some(largest <= 0.0)
     }

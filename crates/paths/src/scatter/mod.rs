@@ -41,7 +41,7 @@ impl From<&Material> for Scatter {
             Material::Conductor(conductor) => Self::Conductor(conductor.clone()),
             Material::Dielectric(dielectric) => Self::Dielectric(dielectric.clone()),
             Material::Plastic(plastic) => Self::Plastic(Box::new(Coated::new(plastic))),
-            Material::Principled(principled) => Self::Principled(Box::new(principled.clone())),
+            Material::Principled(principled) => Self::Principled(principled.clone()),
             Material::Phong {
                 diffuse,
                 specular,

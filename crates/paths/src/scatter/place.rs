@@ -95,6 +95,11 @@ pub(super) fn principled(of: &world::Principled, uv: DVec2) -> Principled {
         color: of.color.value(uv),
         metallic: of.metallic.value(uv),
         roughness,
+        tint: of.tint.value(uv),
+        flatness: of.flatness.value(uv),
+        sheen: of.sheen.value(uv),
+        clearcoat: of.clearcoat.value(uv),
+        coat_alpha: 0.1 - 0.099 * of.gloss.value(uv),
     }
 }
 

@@ -76,13 +76,18 @@ fn materials() -> Vec<(&'static str, Material)> {
         ),
         (
             "principled",
-            Material::Principled(Principled {
+            Material::Principled(Box::new(Principled {
                 color: constant(0.6),
                 metallic: constant(0.3),
                 roughness: constant(0.5),
                 anisotropic: constant(0.8),
                 index: 1.5,
-            }),
+                tint: constant(0.5),
+                flatness: constant(0.3),
+                sheen: constant(0.2),
+                clearcoat: constant(0.8),
+                gloss: constant(0.3),
+            })),
         ),
         (
             "two sides",

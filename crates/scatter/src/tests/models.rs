@@ -164,8 +164,14 @@ pub(super) fn principled(color: f64, metallic: f64, roughness: f64) -> Model {
         color,
         metallic,
         roughness,
+        tint: 0.5,
+        flatness: 0.3,
+        sheen: 0.4,
+        clearcoat: 0.8,
+        coat_alpha: 0.05,
     };
-    // The facets sample at least a tenth of the directions.
+    // The facets sample at least a tenth of the directions, and the clear coat is sampled in
+    // proportion to D without masking.
     model(format!("{mixture:?}"), 10.0, mixture)
 }
 
