@@ -50,10 +50,13 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
 
     ReportSection {
         title: format!("Planted faults at {:.0e} photons", photons as f64),
-        text: "Required: the run is rejected for every fault, and only then. p-values are not below 0.00005; \
-               a dash is a plane the fault does not touch."
+        text: "Each fault is planted in the prediction or in the photons, and every plane is \
+              compared again. The second column has the p-values of the planes in order. A dash \
+              stands for a plane that the fault does not change, and the smallest possible p is \
+              0.00005. Required: the run is rejected with every fault, and accepted without a \
+              fault."
             .to_owned(),
-        header: vec!["fault", "p, plane by plane", "run"],
+        header: vec!["fault", "p of each plane", "run is"],
         rows,
         checks: Vec::new(),
     }
@@ -100,10 +103,16 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         }));
     }
     ReportSection {
-        title: format!("Faults planted in other scenes at {:.0e} photons", photons as f64),
-        text: "Required: the run is rejected for every fault, and only then; a dash is a plane the fault does not touch."
+        title: format!(
+            "Faults planted in other scenes at {:.0e} photons",
+            photons as f64
+        ),
+        text: "Each of these faults is planted in a scene that can reveal it. The third column \
+              has the p-values of the planes in order, and a dash stands for a plane that the \
+              fault does not change. Required: the run is rejected with every fault, and accepted \
+              without a fault."
             .to_owned(),
-        header: vec!["scene", "fault", "p, plane by plane", "run"],
+        header: vec!["scene", "fault", "p of each plane", "run is"],
         rows,
         checks,
     }

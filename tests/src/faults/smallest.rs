@@ -109,8 +109,10 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     ReportSection {
         title: format!("The smallest faults at {:.0e} photons", photons as f64),
         text: format!(
-            "Each fault is planted with a size of 1 % and {HALVES} times with half of the size before. The table has the smallest \
-             that is rejected together with all larger ones, for photons of nets and of random numbers. Required: smaller than 1 %."
+            "Each fault is planted with a size of 1 %, and then {HALVES} times with half of the \
+            size before. The table shows the smallest size that is rejected together with all \
+            larger sizes, for photons from nets and from random numbers. Required: this size is \
+            smaller than 1 %."
         ),
         header: vec!["fault", "nets", "random numbers"],
         rows,

@@ -105,8 +105,11 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "Faults planted in the first-order chain of shading".to_owned(),
         text: format!(
-            "The affine maps onto the glossy sphere and off it, each changed alone, at {:.0e} photons. Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the \
-             central ray shrinks. Required: rejected every fault, accepted without.",
+            "The affine maps onto the glossy sphere and off it are each changed alone, at {:.0e} \
+            photons. The chain is judged as in a run: it is rejected when a part of its error \
+            above 10⁻⁵ remains as the neighbourhood of the central ray shrinks. *Excess* is the \
+            disagreement with the photons beyond noise, and *bound* is the upper 95 % bound of \
+            it. Required: the chain is rejected with every fault, and accepted without a fault.",
             photons as f64
         ),
         header: vec![
@@ -116,7 +119,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
             "excess",
             "bound",
             "error of the sound chain",
-            "stays",
+            "error that remains",
             "verdict",
         ],
         rows,

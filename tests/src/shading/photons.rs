@@ -40,8 +40,10 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
         if outcome.scene.name == "fig10" {
             let agree = rows[before..].iter().filter(|row| row.passes()).count();
             whole = format!(
-                "The whole chain of Fig. 10, seven steps that are seven planes: onto the surface, into its local normals, times the cosine, turned about the normal, \
-                 convolved with the lobe, back to one frame, and off the surface; {agree} of {} pass.",
+                "The whole chain of Fig. 10 has seven steps, with a plane after each: onto the \
+                surface, into its local normals, times the cosine, turned about the normal, \
+                convolved with the lobe, back to one frame, and off the surface; {agree} of {} \
+                pass.",
                 outcome.planes.len()
             );
         }
@@ -51,11 +53,20 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
             "Shading in 4D: photons against the exact prediction and against the first-order chain"
                 .to_owned(),
         text: format!(
-            "Photons and seeds as in the files. The exact prediction is a quadrature of rays through the real geometry; the chain is affine maps onto the surface and off it, \
-             the clamped cosine and the lobe that the central ray meets. Error: of the chain, computed from the exact prediction. Excess: its disagreement with the photons \
-             beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise lets one see. Backward: against rays followed from the plane to the light, where \
-             that has an area or is an environment. Required beforehand of every plane: light; p exact ≥ {level:.6} unless the stated error of the prediction may be all of it, α = {ALPHA} over all {planes} planes; bound ≤ 1.1 errors \
-             or 1 %; p backward ≥ the same level; and that what the scene emits is what it absorbs, stops and lets go, to {LEDGER:.0e}. {whole}"
+            "Photons and seeds are those of the files. Photons are compared with an exact \
+            prediction and with a first-order chain. The exact prediction is a quadrature of rays \
+            through the real geometry. The chain consists of the affine maps onto the surface and \
+            off it, the clamped cosine, and the lobe that the central ray meets. *Error* is the \
+            error of the chain, computed from the exact prediction. *Excess* is the disagreement \
+            of the chain with the photons beyond noise, and *bound* is the upper 95 % bound of \
+            it. *Resolvable* is the smallest excess that noise lets one see. *p backward* \
+            compares photons with rays followed from the plane to the light, where the light has \
+            an area or is an environment. *Ledger* is the relative difference between the flux \
+            that the scene emits and the flux that it absorbs, stops and lets go. Required of \
+            every plane: light arrives. *p exact* is at least {level:.6}, unless the stated error \
+            of the prediction may be the whole difference; this level is α = {ALPHA} over all \
+            {planes} planes. The bound is at most 1.1 errors or 1 %. *p backward* is at least the \
+            same level. The ledger is balanced to {LEDGER:.0e}. {whole}"
         ),
         header: vec![
             "scene",

@@ -36,10 +36,19 @@ pub(super) fn words() -> ReportSection {
     let rows = rows.collect();
     ReportSection {
         title: "What the paper says in words".to_owned(),
-        text: "No photons: quadratures of the primal and closed forms of strips. Where a statement holds only in part, the rows after it show where it does not. Required beforehand: the \
-               number within the bounds beside it."
-            .to_owned(),
-        header: vec!["statement", "measured", "number", "required", "holds", "verdict"],
+        text: "No photons are traced here: the numbers come from quadratures in ray space and \
+              from closed forms of strips. Where a statement holds only in part, the rows after \
+              it show where it does not hold. Required: the number is within the bounds beside \
+              it."
+        .to_owned(),
+        header: vec![
+            "statement",
+            "measured",
+            "number",
+            "required",
+            "holds",
+            "verdict",
+        ],
         rows,
         checks: Vec::new(),
     }

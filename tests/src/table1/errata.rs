@@ -163,22 +163,26 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
 fn section(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Errata: each misprint alone".to_owned(),
-        text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
-               chains; and the corrected chain. Excess: disagreement with the photons beyond noise, of what is predicted; where a missing 2π moves all \
-               light out of the window nothing is predicted. Required: printed rejected, but for all of Table 1 on a plane mirror, where its slips cancel; corrected accepted, and the corrected chain the one theory reads off the \
-               scene."
+        text: "In each row, one step of the chain is as the paper prints it, and all other steps \
+              are correct. This printed chain and the corrected chain are compared with the \
+              photons of the file, by the rule for first-order chains. *Excess* is the \
+              disagreement with the photons beyond noise, relative to the prediction. Where a \
+              missing 2π moves all light out of the window, no light is predicted. Required: the \
+              printed chain is rejected, except for all of Table 1 on a plane mirror, where its \
+              errors cancel. The corrected chain is accepted, and it equals the chain that theory \
+              derives from the scene."
             .to_owned(),
         header: vec![
             "scene",
             "plane",
             "misprint",
             "printed: excess",
-            "p",
-            "printed",
+            "printed: p",
+            "the printed chain is",
             "corrected: excess",
-            "bound",
-            "error",
-            "corrected",
+            "corrected: bound",
+            "corrected: error",
+            "the corrected chain is",
         ],
         rows: outcomes.iter().flat_map(|outcome| rows(outcome)).collect(),
         checks: Vec::new(),
@@ -219,16 +223,18 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     ReportSection {
         title: "Scenes predicted as printed".to_owned(),
         text: format!(
-            "What `etendue run --expect disagreement` sees. Required: the first-order chain rejected on some plane of each, the exact prediction on \
-             none (p ≥ {level:.6}, unless its stated error may be all of it)."
+            "The files of these scenes ask for the printed formulas, and `etendue run --expect \
+            disagreement` makes these comparisons. Required: the first-order chain is rejected on \
+            some plane of each scene. The exact prediction is rejected on no plane (p ≥ \
+            {level:.6}, unless its stated error may be the whole difference)."
         ),
         header: vec![
             "scene",
             "plane",
             "p exact",
             "printed: excess",
-            "p",
-            "printed",
+            "printed: p",
+            "the printed chain is",
         ],
         rows,
         checks,

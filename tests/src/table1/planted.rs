@@ -148,11 +148,22 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
     }
     ReportSection {
         title: "Faults planted in the affine maps".to_owned(),
-        text: "Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the central ray shrinks. The plane of which most \
-               stays, its excess over the photons of the file, what stays, and how many of the planes that the fault touches reject it. Required: rejected every \
-               fault, accepted without."
+        text: "Each fault changes the affine maps of the chain. The chain is judged as in a run: \
+              it is rejected when a part of its error above 10⁻⁵ remains as the neighbourhood of \
+              the central ray shrinks. Each row names the plane on which the largest part \
+              remains, the excess of this plane over the photons of the file, the part that \
+              remains, and how many of the planes that the fault touches reject it. Required: the \
+              chain is rejected with every fault, and accepted without a fault."
             .to_owned(),
-        header: vec!["scene", "fault", "plane", "excess", "stays", "planes", "run"],
+        header: vec![
+            "scene",
+            "fault",
+            "plane",
+            "excess",
+            "error that remains",
+            "planes that reject it",
+            "run is",
+        ],
         rows,
         checks: Vec::new(),
     }
@@ -235,10 +246,20 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     ReportSection {
         title: "Wrong numbers in the exact prediction".to_owned(),
         text: format!(
-            "Judged by the smallest p of the planes after the surface at the photons of the file, against {level:.6}, of what is beyond the stated error of the \
-             prediction; p is not below 0.00005. Required: rejected every wrong number, accepted without."
+            "Each fault is a wrong number in the exact prediction. The prediction is judged by \
+            the smallest p of the planes after the surface, with the photons of the file: it is \
+            rejected if this p is below {level:.6}. Here p counts only what is beyond the stated \
+            error of the prediction, and the smallest possible p is 0.00005. Required: the \
+            prediction is rejected with every wrong number, and accepted without one."
         ),
-        header: vec!["scene", "fault", "plane", "p", "planes", "run"],
+        header: vec![
+            "scene",
+            "fault",
+            "plane",
+            "smallest p",
+            "planes that reject it",
+            "run is",
+        ],
         rows,
         checks: Vec::new(),
     }

@@ -65,11 +65,15 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Étendue and the way back".to_owned(),
         text: format!(
-            "Rays followed through the real surfaces, 16 about the central ray, from the light's plane to the last plane across the path, in positions and \
-             index times direction cosines. Volume: |det J| − 1 of their Jacobian J by differences; invariant: largest entry of Jᵀ Ω J − Ω, the Lagrange \
-             invariant of any two neighbours; both of the chain of affine maps with slopes: chain. Behind a thin lens both are of positions and slopes: the ideal lens, \
-             u' = u − x/f, keeps those, and étendue only to second order. Back: how far a ray sent back arrives from where it came. \
-             Required: below {ROUNDING:.0e}."
+            "Around the central ray, 16 rays are followed through the real surfaces, from the \
+            light's plane to the last plane across the path. Their coordinates are positions, and \
+            the index of refraction times direction cosines. *Volume* is |det J| − 1, where J is \
+            their Jacobian by finite differences. *Invariant* is the largest entry of Jᵀ Ω J − Ω, \
+            the change of the Lagrange invariant of any two neighbours. *Chain* tests both for \
+            the chain of affine maps, with slopes as coordinates. Behind a thin lens, rays also \
+            have positions and slopes as coordinates: the ideal lens, u' = u − x/f, preserves the \
+            volume of these, and étendue only to second order. *Back* is how far from its start a \
+            ray arrives that is sent back. Required: all numbers are below {ROUNDING:.0e}."
         ),
         header: vec![
             "scene",
