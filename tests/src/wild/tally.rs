@@ -99,9 +99,9 @@ impl Tally {
         }
         ReportSection {
             title: format!("Wild scenes, seed {seed}"),
-            text: "Scenes drawn from the whole vocabulary of scene files. One that fails is run \
-                   with two other seeds; required are no panic, no hang and no plane that fails \
-                   again."
+            text: "Scenes are drawn from the whole vocabulary of scene files. A scene that fails \
+                  is run with two other seeds. Required: no scene panics or hangs, and no plane \
+                  fails again with the other seeds."
                 .into(),
             header: vec!["what", "count", "scenes"],
             rows,

@@ -210,9 +210,10 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
     );
     ReportSection {
         title: format!("Random worlds, seed {seed}"),
-        text: "Random worlds with all shapes, materials, textures and lights of Mitsuba scenes that \
-               Étendue reads, each probed at a random pixel: camera, and two surfaces. A probe that \
-               fails is repeated with two other seeds; none may fail each time."
+        text: "Random worlds have all shapes, materials, textures and lights of Mitsuba scenes \
+              that Étendue reads. Each world is probed at a random pixel, with planes at the \
+              camera and at two surfaces. A probe that fails is repeated with two other seeds. \
+              Required: no probe fails each time, and none ends without a verdict."
             .into(),
         header: vec!["what", "count", "worlds"],
         rows,
