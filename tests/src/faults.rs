@@ -95,7 +95,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
             ));
         }
         let faults = (found.len() - 1) as f64;
-        let reason = "else the scene shows nothing";
+        let reason = "a scene without faults would show nothing";
         checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
         rows.extend(found.into_iter().map(|mut row| {
             row.cells.insert(0, name.to_owned());
@@ -149,11 +149,11 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
             "two_layers",
             vec![
                 (
-                    "first layer 1 % too far",
+                    "first layer 1 % too far away",
                     chained(|c| move_layer(c, 0, 0.006)),
                 ),
                 (
-                    "second layer 1 % too far",
+                    "second layer 1 % too far away",
                     chained(|c| move_layer(c, 1, 0.014)),
                 ),
             ],
@@ -286,7 +286,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
         ("second travel + 1 %", chained(|c| scale_travel(c, 1, 1.01))),
         ("second travel − 1 %", chained(|c| scale_travel(c, 1, 0.99))),
         (
-            "sign of the shear",
+            "wrong sign of the shear",
             chained(|c| (0..2).for_each(|n| scale_travel(c, n, -1.0))),
         ),
         (
@@ -300,7 +300,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
             }),
         ),
         (
-            "sign of the Fourier transform",
+            "wrong sign of the Fourier transform",
             Box::new(|scene, plane| {
                 let mut slices = unchanged(scene, plane)?;
                 slices.half.mapv_inplace(|s| s.conj());
@@ -326,7 +326,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
             }),
         ),
         (
-            "half a bin of 64 along x",
+            "shift of half a bin of 64 along x",
             Box::new(|scene, plane| {
                 let shift = plane.window.x.half_width() / 64.0;
                 Some(shifted(unchanged(scene, plane)?, shift))

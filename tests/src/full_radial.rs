@@ -204,7 +204,7 @@ fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
             "counted",
             n - p.len() as f64,
             Below(0.5),
-            "each seed has a p",
+            "each seed must have a p",
         ),
     ];
     let cells = vec![
@@ -258,9 +258,9 @@ fn faults(photons: u64) -> ReportSection {
         let report = compared(&scene, &field, prediction);
         let p = report.p_value.unwrap_or(f64::NAN);
         let check = if rejected {
-            Check::new("rejected", p, Below(LEVEL), "the fault is planted")
+            Check::new("rejected", p, Below(LEVEL), "a fault is planted")
         } else {
-            Check::new("accepted", p, AtLeast(LEVEL), "nothing is planted")
+            Check::new("accepted", p, AtLeast(LEVEL), "no fault is planted")
         };
         let chi2 = report.chi2_per_bin.unwrap_or(f64::NAN);
         Row::new(

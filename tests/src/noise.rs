@@ -120,7 +120,12 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
         row.push(format!("{:.2} %", 100.0 * worse));
         // With 1000 independent frequencies and 64 batches, the total noise is accurate to 0.03
         // dB.
-        let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
+        let check = Check::new(
+            "total",
+            total,
+            Below(-0.1),
+            "three errors of this ratio, in dB",
+        );
         Row::new(row, vec![check])
     };
     ReportSection {
@@ -168,7 +173,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         let last = rows.len() - 1;
         // With 64 batches and about 1000 uncorrelated frequencies, a mean σ² is accurate to 0.4 %,
         // or 0.017 dB.
-        let reason = "four of the errors of a difference, dB";
+        let reason = "four errors of a difference, in dB";
         let off = net - random;
         rows[last]
             .checks
@@ -222,7 +227,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     let passes = report.verdict == Verdict::Pass;
     let checks = vec![
         Check::exact(report, Test::of(scene).level),
-        Check::fact("verdict", passes, "as a run judges"),
+        Check::fact("verdict", passes, "judged as in a run"),
     ];
     Row::new(cells, checks)
 }

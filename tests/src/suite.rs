@@ -111,8 +111,8 @@ fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -
         Verdict::Undecided => (true, false),
     };
     let mut checks = vec![
-        Check::fact("agrees", agrees, "as a run judges"),
-        Check::fact("decided", decided, "as a run judges"),
+        Check::fact("agrees", agrees, "judged as in a run"),
+        Check::fact("decided", decided, "judged as in a run"),
     ];
     checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
     Row::new(cells, checks)
@@ -144,7 +144,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
         let cells = vec![format!("{name}: photons through"), through.to_string()];
-        let reason = "a lot passes one, and nothing both";
+        let reason = "much light passes one occluder, and none passes both";
         let check = |bound| Check::new("through", through as f64, bound, reason);
         let checks = vec![check(AtLeast(wanted as f64)), check(AtMost(most))];
         rows.push(Row::new(cells, checks));
@@ -204,7 +204,12 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             "the same with moduli, without phases".to_owned(),
             format!("{blind:.3}"),
         ],
-        vec![Check::new("moduli", blind, Above(1e-2), "phases matter")],
+        vec![Check::new(
+            "moduli",
+            blind,
+            Above(1e-2),
+            "without phases, the spectra do not cancel",
+        )],
     ));
     ReportSection {
         title: "Two occluders (Fig. 7)".to_owned(),
@@ -247,7 +252,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
             [b / a, b / c]
         };
         let (measured, predicted) = (ratio(|p| p.measured), ratio(|p| p.predicted));
-        let reason = "far more than the next size of blockers has";
+        let reason = "H is far larger than for blockers of the other sizes";
         let checks = [measured, predicted].map(|[to_a, to_c]| {
             [
                 Check::new("b/a", to_a, AtLeast(5.0), reason),
@@ -259,7 +264,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
         row.push(format!("{:.0}, {:.0}", measured[0], measured[1]));
         rows.push(Row::new(row, checks.concat()));
     }
-    let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two");
+    let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two cuts");
     ReportSection {
         title: "High frequencies of a shadow (Fig. 9)".to_owned(),
         text: "H is the share of the energy above a cut in the spectrum of the windowed \
@@ -316,7 +321,7 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         let (off, wrong) = ((measured - known).abs(), (predicted / known - 1.0).abs());
         let checks = vec![
             Check::new("measured", off, Below(4.0 * error), "four standard errors"),
-            Check::new("theory", wrong, Below(1e-4), "of its quadrature"),
+            Check::new("theory", wrong, Below(1e-4), "error of the quadrature"),
         ];
         let cells = vec![
             format!("{known:.6}"),
@@ -325,7 +330,7 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         ];
         rows.push(Row::new(cells, checks));
     }
-    let lit = Check::fact("furnace", !rows.is_empty(), "the suite has one");
+    let lit = Check::fact("furnace", !rows.is_empty(), "the suite has this scene");
     ReportSection {
         title: "White furnace".to_owned(),
         text: "The integral ∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m is known: \

@@ -15,7 +15,8 @@ use number::ClaimNumber;
 const PHOTONS: u64 = 1 << 20;
 /// Maximum deviation of a measured number from its prediction, in standard errors.
 const PULL: f64 = 4.0;
-const CHANCE: &str = "1 in 16,000 by chance, of some 60 numbers";
+const CHANCE: &str = "by chance, 1 of 16,000 numbers is farther off, and there are about 60 \
+    numbers";
 
 /// A statement of the paper, with the result that photons give for it.
 struct Claim {
@@ -84,5 +85,9 @@ fn decreasing(numbers: &[ClaimNumber]) -> Check {
         let error = pair[0].error.hypot(pair[1].error);
         pair[0].value - pair[1].value > PULL * error
     });
-    Check::fact("falling", falls, "each below the one before, beyond noise")
+    Check::fact(
+        "falling",
+        falls,
+        "each number is below the one before, beyond noise",
+    )
 }

@@ -126,13 +126,18 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let squares: Vec<f64> = of_group.iter().map(|m| (m.ratio / scale).powi(2)).collect();
     let [square, over_scenes] = mean(&squares);
     let error = common(of_group, scale).max(over_scenes);
-    let (slack, reason) = (BORNE * error, "1 to 31/29, within its errors");
+    let (slack, reason) = (BORNE * error, "expected from 1 to 31/29, within its errors");
     let largest = of_group.iter().map(|m| m.ratio / scale).fold(0.0, worse);
     row.checks.extend([
         Check::new("p", uniform, AtLeast(0.01 / 3.0), "1 % over all groups"),
         Check::new("square", square, AtLeast(1.0 - slack), reason),
         Check::new("square", square, Below(OF_ONE + slack), reason),
-        Check::new("ratio", largest, Below(LARGEST), "3e-5 are beyond it"),
+        Check::new(
+            "ratio",
+            largest,
+            Below(LARGEST),
+            "a share of 3e-5 is beyond this by chance",
+        ),
     ]);
     row.cells.push(format!("{uniform:.3}"));
     row.cells.push(format!("{square:.3} ± {error:.3}"));

@@ -58,7 +58,11 @@ pub(crate) fn second() -> io::Result<ReportSection> {
             "verdict",
         ],
         rows: checks.iter().flat_map(rows).collect(),
-        checks: vec![report::Check::fact("faults", named, "rows are of faults")],
+        checks: vec![report::Check::fact(
+            "faults",
+            named,
+            "every row needs a fault",
+        )],
     })
 }
 

@@ -32,21 +32,21 @@ fn faults() -> Vec<(&'static str, Change)> {
         ("onto: 1/cos θ₀ beside x left out", |c| {
             row(&mut c.onto, 0, c.incidence.cos());
         }),
-        ("onto: 1/cos θ₀ beside x twice", |c| {
+        ("onto: 1/cos θ₀ beside x counted twice", |c| {
             row(&mut c.onto, 0, 1.0 / c.incidence.cos());
         }),
         ("off: curvature left out", |c| {
             let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&c.off);
         }),
-        ("off: sign of curvature", |c| {
+        ("off: wrong sign of curvature", |c| {
             let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&forth).then(&c.off);
         }),
         ("off: cos θ₁ beside x left out", |c| {
             row(&mut c.off, 0, 1.0 / c.outgoing[0].cos());
         }),
-        ("off: sign of y", |c| row(&mut c.off, 1, -1.0)),
+        ("off: wrong sign of y", |c| row(&mut c.off, 1, -1.0)),
     ]
 }
 

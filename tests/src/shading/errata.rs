@@ -49,7 +49,13 @@ pub(super) fn errata() -> ReportSection {
     let rows = all.into_iter().map(|e| {
         let checks = vec![
             Check::new("printed", e.off, AtLeast(e.at_least), "it is wrong"),
-            Check::new("corrected", e.mended, Below(e.at_most), "good to so much"),
+            Check::new(
+                "corrected",
+                e.mended,
+                Below(e.at_most),
+                "the reference is accurate to \
+                this",
+            ),
         ];
         let cells = vec![
             e.place.to_owned(),
@@ -226,7 +232,7 @@ fn environment() -> Vec<Erratum> {
         };
         Erratum {
             place,
-            printed: "env^(Ωx/k) cos⁺^(Ωx/k − Ωθ), hats put in".to_owned(),
+            printed: "env^(Ωx/k) cos⁺^(Ωx/k − Ωθ), with hats added".to_owned(),
             corrected: "env^(Ωx/k) cos⁺^(Ωx/k + Ωθ)/|k|".to_owned(),
             off: apart(&of(&|[x, t]| hat(x / k) * cosine_hat(x / k - t)), &plain),
             at_least,

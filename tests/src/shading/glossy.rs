@@ -378,12 +378,19 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             told += i32::from(rejected);
             let within = |id, x: f64, slack: f64| {
                 let bounds = [Above(ours[0] - slack), Below(ours[1] + slack)];
-                bounds.map(|bound| Check::new(id, x, bound, "what is said, with its error"))
+                bounds.map(|bound| Check::new(id, x, bound, "within the error of the criterion"))
             };
             let mut checks = vec![Check::new("noise", off.abs(), Below(MOST), "errors")];
             checks.extend(within("exact one", exact, 0.0));
             checks.extend(within("measured one", found.value, noise));
-            checks.extend(apart.then(|| Check::fact("rejected", rejected, "the print is apart")));
+            checks.extend(apart.then(|| {
+                Check::fact(
+                    "rejected",
+                    rejected,
+                    "the printed criterion \
+                differs by more than the errors",
+                )
+            }));
             worst = worst.max(off.abs());
             if floor <= 0.0 {
                 farthest = farthest.max((exact / said - 1.0).abs());

@@ -34,8 +34,19 @@ pub(super) fn operators() -> ReportSection {
             small(found.fault.1),
         ];
         let checks = vec![
-            Check::new("off", found.off, Below(REQUIRED), "sides good to 1e-12"),
-            Check::new("fault", found.fault.1, Above(SEEN), "far beyond that"),
+            Check::new(
+                "off",
+                found.off,
+                Below(REQUIRED),
+                "both sides are accurate to 1e-12",
+            ),
+            Check::new(
+                "fault",
+                found.fault.1,
+                Above(SEEN),
+                "a fault changes far more than the \
+                tolerance",
+            ),
         ];
         Row::new(cells, checks).of(found.line)
     };

@@ -132,17 +132,20 @@ fn stands() -> Vec<Stand> {
                     "cosine missing",
                     crossings(|s, c| scaled(c, 1.0 / cosine(s, &c))),
                 ),
-                ("cosine twice", crossings(|s, c| scaled(c, cosine(s, &c)))),
                 (
-                    "cosine of the central ray for all",
+                    "cosine counted twice",
+                    crossings(|s, c| scaled(c, cosine(s, &c))),
+                ),
+                (
+                    "cosine of the central ray for all rays",
                     crossings(|s, c| scaled(c, s.planes[0].longitude.cos() / cosine(s, &c))),
                 ),
                 (
-                    "Fresnel factor of s alone",
+                    "Fresnel factor of s-polarised light alone",
                     crossings(|s, c| scaled(c, polarised(cosine(s, &c))[0])),
                 ),
                 (
-                    "Fresnel factor of p alone",
+                    "Fresnel factor of p-polarised light alone",
                     crossings(|s, c| scaled(c, polarised(cosine(s, &c))[1])),
                 ),
                 (
@@ -201,7 +204,7 @@ fn stands() -> Vec<Stand> {
                     Plant::ScatteringSystem(|s| lobe(s, 0.99_f64.powi(-2))),
                 ),
                 (
-                    "modulation of the weights 1 for 0.9",
+                    "modulation of the weights 1 instead of 0.9",
                     Plant::ScatteringSystem(|s| full(&mut s.reflectance)),
                 ),
             ],
@@ -265,7 +268,7 @@ fn stands() -> Vec<Stand> {
             plane: "reflection",
             texts: &[],
             faults: vec![(
-                "α² for α",
+                "α² instead of α",
                 Plant::Photons(
                     |s| {
                         if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {

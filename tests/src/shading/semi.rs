@@ -22,12 +22,15 @@ type BrdfChange = fn(&mut Reflectance);
 const FAULTS: [(&str, BrdfChange); 6] = [
     ("none", |_| ()),
     ("weights swapped", swapped),
-    ("weights at their means: a product", |r| {
-        for term in &mut r.terms {
-            change(&mut term.weight, |grating| grating.modulation = 0.0);
-        }
-    }),
-    ("sign of the phase", |r| {
+    (
+        "weights replaced by their means, which gives a product",
+        |r| {
+            for term in &mut r.terms {
+                change(&mut term.weight, |grating| grating.modulation = 0.0);
+            }
+        },
+    ),
+    ("wrong sign of the phase", |r| {
         for term in &mut r.terms {
             change(&mut term.weight, |grating| grating.phase = -grating.phase);
         }
@@ -205,7 +208,8 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
 
 /// Maximum relative error of a correct operator.
 const LARGEST: f64 = 0.002;
-const WHY: &str = "4 and 8 million photons leave 0.11 % and 0.13 % beyond their noise; noise spreads by less than itself";
+const WHY: &str = "with 4 and 8 million photons, 0.11 % and 0.13 % remain beyond noise; the noise \
+    varies by less than its own size";
 
 #[cfg(test)]
 mod tests {

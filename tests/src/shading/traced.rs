@@ -44,10 +44,10 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     vec![
         ("no cosine", Box::new(|r| r.terms[0].before = Factor::One)),
         (
-            "cosine twice",
+            "cosine counted twice",
             Box::new(move |r| r.terms[0].before = Factor::Other(twice)),
         ),
-        ("sign of k", Box::new(|r| r.curvature = -r.curvature)),
+        ("wrong sign of k", Box::new(|r| r.curvature = -r.curvature)),
         (
             "lobe 5 % wider",
             Box::new(|r| {
@@ -81,7 +81,12 @@ pub(super) fn traced() -> ReportSection {
                 Some(known) => order(fitted, known),
                 None => {
                     let largest = errors.into_iter().fold(0.0, worse);
-                    Check::new("error", largest, Below(ROUNDING), "what trapezoids leave")
+                    Check::new(
+                        "error",
+                        largest,
+                        Below(ROUNDING),
+                        "error of the trapezoid rule",
+                    )
                 }
             };
             let cells = vec![
@@ -101,7 +106,7 @@ pub(super) fn traced() -> ReportSection {
     let right = convex.error(ReflectionStep::Outgoing, SIZES[3], &|_| ());
     for (name, plant) in planted() {
         let errors = SIZES.map(|size| convex.error(ReflectionStep::Outgoing, size, &*plant));
-        let reason = "of a right chain the error falls with the size";
+        let reason = "the error of a correct chain falls with the size";
         let check = Check::new("seen", errors[3], Above(SEEN * right), reason);
         let cells = vec![
             "outgoing".to_owned(),
@@ -111,7 +116,7 @@ pub(super) fn traced() -> ReportSection {
             format!("{:.2e}", errors[0]),
             format!("{:.2e}", errors[3]),
             "–".to_owned(),
-            "stays".to_owned(),
+            "error remains".to_owned(),
         ];
         rows.push(Row::new(cells, vec![check]));
     }

@@ -23,7 +23,15 @@ pub(super) fn words() -> ReportSection {
     let rows = all.map(|s| {
         let [low, high] = s.expected;
         let checks = [AtLeast(low), AtMost(high)];
-        let checks = checks.map(|bound| Check::new("number", s.number, bound, "known beforehand"));
+        let checks = checks.map(|bound| {
+            Check::new(
+                "number",
+                s.number,
+                bound,
+                "bounds fixed \
+            before the run",
+            )
+        });
         let cells = vec![
             s.said.to_owned(),
             s.measured,

@@ -48,7 +48,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             of(Edition::Equations, |s, p| s.incidence = p.incidence),
         ),
         (
-            "Eq. 9, scale: ℓ̂(−c₀ Ωx) for ℓ̂(−Ωx/c₀)",
+            "Eq. 9, scale: ℓ̂(−c₀ Ωx) instead of ℓ̂(−Ωx/c₀)",
             "incidence",
             Box::new(|s, theta0, _| {
                 let (c, row) = (theta0.cos(), &mut s.incidence.matrix[0]);
@@ -56,7 +56,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             }),
         ),
         (
-            "Eq. 9, factor: c₀ for 1/c₀",
+            "Eq. 9, factor: c₀ instead of 1/c₀",
             "incidence",
             Box::new(|s, theta0, _| s.incidence.factor *= theta0.cos().powi(2)),
         ),
@@ -76,7 +76,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             of(Edition::Equations, |s, p| s.outgoing = p.outgoing),
         ),
         (
-            "Eq. 10, scale: ℓ̂(Ωx/c₁) for ℓ̂(c₁ Ωx)",
+            "Eq. 10, scale: ℓ̂(Ωx/c₁) instead of ℓ̂(c₁ Ωx)",
             "outgoing",
             Box::new(|s, theta0, _| s.outgoing.matrix[0][0] /= theta0.cos().powi(2)),
         ),
@@ -90,7 +90,11 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             "outgoing",
             of(Edition::Table, |s, p| s.outgoing = p.outgoing),
         ),
-        ("Eq. 11, sign", "curvature", cosine(|theta0| theta0, -1.0)),
+        (
+            "Eq. 11, wrong sign",
+            "curvature",
+            cosine(|theta0| theta0, -1.0),
+        ),
         (
             "Eq. 19, M without cosine, before",
             "curvature",
@@ -138,7 +142,11 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
         let is_due = printed.verdict == due;
         let is_sound = sound.verdict == Verdict::Pass;
         let checks = vec![
-            Check::fact("printed", is_due, "it is wrong, unless slips cancel"),
+            Check::fact(
+                "printed",
+                is_due,
+                "the formula is wrong, unless its errors cancel",
+            ),
             Check::fact("corrected", is_sound, "it is right"),
             Check::new("chain", bench.apart(index), Below(SAME), "rounding"),
         ];

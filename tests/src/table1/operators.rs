@@ -84,14 +84,14 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
     let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
+        Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
         Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
         follows(&fall, known),
     ];
     if resolvable.is_some_and(|r| error > 2.0 * r) {
         let p = p_first.unwrap_or(1.0);
-        let reason = "the error is twice what noise hides";
+        let reason = "the error is twice what noise can hide";
         checks.push(Check::new("told apart", p, Below(level), reason));
     }
     let planar = section(&view).map(|(path, stage)| path.found(stage));
@@ -129,7 +129,12 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
         return order::check(fall.order, known);
     }
     let largest = fall.errors.into_iter().fold(0.0, worse);
-    Check::new("order", largest, Below(QUADRATURE), "two quadratures")
+    Check::new(
+        "order",
+        largest,
+        Below(QUADRATURE),
+        "difference of two quadratures",
+    )
 }
 
 /// Returns the name of the last step before a plane, and the row of the paper's Table 1 that

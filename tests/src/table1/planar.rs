@@ -131,7 +131,7 @@ pub(super) struct StageFound {
 impl StageFound {
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
-            Check::new("map", self.map, Below(ROUNDING), "rounding of a sum"),
+            Check::new("map", self.map, Below(ROUNDING), "rounding error of a sum"),
             order::check(self.order, self.known),
         ]
     }

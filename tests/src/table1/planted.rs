@@ -27,41 +27,43 @@ fn cosine(map: &mut SpectrumMap<4>, at: usize, by: f64) {
 fn faults() -> Vec<(&'static str, MirrorChange)> {
     vec![
         ("none", |_, _| ()),
-        ("sign of travel", |s, _| s.distance = -s.distance),
-        ("incidence: sign of x", |s, _| turned(&mut s.incidence, 0)),
+        ("travel: wrong sign", |s, _| s.distance = -s.distance),
+        ("incidence: wrong sign of x", |s, _| {
+            turned(&mut s.incidence, 0)
+        }),
         ("incidence: φ not flipped", |s, _| {
             turned(&mut s.incidence, 3);
         }),
-        ("incidence: sign of θ₀", |s, _| {
+        ("incidence: wrong sign of θ₀", |s, _| {
             s.incidence.phase[2] = -s.incidence.phase[2];
         }),
-        ("curvature: sign", |s, b| {
+        ("curvature: wrong sign", |s, b| {
             s.curvature = AffineMap::<4>::back(b.shape, b.theta0).spectrum_map();
         }),
-        ("back: sign, the shears cancel", |s, b| {
+        ("back: wrong sign, so that the shears cancel", |s, b| {
             s.back = AffineMap::<4>::curvature(b.shape, -b.theta0).spectrum_map();
         }),
         ("mirror: θ not turned", |s, _| turned(&mut s.mirror, 2)),
         ("mirror: φ not turned", |s, _| turned(&mut s.mirror, 3)),
-        ("outgoing: sign of θ₁", |s, _| {
+        ("outgoing: wrong sign of θ₁", |s, _| {
             s.outgoing.phase[2] = -s.outgoing.phase[2];
         }),
-        ("incidence: cos for 1/cos beside x", |s, b| {
+        ("incidence: cos instead of 1/cos beside x", |s, b| {
             cosine(&mut s.incidence, 0, b.theta0.cos().powi(2));
         }),
-        ("incidence: cos for 1/cos in front", |s, b| {
+        ("incidence: cos instead of 1/cos in front", |s, b| {
             s.incidence.factor *= b.theta0.cos().powi(2);
         }),
-        ("outgoing: 1/cos for cos beside x", |s, b| {
+        ("outgoing: 1/cos instead of cos beside x", |s, b| {
             cosine(&mut s.outgoing, 0, b.theta0.cos().powi(-2));
         }),
-        ("outgoing: 1/cos for cos in front", |s, b| {
+        ("outgoing: 1/cos instead of cos in front", |s, b| {
             s.outgoing.factor *= b.theta0.cos().powi(-2);
         }),
         ("mirror: times cos θ₀", |s, b| {
             s.mirror.factor *= b.theta0.cos();
         }),
-        ("curvature: cos θ₀ on the row of θ", |s, b| {
+        ("curvature: cos θ₀ in the row of θ", |s, b| {
             // Replaces diag(1, c₀) M by diag(c₀, 1) M.
             s.curvature = swapped(b, -1.0).spectrum_map();
             s.back = swapped(b, 1.0).spectrum_map();
@@ -189,7 +191,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
         ("k − 2 %", |v| scaled(v, Parameter::Curvature(0, 0), 0.98)),
         ("θ₀ + 1°", |v| turned(v, 1.0)),
         ("θ₀ − 1°", |v| turned(v, -1.0)),
-        ("indices of the wrong sides", |v| {
+        ("indices of the two sides swapped", |v| {
             let mut view = v.clone();
             let Specular::Refraction { front, back } = &mut view.system.elements[0].event else {
                 return None;

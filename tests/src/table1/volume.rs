@@ -59,7 +59,15 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
             outcome.scene.planes[index].name.clone(),
         ];
         cells.extend(found.map(|(_, d)| format!("{d:.1e}")));
-        let checks = found.map(|(id, d)| Check::new(id, d, Below(ROUNDING), "rounding of steps"));
+        let checks = found.map(|(id, d)| {
+            Check::new(
+                id,
+                d,
+                Below(ROUNDING),
+                "rounding error of \
+            finite differences",
+            )
+        });
         rows.push(Row::new(cells, checks.into()));
     }
     ReportSection {
