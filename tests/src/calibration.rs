@@ -72,7 +72,7 @@ pub(crate) fn calibration(
     for (planes, (_, name)) in all[1..].iter().zip(FAULTS) {
         let section = judge(planes, seeds, &scene, 1.0);
         let title = format!("The same with {name}");
-        let text = "A planted fault makes batches depend on each other. Required: p is not \
+        let text = "The planted fault makes batches depend on each other. Required: p is not \
             uniform by the bounds above.";
         sections.push(section.planted(title, text, sound));
     }

@@ -201,8 +201,8 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
 
 const HEADER: [&str; 8] = [
     "photons",
-    "plane or numbers",
-    "in window",
+    "plane or kind of numbers",
+    "photons in window",
     "χ²/dof",
     "p",
     "relative error",

@@ -395,8 +395,8 @@ fn environment(photons: u64) -> [Claim; 2] {
         Claim {
             said: "for light that varies only in angle, the cosine is a convolution over normals: \
                 the spectrum depends on Ωx/k (6.1)",
-            shown: "energy of the spectrum of a diffuse sphere of k = 1 /m minus the energy of \
-                the spectrum of a sphere of k = 3 /m, both at Ωx/k, relative to the former"
+            shown: "energy of the difference between the spectra of diffuse spheres of k = 1 /m \
+                and k = 3 /m at the same Ωx/k, relative to the energy of the former"
                 .to_owned(),
             checks: vec![Check::new(
                 "apart",
