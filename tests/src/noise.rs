@@ -136,9 +136,9 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             in dB, and a negative ratio means that nets have less noise. *Total* compares the \
             sums over all frequencies of a plane. The next four columns describe the ratios at \
             the single frequencies, and the last column is the share of frequencies with a ratio \
-            above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so that \
-            with few batches the largest ratio says little. Required: the total with nets is \
-            smaller by more than 0.1 dB.",
+            above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so the \
+            largest ratio says little with few batches. Required: the total with nets is smaller \
+            by more than 0.1 dB.",
             10.0 / 10f64.ln() * (2.0 / f64::from(batches - 1)).sqrt()
         ),
         header: vec![

@@ -83,7 +83,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
               planes against the exact prediction. Required: a row has both kinds of checks, and \
               all of them pass. On some planes, the noise of photons from nets is below the error \
               of the prediction, which comes from its transform and its quadrature. Such a plane \
-              passes with a small p if the stated error of the prediction may be the whole \
+              passes with a small p if the stated error of the prediction may explain the whole \
               difference."
             .to_owned(),
         header: vec![

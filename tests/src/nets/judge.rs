@@ -245,7 +245,7 @@ fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
         Row::new(cells, Vec::new())
     };
     ReportSection {
-        title: "The scenes farthest off".to_owned(),
+        title: "The scenes with the largest errors".to_owned(),
         text:
             "These are the scenes with the largest L2 ratios. The generator makes the same scene \
             again from its number. This table has no requirements of its own."

@@ -44,7 +44,7 @@ pub(crate) fn page() -> ExitCode {
 }
 
 const HEAD: &str = "\
-# Errors stated are errors made
+# Stated errors are true errors
 
 Written by `cargo run --release -p etendue-validation -- nets`.
 

@@ -109,7 +109,8 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
             photons. The chain is judged as in a run: it is rejected when a part of its error \
             above 10⁻⁵ remains as the neighbourhood of the central ray shrinks. *Excess* is the \
             disagreement with the photons beyond noise, and *bound* is the upper 95 % bound of \
-            it. Required: the chain is rejected with every fault, and accepted without a fault.",
+            the excess. Required: the chain is rejected with every fault, and accepted without a \
+            fault.",
             photons as f64
         ),
         header: vec![

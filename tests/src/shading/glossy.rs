@@ -431,11 +431,11 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             ray to the eye: it is the frequency, in cycles per unit slope, below which 95 % of \
             the energy lies. A sphere with a glossy BRDF is lit by a beam (an environment with \
             content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; \
-            an edge by itself has all frequencies). Where a row says nothing else, k = 0.5/m, θ₀ \
-            = −θ₁ = 0.5, d = 0.5 m, and Phong n = 2500; n = 400 beside the mirror direction and \
-            behind the slit. *Said* is the corrected criterion, Ω_ρ |1 + 2kd/cos θ₁| or Ω_ρ |1 + \
-            d (cos θ₀/d' + 2k)/cos θ₁|, where Ω_ρ is the 95 % cutoff of the lobe. *Exact* is a \
-            quadrature through the real geometry, by the same estimator with the same windows. \
+            an edge by itself has all frequencies). Unless a row states other values, k = 0.5/m, \
+            θ₀ = −θ₁ = 0.5, d = 0.5 m, and Phong n = 2500; n = 400 beside the mirror direction \
+            and behind the slit. *Said* is the corrected criterion, Ω_ρ |1 + 2kd/cos θ₁| or Ω_ρ \
+            |1 + d (cos θ₀/d' + 2k)/cos θ₁|, where Ω_ρ is the 95 % cutoff of the lobe. *Exact* is \
+            a quadrature through the real geometry, by the same estimator with the same windows. \
             *Measured* comes from the photons, with its jackknife error over 64 batches. The \
             bounds were fixed before the run. Required: the measured bandwidth is within {MOST} \
             errors of the exact one (the largest deviation of {count} is {worst:.2} errors; the \

@@ -234,7 +234,7 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
             "The files of these scenes ask for the printed formulas, and `etendue run --expect \
             disagreement` makes these comparisons. Required: the first-order chain is rejected on \
             some plane of each scene. The exact prediction is rejected on no plane (p ≥ \
-            {level:.6}, unless its stated error may be the whole difference)."
+            {level:.6}, unless its stated error may explain the whole difference)."
         ),
         header: vec![
             "scene",

@@ -34,19 +34,19 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             "Photons are compared with the exact prediction in ray space and with the first-order \
             chain of affine maps. *Error* is the error of the chain, computed from the exact \
             prediction. *Excess* is the disagreement of the chain with the photons beyond noise, \
-            and *bound* is the upper 95 % bound of it. *Resolvable* is the smallest excess that \
-            noise lets one see. *Order* is the exponent with which the error falls on \
-            neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares, and *last* is the \
-            exponent from 1/4 to 1/8. The columns *2D* repeat the table above for the section in \
-            the plane of incidence, for one surface whose principal axes lie in this plane. \
-            Required of every plane: light arrives. *p exact* is at least {level:.6}, unless the \
-            stated error of the prediction may be the whole difference; this level is α = 0.01 \
-            over all {planes} planes (scenes with the same light are lit by the same photons, so \
-            that their p-values are alike, and the level is on the safe side). The bound is at \
-            most 1.1 errors or 1 %. The order is within {ORDER} of 1 where light comes at an \
-            angle and of 2 where it comes along normals, and there is no error where the chain \
-            leaves nothing out. *p first order* is below {level:.6} wherever the error is above \
-            twice the resolvable excess."
+            and *bound* is the upper 95 % bound of the excess. *Resolvable* is the smallest \
+            excess that can be detected above the noise. *Order* is the exponent with which the \
+            error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares, and \
+            *last* is the exponent from 1/4 to 1/8. The columns *2D* repeat the table above for \
+            the section in the plane of incidence, for one surface whose principal axes lie in \
+            this plane. Required of every plane: light arrives. *p exact* is at least {level:.6}, \
+            unless the stated error of the prediction may explain the whole difference; this \
+            level is α = 0.01 over all {planes} planes (scenes with the same light are lit by the \
+            same photons, so that their p-values are alike, and the level is on the safe side). \
+            The bound is at most 1.1 errors or 1 %. The order is within {ORDER} of 1 where light \
+            comes at an angle and of 2 where it comes along normals, and there is no error where \
+            the chain leaves nothing out. *p first order* is below {level:.6} wherever the error \
+            is above twice the resolvable excess."
         ),
         header: vec![
             "scene",

@@ -71,7 +71,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
         rows.push(Row::new(cells, checks.into()));
     }
     ReportSection {
-        title: "Étendue and the way back".to_owned(),
+        title: "Étendue and reversed rays".to_owned(),
         text: format!(
             "Around the central ray, 16 rays are followed through the real surfaces, from the \
             light's plane to the last plane across the path. Their coordinates are positions, and \
@@ -80,8 +80,9 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
             the change of the Lagrange invariant of any two neighbours. *Chain* tests both for \
             the chain of affine maps, with slopes as coordinates. Behind a thin lens, rays also \
             have positions and slopes as coordinates: the ideal lens, u' = u − x/f, preserves the \
-            volume of these, and étendue only to second order. *Back* is how far from its start a \
-            ray arrives that is sent back. Required: all numbers are below {ROUNDING:.0e}."
+            volume of these, and étendue only to second order. *Back* is the distance, in \
+            positions and direction cosines, between the start of a ray and the end of the same \
+            ray after it is sent back. Required: all numbers are below {ROUNDING:.0e}."
         ),
         header: vec![
             "scene",
