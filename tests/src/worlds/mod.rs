@@ -184,7 +184,7 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
             WorldOutcome::Nothing => "pixels that see nothing".to_owned(),
             WorldOutcome::Wrong(planes) => {
                 wrong += 1;
-                format!("**wrong**, fail again: {planes}")
+                format!("**wrong**, failures that repeat: {planes}")
             }
             WorldOutcome::Broken(why) => {
                 broken += 1;
