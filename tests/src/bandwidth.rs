@@ -43,18 +43,26 @@ const HEAD: &str = "\
 
 Written by `cargo run --release -p etendue-validation -- bandwidth`.
 
-Durand et al. 2005, section 6.2, say from the spectrum how finely a glossy reflection must be sampled: B, in cycles per unit slope at a fixed point d away from the surface, \
-for light from far away (Eq. 20), and B' with an edge at d' before the surface (Eq. 21):
+Durand et al. 2005, section 6.2, derive from the spectrum how finely a glossy reflection must be \
+sampled. They give the bandwidth B, in cycles per unit slope, at a fixed point at distance d \
+from the surface, for light from far away (Eq. 20). B' is the bandwidth with an edge at distance \
+d' before the surface (Eq. 21):
 
     corrected   B = Ω_ρ |1 + 2kd/cos θ₁|       B' = Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|
     printed     B = Ω_ρ 2kd/cos θ₁             B' = Ω_ρ d (1/d' + 2|k|)/cos θ₁
 
-The print is an approximation for an eye far away, |2kd/cos θ₁| ≫ 1, and for light along the normal, with |k|; it leaves the 1 and a cosine out. The distances here are not far. At the surface a flat mirror shows the lobe as wide as it is, so B = Ω_ρ there, not 0; and a hollow one first undoes \
-what travel does, so that B has a least value, not at k = 0. Photons say so; next to that least value the window, not the surface, sets what they show:
+The printed formulas are an approximation for an eye far away, |2kd/cos θ₁| ≫ 1, and for light \
+along the normal, with |k|. They leave out the 1 and a cosine. The distances here are not far. \
+At the surface, a flat mirror shows the lobe as wide as it is, so B is Ω_ρ there, not 0. A \
+hollow mirror first undoes what travel does, so B has a minimum, and this minimum is not at k = \
+0. The photons agree with this. Next to the minimum, the width of the window determines the \
+measured bandwidth, not the surface:
 
-![Bandwidth over curvature, angles, distances and the width of the BRDF: photons lie on the corrected curves, and off those of the print](bandwidth.svg)
+![Bandwidth over curvature, angles, distances and the width of the BRDF: photons lie on the \
+corrected curves and off the printed curves](bandwidth.svg)
 
-The numbers behind the curves are in [bandwidth.csv](bandwidth.csv). `etendue bandwidth SCENE.ron --measure --sweep PATH=A..B:N` sweeps any scene in this way, such as \
+The numbers behind the curves are in [bandwidth.csv](bandwidth.csv). `etendue bandwidth \
+SCENE.ron --measure --sweep PATH=A..B:N` sweeps any scene in this way, such as \
 [bandwidth](../scenes/bandwidth.ron) and [bandwidth_edge](../scenes/bandwidth_edge.ron).
 
 ";

@@ -65,13 +65,15 @@ pub(crate) fn calibration(
     let sound = sections[0].passes();
     for scale in [0.9, 1.1] {
         let title = format!("The same with σ scaled by {scale}");
-        let text = "A planted fault. Required: the calibration, with the bounds above, fails.";
+        let text = "A fault is planted in the stated errors. Required: the calibration fails by \
+            the bounds above.";
         sections.push(judged(scale).planted(title, text, sound));
     }
     for (planes, (_, name)) in all[1..].iter().zip(FAULTS) {
         let section = judge(planes, seeds, &scene, 1.0);
         let title = format!("The same with {name}");
-        let text = "A fault planted in p. Required: p is not uniform by the bounds above.";
+        let text = "The planted fault makes batches depend on each other. Required: p is not \
+            uniform by the bounds above.";
         sections.push(section.planted(title, text, sound));
     }
     sections
@@ -209,9 +211,16 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
             words(scene.run.sampling)
         ),
         text: format!(
-            "Required: p uniform by Kolmogorov–Smirnov at 1 % over the planes; the share of p below 10 % within \
-             {:.1} and {:.1} % over all planes (two binomial deviations of one, because planes share photons), within {:.1} and {:.1} % for each (three); \
-             mean χ²/dof = 1 within four standard errors and 0.003 (a few residuals are real), mean squared pull = 63/61 within four standard errors.",
+            "The main scene is measured with many seeds, to test whether p-values and stated \
+            errors are correct. *KS p of uniformity* is the p-value of a Kolmogorov–Smirnov test \
+            of whether p is uniform. *p < 10 %* is the share of seeds with such a p. A pull is \
+            the deviation of a parameter from the scene, in units of its stated error. Required: \
+            p is uniform by the Kolmogorov–Smirnov test at 1 % over all planes together. The \
+            share of p below 10 % is between {:.1} and {:.1} % over all planes: these are two \
+            binomial deviations of a single plane, because planes share photons. It is between \
+            {:.1} and {:.1} % for each plane, which is three deviations. The mean χ²/dof is 1 \
+            within four standard errors and 0.003, because a few residuals are real numbers. The \
+            mean squared pull is 63/61 within four standard errors.",
             100.0 * (0.1 - allowed),
             100.0 * (0.1 + allowed),
             100.0 * (0.1 - allowed_each),

@@ -50,10 +50,13 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
 
     ReportSection {
         title: format!("Planted faults at {:.0e} photons", photons as f64),
-        text: "Required: the run is rejected for every fault, and only then. p-values are not below 0.00005; \
-               a dash is a plane the fault does not touch."
+        text: "Each fault is planted in the prediction or in the photons, and every plane is \
+              compared again. The second column has the p-values of the planes in order. A dash \
+              stands for a plane that the fault does not change, and the smallest possible p is \
+              0.00005. Required: the run is rejected with every fault, and accepted without a \
+              fault."
             .to_owned(),
-        header: vec!["fault", "p, plane by plane", "run"],
+        header: vec!["fault", "p of each plane", "run is"],
         rows,
         checks: Vec::new(),
     }
@@ -92,7 +95,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
             ));
         }
         let faults = (found.len() - 1) as f64;
-        let reason = "else the scene shows nothing";
+        let reason = "a scene without faults would show nothing";
         checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
         rows.extend(found.into_iter().map(|mut row| {
             row.cells.insert(0, name.to_owned());
@@ -100,10 +103,16 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         }));
     }
     ReportSection {
-        title: format!("Faults planted in other scenes at {:.0e} photons", photons as f64),
-        text: "Required: the run is rejected for every fault, and only then; a dash is a plane the fault does not touch."
+        title: format!(
+            "Faults planted in other scenes at {:.0e} photons",
+            photons as f64
+        ),
+        text: "Each of these faults is planted in a scene that can reveal it. The third column \
+              has the p-values of the planes in order, and a dash stands for a plane that the \
+              fault does not change. Required: the run is rejected with every fault, and accepted \
+              without a fault."
             .to_owned(),
-        header: vec!["scene", "fault", "p, plane by plane", "run"],
+        header: vec!["scene", "fault", "p of each plane", "run is"],
         rows,
         checks,
     }
@@ -140,11 +149,11 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
             "two_layers",
             vec![
                 (
-                    "first layer 1 % too far",
+                    "first layer 1 % too far away",
                     chained(|c| move_layer(c, 0, 0.006)),
                 ),
                 (
-                    "second layer 1 % too far",
+                    "second layer 1 % too far away",
                     chained(|c| move_layer(c, 1, 0.014)),
                 ),
             ],
@@ -277,7 +286,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
         ("second travel + 1 %", chained(|c| scale_travel(c, 1, 1.01))),
         ("second travel − 1 %", chained(|c| scale_travel(c, 1, 0.99))),
         (
-            "sign of the shear",
+            "wrong sign of the shear",
             chained(|c| (0..2).for_each(|n| scale_travel(c, n, -1.0))),
         ),
         (
@@ -291,7 +300,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
             }),
         ),
         (
-            "sign of the Fourier transform",
+            "wrong sign of the Fourier transform",
             Box::new(|scene, plane| {
                 let mut slices = unchanged(scene, plane)?;
                 slices.half.mapv_inplace(|s| s.conj());
@@ -317,7 +326,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
             }),
         ),
         (
-            "half a bin of 64 along x",
+            "shift of half a bin of 64 along x",
             Box::new(|scene, plane| {
                 let shift = plane.window.x.half_width() / 64.0;
                 Some(shifted(unchanged(scene, plane)?, shift))

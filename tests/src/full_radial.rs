@@ -204,7 +204,7 @@ fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
             "counted",
             n - p.len() as f64,
             Below(0.5),
-            "each seed has a p",
+            "each seed must have a p",
         ),
     ];
     let cells = vec![
@@ -235,8 +235,11 @@ fn calibrated(
     ReportSection {
         title: format!("p of the full radial spectrum over {seeds} seeds"),
         text: format!(
-            "Photons of each seed, {photons}, against the same prediction. Required: p uniform by Kolmogorov–Smirnov at 1 % over the rows, \
-             p < 10 % in 10 % of the seeds within three binomial deviations, mean χ²/bin = 1 within four standard errors."
+            "For each seed, {photons} photons are compared with the same prediction. *KS p of \
+            uniformity* is the p-value of a Kolmogorov–Smirnov test of whether p is uniform. \
+            Required: p is uniform by this test at 1 % over all rows together. The share of seeds \
+            with p < 10 % is 10 % within three binomial deviations. The mean χ²/bin is 1 within \
+            four standard errors."
         ),
         header: HEADER.to_vec(),
         rows: rows.collect(),
@@ -255,9 +258,9 @@ fn faults(photons: u64) -> ReportSection {
         let report = compared(&scene, &field, prediction);
         let p = report.p_value.unwrap_or(f64::NAN);
         let check = if rejected {
-            Check::new("rejected", p, Below(LEVEL), "the fault is planted")
+            Check::new("rejected", p, Below(LEVEL), "a fault is planted")
         } else {
-            Check::new("accepted", p, AtLeast(LEVEL), "nothing is planted")
+            Check::new("accepted", p, AtLeast(LEVEL), "no fault is planted")
         };
         let chi2 = report.chi2_per_bin.unwrap_or(f64::NAN);
         Row::new(
@@ -274,7 +277,8 @@ fn faults(photons: u64) -> ReportSection {
     ReportSection {
         title: "Faults planted in predictions of full radial spectra".to_owned(),
         text: format!(
-            "{} {}, {photons} photons. Required: p ≥ {LEVEL} without a fault, p < {LEVEL} with each.",
+            "Each fault is planted in the prediction for {} {}, which is compared with {photons} \
+            photons. Required: p ≥ {LEVEL} without a fault, and p < {LEVEL} with each fault.",
             case.scene, case.plane
         ),
         header: vec!["fault", "p", "χ²/bin", "verdict"],
@@ -331,7 +335,8 @@ fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
     };
     section.planted(
         "The same with half of the groups sharing the photons of the others".to_owned(),
-        "A planted fault. Required: the calibration, with the bounds above, fails.",
+        "The planted fault makes groups of batches depend on each other. Required: the \
+        calibration fails by the bounds above.",
         is_sound,
     )
 }

@@ -231,7 +231,7 @@ fn main() -> ExitCode {
         if let Some([path, title, name, of]) = page(command) {
             let page = format!(
                 "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
-                 {of}, seed {SEED} unless said.\n\n{text}"
+                 {of}. The seed is {SEED} unless stated otherwise.\n\n{text}"
             );
             let before = std::fs::read_to_string(path).unwrap_or_default();
             std::fs::write(path, with_part(&before, title, &page))
@@ -283,31 +283,31 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
             "results/validation.md",
             "The main scene",
             "main",
-            "Scene: `scenes/fig9b.ron`",
+            "The scene is `scenes/fig9b.ron`",
         ],
         ValidationCommand::Suite { photons: None } => [
             "results/suite.md",
             "The suite",
             "suite",
-            "Scenes: all of `scenes/` without smooth surfaces",
+            "The scenes are all scenes in `scenes/` without smooth surfaces",
         ],
         ValidationCommand::Table1 { photons: None } => [
             "results/validation.md",
             "Table 1",
             "table1",
-            "Scenes: all of `scenes/table1/` without BRDFs, photons as in the files",
+            "The scenes are all scenes in `scenes/table1/` without BRDFs, with the photons of their files",
         ],
         ValidationCommand::Shading { photons: None } => [
             "results/validation.md",
             "Shading",
             "shading",
-            "In 2D and without photons where no scene is named",
+            "Sections that name no scene are in 2D and trace no photons",
         ],
         ValidationCommand::Claims { photons: None } => [
             "results/validation.md",
             "Words",
             "claims",
-            "Scenes: made for each statement",
+            "The scenes are made for each statement",
         ],
         ValidationCommand::FullRadial {
             seeds: 200,
@@ -316,13 +316,13 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
             "results/validation.md",
             "Full radial spectra",
             "full-radial",
-            "Scenes with fewer frequencies than in their files",
+            "The scenes have fewer frequencies than in their files",
         ],
         ValidationCommand::All => [
             "results/validation.md",
             "Every row of Table 1",
             "all",
-            "Of the parts of this page",
+            "This table summarises the parts of this page",
         ],
         _ => return None,
     })

@@ -23,7 +23,12 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     };
     ReportSection {
         title: format!("Every plane at {:.0e} photons", photons as f64),
-        text: "Required: p at least α = 1 % after Šidák over the planes.".to_owned(),
+        text: "The measured spectrum of every plane is compared with its prediction. *Relative \
+              error* is the difference of the two relative to the prediction, and *noise limit* \
+              is its value from noise alone. *Noise floor* is the mean variance relative to the \
+              largest power. Required: p is at least the level that α = 1 % gives for all planes \
+              together (after Šidák)."
+            .to_owned(),
         header: HEADER.to_vec(),
         rows: reports(&scene).iter().map(row).collect(),
         checks: Vec::new(),
@@ -57,7 +62,12 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     ReportSection {
         title: format!("Parameters recovered at {:.0e} photons", photons as f64),
         text: format!(
-            "Required: every parameter within {bound} errors of the scene's (1 % for the largest of {}).",
+            "Parameters of the scene are estimated from the photons of each plane. *Error* is the \
+            standard error of the measured value, and *off by* is the difference from the scene \
+            in units of this error. *Smallest detectable change* is the change that is detected \
+            at level 1 % nine times in ten. Required: every parameter is within {bound} errors of \
+            the value in the scene (the largest of {} is beyond this by chance in about 1 % of \
+            all runs).",
             rows.len()
         ),
         header: vec![
@@ -110,23 +120,35 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
         row.push(format!("{:.2} %", 100.0 * worse));
         // With 1000 independent frequencies and 64 batches, the total noise is accurate to 0.03
         // dB.
-        let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
+        let check = Check::new(
+            "total",
+            total,
+            Below(-0.1),
+            "three errors of this ratio, in dB",
+        );
         Row::new(row, vec![check])
     };
     ReportSection {
         title: format!("Noise of nets, {photons} photons in {batches} batches"),
         text: format!(
-            "σ² of slices with nets over that with random numbers, in dB. One frequency is told to {:.2} dB              (one standard error), so that the largest of many says little with few batches. Required: less in total.",
+            "The variance σ² of the slices with photons from nets is compared with the variance \
+            with photons from random numbers. All numbers except the last are ratios of the two \
+            in dB, and a negative ratio means that nets have less noise. *Total* compares the \
+            sums over all frequencies of a plane. The next four columns describe the ratios at \
+            the single frequencies, and the last column is the share of frequencies with a ratio \
+            above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so the \
+            largest ratio says little with few batches. Required: the total with nets is smaller \
+            by more than 0.1 dB.",
             10.0 / 10f64.ln() * (2.0 / f64::from(batches - 1)).sqrt()
         ),
         header: vec![
             "plane",
             "total",
             "median",
-            "least",
-            "99 % below",
+            "smallest",
+            "99 % are below",
             "largest",
-            "above 0.5 dB",
+            "share above 0.5 dB",
         ],
         rows: net.iter().zip(&random).map(row).collect(),
         checks: Vec::new(),
@@ -151,7 +173,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         let last = rows.len() - 1;
         // With 64 batches and about 1000 uncorrelated frequencies, a mean σ² is accurate to 0.4 %,
         // or 0.017 dB.
-        let reason = "four of the errors of a difference, dB";
+        let reason = "four errors of a difference, in dB";
         let off = net - random;
         rows[last]
             .checks
@@ -165,9 +187,12 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     }
     ReportSection {
         title: "Noise floor of the receiver plane".to_owned(),
-        text:
-            "Required: p at least α = 1 %; a floor of random numbers that falls 10 dB per decade within 0.1 dB, and one of nets that is not above it by more."
-                .to_owned(),
+        text: "Photons at the receiver plane are drawn from random numbers or from nets, in \
+            increasing numbers, and their spectrum is compared with the prediction. Required: p \
+            is at least α = 1 %. The noise floor of random numbers falls by 10 dB per decade of \
+            photons, within 0.1 dB. The noise floor of nets is at most 0.1 dB above the floor of \
+            random numbers."
+            .to_owned(),
         header: HEADER.to_vec(),
         rows,
         checks: Vec::new(),
@@ -176,8 +201,8 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
 
 const HEADER: [&str; 8] = [
     "photons",
-    "plane or numbers",
-    "in window",
+    "plane or kind of numbers",
+    "photons in window",
     "χ²/dof",
     "p",
     "relative error",
@@ -202,7 +227,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     let passes = report.verdict == Verdict::Pass;
     let checks = vec![
         Check::exact(report, Test::of(scene).level),
-        Check::fact("verdict", passes, "as a run judges"),
+        Check::fact("verdict", passes, "judged as in a run"),
     ];
     Row::new(cells, checks)
 }

@@ -263,21 +263,31 @@ fn grouped(
     }
     let required = if is_judged {
         format!(
-            "Required: mean 0 and standard deviation 1, each to {MAX_DEVIATION} or {MAX_ERRORS} \
-             standard errors (over scenes), where there are {MIN_SCENES} scenes."
+            "Required: the mean is 0 and the standard deviation is 1, each to {MAX_DEVIATION} or \
+            {MAX_ERRORS} standard errors (over scenes), in groups of at least {MIN_SCENES} \
+            scenes."
         )
     } else {
-        "Required: nothing more than above.".into()
+        "This table has no requirements of its own.".into()
     };
     ReportSection {
         title: title.to_owned(),
         text: format!(
-            "Seed {}, {} photons for each scene. Of a normal distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and \
-             4. {required}",
+            "A pull is a measured number minus its prediction, in units of the stated error. The \
+            scenes have the seed {}, and each is traced with {} photons. Of a normal \
+            distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and 4. {required}",
             options.seed, options.photons
         ),
         header: vec![
-            "pulls", "scenes", "number", "mean", "sd", "> 2", "> 3", "> 4", "",
+            "group",
+            "scenes",
+            "pulls",
+            "mean",
+            "standard deviation",
+            "beyond 2",
+            "beyond 3",
+            "beyond 4",
+            "verdict",
         ],
         rows: groups
             .iter()
@@ -350,7 +360,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     };
     ReportSection {
         title: "The largest pulls".into(),
-        text: "Required: nothing more than above.".into(),
+        text: "This table has no requirements of its own.".into(),
         header: vec!["scene", "plane", "kind", "parameter", "pull"],
         rows: sorted.iter().take(LISTED).map(row).collect(),
         checks: Vec::new(),
@@ -386,8 +396,9 @@ fn cost(costs: &[Cost]) -> ReportSection {
     ReportSection {
         title: "The cost of predictions".into(),
         text: format!(
-            "CPU seconds of all predictions of a scene, and of its photons; the mean ratio is \
-             {mean:.2}. Required: no prediction takes more than {MAX_SECONDS} s where the photons take less."
+            "The CPU seconds of all predictions of a scene are compared with the CPU seconds of \
+            its photons; the mean ratio is {mean:.2}. Required: no scene has predictions that \
+            take more than {MAX_SECONDS} s and longer than its photons."
         ),
         header: vec![
             "",

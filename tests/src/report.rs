@@ -64,7 +64,7 @@ impl Check {
 
     /// Returns a check that a number of occurrences is zero.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
-        Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
+        Self::new(id, count as f64, Bound::AtMost(0.0), "none may occur")
     }
 
     pub(crate) fn passes(&self) -> bool {
@@ -163,8 +163,17 @@ impl ReportSection {
         let is_seen = !self.passes();
         self.rows.iter_mut().for_each(|row| row.checks.clear());
         self.checks = vec![
-            Check::fact("sound", is_sound, "else a failure shows nothing"),
-            Check::fact("seen", is_seen, "the fault is planted"),
+            Check::fact(
+                "sound",
+                is_sound,
+                "without the fault all checks must pass, else a \
+                failure shows nothing",
+            ),
+            Check::fact(
+                "seen",
+                is_seen,
+                "a check must fail, because a fault is planted",
+            ),
         ];
         Self {
             title,

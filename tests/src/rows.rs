@@ -76,15 +76,20 @@ impl Line {
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection {
         title: "Every row".to_owned(),
-        text: "What the sections below have found of each row: checks of its operator without photons, by quadrature and by traced rays; and \
-               planes measured with photons right after it, with the smallest of their p against the exact prediction. Required: a row has \
-               both, and all of them pass where they stand: noise by nets is below what transform and quadrature are exact to on some planes, and \
-               these pass with a small p where their stated error may be all of it."
+        text: "Each row is one operator of Table 1, and the table counts the checks of this \
+              operator in the sections below. *Without photons* counts checks by quadrature and \
+              by traced rays. *Planes with photons* counts the planes right after the operator \
+              that are measured with photons. *Smallest p* is the smallest p-value of these \
+              planes against the exact prediction. Required: a row has both kinds of checks, and \
+              all of them pass. On some planes, the noise of photons from nets is below the error \
+              of the prediction, which comes from its transform and its quadrature. Such a plane \
+              passes with a small p if the stated error of the prediction may explain the whole \
+              difference."
             .to_owned(),
         header: vec![
             "row",
-            "ray space",
-            "Fourier",
+            "in ray space",
+            "in Fourier space",
             "without photons",
             "planes with photons",
             "smallest p",
@@ -106,7 +111,13 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
         let passed = rows.iter().filter(|row| row.passes()).count();
         cells.push(format!("{passed} of {}", rows.len()));
         let (passed, all) = (passed as f64, rows.len().max(1) as f64);
-        checks.push(Check::new(id, passed, AtLeast(all), "all, and not of none"));
+        checks.push(Check::new(
+            id,
+            passed,
+            AtLeast(all),
+            "all must pass, and there must be at \
+            least one",
+        ));
     }
     let p = planes.iter().filter_map(|row| exact(row));
     cells.push(p.fold(1.0, f64::min).to_string());

@@ -64,8 +64,11 @@ fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> ReportSection {
     ReportSection {
         title: format!("The suite: {} scenes, {planes} planes", outcomes.len()),
         text: format!(
-            "Photons and seeds as in the files. Required: every plane passes in its class, and photons agree with backward \
-             rays wherever both exist, each at α = {ALPHA} over all planes: p ≥ {level:.6}."
+            "Every plane of every scene is measured with the photons and the seed of its file, \
+            and compared with its prediction. *Class* is the kind of prediction, and *p backward* \
+            is the p-value of the comparison of photons with backward rays. Required: every plane \
+            passes in its class, and photons agree with backward rays wherever both exist. Both \
+            are tested at α = {ALPHA} over all planes: p ≥ {level:.6}."
         ),
         header: vec![
             "scene",
@@ -108,8 +111,8 @@ fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -
         Verdict::Undecided => (true, false),
     };
     let mut checks = vec![
-        Check::fact("agrees", agrees, "as a run judges"),
-        Check::fact("decided", decided, "as a run judges"),
+        Check::fact("agrees", agrees, "judged as in a run"),
+        Check::fact("decided", decided, "judged as in a run"),
     ];
     checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
     Row::new(cells, checks)
@@ -141,7 +144,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
         let cells = vec![format!("{name}: photons through"), through.to_string()];
-        let reason = "a lot passes one, and nothing both";
+        let reason = "much light passes one occluder, and none passes both";
         let check = |bound| Check::new("through", through as f64, bound, reason);
         let checks = vec![check(AtLeast(wanted as f64)), check(AtMost(most))];
         rows.push(Row::new(cells, checks));
@@ -191,21 +194,32 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     };
     rows.push(Row::new(
         vec![
-            "both, predicted with phases, of the open spectrum".to_owned(),
+            "F₁ + F₂ − F, predicted with phases, relative to F".to_owned(),
             format!("{sum:.1e}"),
         ],
         vec![Check::new("sum", sum, Below(1e-12), "rounding")],
     ));
     rows.push(Row::new(
-        vec!["the same without phases".to_owned(), format!("{blind:.3}")],
-        vec![Check::new("moduli", blind, Above(1e-2), "phases matter")],
+        vec![
+            "the same with moduli, without phases".to_owned(),
+            format!("{blind:.3}"),
+        ],
+        vec![Check::new(
+            "moduli",
+            blind,
+            Above(1e-2),
+            "without phases, the spectra do not cancel",
+        )],
     ));
     ReportSection {
         title: "Two occluders (Fig. 7)".to_owned(),
-        text: "Required: a million photons past each, none past both; the sum of spectra F₁ + F₂ − F below 10⁻¹² of F, \
-               that of their moduli not."
+        text: "Each of two occluders lets light pass, but both together block all of it. F is the \
+              spectrum of the open light, and F₁ and F₂ are the spectra behind one occluder \
+              alone. Required: at least a million photons pass each occluder, and no photon \
+              passes both. The sum of spectra F₁ + F₂ − F is below 10⁻¹² of F, and the same sum \
+              of their moduli is not."
             .to_owned(),
-        header: vec!["", ""],
+        header: vec!["quantity", "number"],
         rows,
         checks: Vec::new(),
     }
@@ -238,7 +252,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
             [b / a, b / c]
         };
         let (measured, predicted) = (ratio(|p| p.measured), ratio(|p| p.predicted));
-        let reason = "far more than the next size of blockers has";
+        let reason = "H is far larger than for blockers of the other sizes";
         let checks = [measured, predicted].map(|[to_a, to_c]| {
             [
                 Check::new("b/a", to_a, AtLeast(5.0), reason),
@@ -250,14 +264,23 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
         row.push(format!("{:.0}, {:.0}", measured[0], measured[1]));
         rows.push(Row::new(row, checks.concat()));
     }
-    let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two");
+    let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two cuts");
     ReportSection {
         title: "High frequencies of a shadow (Fig. 9)".to_owned(),
-        text: "H: share of energy above the cut in the spectrum of the windowed irradiance on the light leaving the receiver, \
-               measured ± error; predicted. The window's main lobe ends at 1/half-width; the first cut is twice that, the second \
-               1.5 times the first. Required: b at least 5 × a and 10 × c at both."
+        text: "H is the share of the energy above a cut in the spectrum of the windowed \
+              irradiance, for the light that leaves the receiver. Each cell has the measured H ± \
+              its error, and after the semicolon the predicted H. The window's main lobe ends at \
+              1/half-width; the first cut is twice that, and the second cut is 1.5 times the \
+              first. Required: at both cuts, H of fig9b is at least 5 times H of fig9a and at \
+              least 10 times H of fig9c."
             .to_owned(),
-        header: vec!["cut [cycles/m]", "fig9a", "fig9b", "fig9c", "b/a, b/c measured"],
+        header: vec![
+            "cut [cycles/m]",
+            "H of fig9a",
+            "H of fig9b",
+            "H of fig9c",
+            "measured ratios b/a, b/c",
+        ],
         rows,
         checks: vec![cuts],
     }
@@ -298,7 +321,7 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         let (off, wrong) = ((measured - known).abs(), (predicted / known - 1.0).abs());
         let checks = vec![
             Check::new("measured", off, Below(4.0 * error), "four standard errors"),
-            Check::new("theory", wrong, Below(1e-4), "of its quadrature"),
+            Check::new("theory", wrong, Below(1e-4), "error of the quadrature"),
         ];
         let cells = vec![
             format!("{known:.6}"),
@@ -307,11 +330,14 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         ];
         rows.push(Row::new(cells, checks));
     }
-    let lit = Check::fact("furnace", !rows.is_empty(), "the suite has one");
+    let lit = Check::fact("furnace", !rows.is_empty(), "the suite has this scene");
     ReportSection {
         title: "White furnace".to_owned(),
-        text: "∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m: radiance times configuration factor, by the closed form for \
-               a rectangle and a parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3)."
+        text: "The integral ∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m is known: \
+              it is the radiance times a configuration factor, by the closed form for a rectangle \
+              and a parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration \
+              Factors*, B-3). Required: the measured value is within four standard errors of the \
+              known one, and the predicted value is within 10⁻⁴ of it."
             .to_owned(),
         header: vec!["known", "measured", "predicted"],
         rows,

@@ -98,7 +98,13 @@ pub(super) fn section(
             continue;
         }
         let unnamed = Check::none("planes", planes);
-        let caught = Check::new("caught", fails, AtLeast(1.0), "planes were judged");
+        let caught = Check::new(
+            "caught",
+            fails,
+            AtLeast(1.0),
+            "at least one judged plane must be \
+            rejected",
+        );
         let dark = Check::none("lit", lit);
         let checks = [
             (says == UNKNOWN).then_some(unnamed),
@@ -122,22 +128,24 @@ pub(super) fn section(
     ReportSection {
         title: format!("Assumptions, seed {}", options.seed),
         text: format!(
-            "{drawn} random scenes and {} of the repository, {} photons for each plane; {skipped} \
-             planes were left out since their predictions take more than a minute, and {panics} \
-             panicked. Required: each assumption that is tried is caught, no panic, and no photon \
-             where it is said to be dark.",
+            "Planes that break an assumption of theory are predicted all the same and compared \
+            with photons. There are {drawn} random scenes and {} scenes of the repository, with \
+            {} photons for each plane. {skipped} planes were left out, because their predictions \
+            take more than a minute, and {panics} panicked. Required: photons reject at least one \
+            prediction for each assumption that is tried, no prediction panics, and no photon \
+            arrives where theory says that it is dark.",
             kept.len(),
             options.photons
         ),
         header: vec![
             "assumption",
             "planes that break it",
-            "and nothing else",
+            "planes that break only it",
             "no theory to try",
-            "caught, in scenes",
+            "rejected, in scenes",
             "undecided",
-            "pass all the same",
-            "caught, of the repository",
+            "passed all the same",
+            "rejected, scenes of the repository",
         ],
         rows,
         checks: vec![Check::none("panics", panics)],

@@ -53,7 +53,8 @@ fn finite(photons: u64) -> Claim {
     Claim {
         said: "a finite number of blockers blurs the comb of their spectrum (3.4)",
         shown: format!(
-            "equivalent width of the replica at 5 /m [1/m] behind {counts:?} columns of squares, 0.2 m apart"
+            "equivalent width [1/m] of the replica at 5 /m, behind {counts:?} columns of squares \
+            that are 0.2 m apart"
         ),
         numbers: widths.to_vec(),
         checks: vec![
@@ -62,16 +63,17 @@ fn finite(photons: u64) -> Claim {
                 "4 columns: width × N p",
                 of_comb(0),
                 AtLeast(0.95),
-                "∫|D_N|²/N² = 1/(N p); the squares' own transform tilts it",
+                "∫|D_N|²/N² = 1/(N p), tilted by the transform of the squares",
             ),
             Check::new(
                 "the same",
                 of_comb(0),
                 AtMost(1.1),
-                "the window, 6 m wide, widens it",
+                "the window of 6 m widens the replica",
             ),
         ],
-        holds: "holds: the width is 1/(N p), until the window is narrower than the array",
+        holds: "holds: with N columns of pitch p, the width is 1/(N p), unless the window is \
+            narrower than the array",
     }
 }
 
@@ -101,18 +103,18 @@ fn replicas(photons: u64) -> Claim {
     });
     let off = places.iter().map(|p| (p.value - 1.0).abs());
     Claim {
-        said: "the smaller the pattern, the farther the replicas (3.4)",
+        said: "replicas are farther away for a smaller pattern (3.4)",
         shown: format!(
-            "place of the first replica times the pitch, of squares {pitches:?} m apart"
+            "frequency of the first replica times the pitch, for squares {pitches:?} m apart"
         ),
         numbers: places.to_vec(),
         checks: vec![Check::new(
             "off 1",
             off.fold(0.0, f64::max),
             Below(2e-3),
-            "the window's slope over the replica",
+            "the window's spectrum has a slope over the replica",
         )],
-        holds: "holds: at 1/pitch",
+        holds: "holds: the first replica is at 1/pitch",
     }
 }
 
@@ -140,10 +142,25 @@ fn jitter(photons: u64) -> Claim {
     let most = shares[1..].iter().map(|s| s.value).fold(0.0, f64::max);
     Claim {
         said: "jittered blockers give a smoother spectrum (3.4)",
-        shown: "share of the power from 7.5 to 17.5 /m within 0.7 /m of the replicas at 10 and 15 /m: without jitter, and of three arrays with jitter 0.3 pitches".to_owned(),
+        shown: "share of the power from 7.5 to 17.5 /m that is within 0.7 /m of the replicas at \
+            10 and 15 /m: first without jitter, then for three arrays with a jitter of 0.3 \
+            pitches"
+            .to_owned(),
         checks: vec![
-            Check::new("jitter 0", shares[0].value, AtLeast(0.95), "a comb has nothing between"),
-            Check::new("jitter 0.3", most, AtMost(0.8), "N (1 − sinc²(jΩ)) between the lines"),
+            Check::new(
+                "jitter 0",
+                shares[0].value,
+                AtLeast(0.95),
+                "a comb has no power between \
+                its lines",
+            ),
+            Check::new(
+                "jitter 0.3",
+                most,
+                AtMost(0.8),
+                "between the lines the power is N (1 − \
+                sinc²(jΩ))",
+            ),
         ],
         numbers: shares.to_vec(),
         holds: "holds",
@@ -198,7 +215,9 @@ fn average(photons: u64) -> Claim {
     Claim {
         said: "small occluders act as their average on soft shadows (3.4)",
         shown: format!(
-            "energy of what leaves a diffuse floor behind squares 0.2, 0.067 and 0.04 m apart minus that behind their average, over the latter; it falls with the pitch to the {exponent:.2}"
+            "energy of a difference: the light that leaves a diffuse floor behind squares 0.2, \
+            0.067 and 0.04 m apart minus the light behind their average, relative to the latter; \
+            it falls with the pitch to the power {exponent:.2}"
         ),
         numbers: numbers.to_vec(),
         checks: vec![
@@ -206,16 +225,16 @@ fn average(photons: u64) -> Claim {
                 "exponent",
                 exponent,
                 AtLeast(1.7),
-                "amplitude falls with the pitch: 2",
+                "the amplitude falls with the pitch, so the power falls with exponent 2",
             ),
             Check::new(
                 "the same",
                 exponent,
                 AtMost(2.6),
-                "2, and windows that hold few periods",
+                "the exponent is 2, but windows hold few periods",
             ),
         ],
-        holds: "holds, in amplitude to first order in the pitch",
+        holds: "holds: the difference in amplitude is of first order in the pitch",
     }
 }
 
@@ -226,8 +245,9 @@ fn before_average(photons: u64) -> Claim {
         photons,
     );
     Claim {
-        said: "the same, of the light that arrives",
-        shown: "the same before the floor: replicas are pushed into angle, and stay".to_owned(),
+        said: "the same, for the light that arrives at the floor",
+        shown: "the same before the floor: replicas move to angular frequencies and do not vanish"
+            .to_owned(),
         numbers: numbers.to_vec(),
         checks: vec![Check::new(
             "smallest",
@@ -236,9 +256,10 @@ fn before_average(photons: u64) -> Claim {
                 .map(|n| n.value)
                 .fold(f64::INFINITY, f64::min),
             AtLeast(0.1),
-            "the first replicas alone, at 1/pitch in ρ",
+            "only the first replicas, at 1/pitch in ρ, are left",
         )],
-        holds: "not before diffuse reflection: it is integration over angle that averages",
+        holds: "does not hold before diffuse reflection: the integration over angle causes the \
+            average",
     }
 }
 
@@ -336,9 +357,12 @@ fn combined(photons: u64) -> Claim {
     }
     let ratio = ratios.iter().map(|r| r.value).fold(0.0, f64::max);
     Claim {
-        said: "without phase, bandwidths of combined blockers are over-estimated, not under-estimated (3.4)",
+        said: "without phase, bandwidths of combined blockers are over-estimated and never \
+            under-estimated (3.4)",
         shown: format!(
-            "90 % bandwidth of |Ŝ₁| ⊗ |V̂₂| over that of Ŝ₁₂, of {} pairs of three random slits in one plane, Ŝ measured; the largest |Ŝ₁₂| over the bound is {ratio:.3}",
+            "90 % bandwidth of the bound |Ŝ₁| ⊗ |V̂₂| over the 90 % bandwidth of Ŝ₁₂, for {} \
+            pairs of three random slits in one plane, with measured Ŝ; the largest ratio of |Ŝ₁₂| \
+            to the bound is {ratio:.3}",
             excess.len()
         ),
         checks: vec![
@@ -347,7 +371,7 @@ fn combined(photons: u64) -> Claim {
                 "largest ratio",
                 ratio,
                 AtMost(1.0),
-                "a sum is at most the sum of sizes",
+                "the magnitude of a sum is at most the sum of magnitudes",
             ),
         ],
         numbers: excess,
@@ -389,8 +413,11 @@ fn soft_shadows(photons: u64) -> Claim {
         contrast
     });
     Claim {
-        said: "soft shadows are a convolution of light and blockers over space, the softer the farther (6.1)",
-        shown: "contrast of the shadow of a grating (6 /m, 1 m from the light) on floors 0.2, 0.5, 1, 2 m behind it; sinc(w f d₂/D) of a box of w d₂/D".to_owned(),
+        said: "soft shadows are a convolution of light and blockers over space, and they are \
+            softer farther behind the blockers (6.1)",
+        shown: "contrast of the shadow of a grating (6 /m, 1 m from the light) on floors 0.2, \
+            0.5, 1, 2 m behind it; a convolution with a box of width w d₂/D gives sinc(w f d₂/D)"
+            .to_owned(),
         numbers: numbers.to_vec(),
         checks: vec![
             decreasing(&numbers),

@@ -47,25 +47,27 @@ fn criteria(photons: u64) -> Claim {
     Claim {
         said: "criteria that take the light to have all frequencies over-estimate bandwidth, and never under-estimate it (6.2)",
         shown: format!(
-            "95 % bandwidth over ν at the eye over B', lights of {sizes:?} m, 0.6 m from a glossy sphere"
+            "95 % bandwidth over ν at the eye, relative to B', for lights of {sizes:?} m at 0.6 m \
+            from a glossy sphere"
         ),
         checks: vec![
             Check::new(
                 "largest",
                 most,
                 AtMost(1.05),
-                "the criterion is good to 5 %",
+                "the criterion has an error of 5 %",
             ),
             Check::new(
                 "widest light",
                 shares[3].value,
                 AtMost(0.7),
-                "it has few frequencies",
+                "this light has few frequencies",
             ),
             decreasing(&shares[1..]),
         ],
         numbers: shares.to_vec(),
-        holds: "holds: close to the criterion for a small light, below it for others",
+        holds: "holds: the bandwidth is close to the criterion for a small light and below it for \
+            others",
     }
 }
 
@@ -117,29 +119,31 @@ fn larger_curvature(photons: u64) -> Claim {
     Claim {
         said: "in 3D the criterion takes the larger of the two curvatures (6.2)",
         shown: format!(
-            "largest 95 % bandwidth over azimuths at the eye over B for k = 0.8 /m: a cylinder curved in the plane of incidence, one curved across it, a sphere; across it, k counts by cos θ₁, which makes {wanted:.3}"
+            "largest 95 % bandwidth of all azimuths at the eye, relative to B for k = 0.8 /m: for \
+            a cylinder curved in the plane of incidence, a cylinder curved across it, and a \
+            sphere; across the plane of incidence, k counts with cos θ₁, which gives {wanted:.3}"
         ),
         checks: vec![
             Check::new(
                 "inside",
                 (inside.value - 1.0).abs(),
                 AtMost(0.05),
-                "the criterion is good to 5 %",
+                "the criterion has an error of 5 %",
             ),
             Check::new(
                 "sphere",
                 (sphere.value - 1.0).abs(),
                 AtMost(0.05),
-                "the criterion is good to 5 %",
+                "the criterion has an error of 5 %",
             ),
             Check::new(
                 "across",
                 (across.value / wanted - 1.0).abs(),
                 AtMost(0.05),
-                "the criterion is good to 5 %",
+                "the criterion has an error of 5 %",
             ),
         ],
         numbers: shares.to_vec(),
-        holds: "holds as a bound: reached in the plane of incidence, not across it",
+        holds: "holds as a bound: it is reached in the plane of incidence, but not across it",
     }
 }

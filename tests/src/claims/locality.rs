@@ -75,8 +75,17 @@ fn tails(photons: u64) -> Claim {
     let off = off.map(|(n, e)| (n.value - e).abs()).fold(0.0, f64::max);
     Claim {
         said: "a discontinuity of the n-th derivative has a spectrum that falls off as 1/Ωⁿ⁺¹ (footnote 1)",
-        shown: "exponent of the shadow of a square: at it (n = 0), along its diagonal (n = 1), and along the diagonal under a bar of light, 1 m on (n = 2)".to_owned(),
-        checks: vec![Check::new("off n + 1", off, Below(0.2), "noise at the highest frequency; exponents are whole numbers")],
+        shown: "exponent for the shadow of a square: directly behind the square (n = 0), the same \
+            along its diagonal (n = 1), and along the diagonal 1 m behind it in the light of a \
+            bar (n = 2)"
+            .to_owned(),
+        checks: vec![Check::new(
+            "off n + 1",
+            off,
+            Below(0.2),
+            "the spectrum is noisy at the \
+            highest frequency, and exponents are whole numbers",
+        )],
         numbers: numbers.to_vec(),
         holds: "holds",
     }
@@ -126,26 +135,47 @@ fn narrowed(photons: u64) -> [Claim; 2] {
     [
         Claim {
             said: "localisation is not possible in space and frequency at once (6)",
-            shown: "power of the valley at 2.5 /m over that of the replica of a grating, 5 /m, windows of ± 0.1, 0.2, 0.4 and 0.8 m".to_owned(),
+            shown: "power of the valley at 2.5 /m over the power of the replica of a grating at 5 \
+                /m, in windows of ± 0.1, 0.2, 0.4 and 0.8 m"
+                .to_owned(),
             checks: vec![
                 decreasing(&valleys[1..]),
-                Check::new("± 0.1 m", valleys[0].value, Above(1.0), "there is no valley"),
-                Check::new("± 0.2 m", valleys[1].value, Above(1.0), "there is none either"),
-                Check::new("± 0.8 m", valleys[3].value, Below(0.01), "it is resolved"),
+                Check::new(
+                    "± 0.1 m",
+                    valleys[0].value,
+                    Above(1.0),
+                    "there is no valley",
+                ),
+                Check::new(
+                    "± 0.2 m",
+                    valleys[1].value,
+                    Above(1.0),
+                    "there is no valley either",
+                ),
+                Check::new(
+                    "± 0.8 m",
+                    valleys[3].value,
+                    Below(0.01),
+                    "the replica is resolved",
+                ),
             ],
             numbers: valleys.to_vec(),
-            holds: "holds: it is resolved where the window holds four periods and more",
+            holds: "holds: the replica is resolved if the window holds four periods or more",
         },
         Claim {
             said: "low frequencies cannot be measured on small windows (6)",
-            shown: "half-width of the peak at zero, of half its power [/m], of the light without the grating, windows of ± 0.8, 0.4, 0.2 and 0.1 m".to_owned(),
+            shown: "half-width [/m] of the peak at zero, at half of its power, for the light \
+                without the grating, in windows of ± 0.8, 0.4, 0.2 and 0.1 m"
+                .to_owned(),
             checks: vec![Check::fact(
                 "growing",
-                widths.windows(2).all(|pair| pair[1].value > 1.8 * pair[0].value),
-                "as 1/window, but for the light's own profile",
+                widths
+                    .windows(2)
+                    .all(|pair| pair[1].value > 1.8 * pair[0].value),
+                "the width is 1/window, except for the light's own profile",
             )],
             numbers: widths.to_vec(),
-            holds: "holds: below this nothing is told apart from zero",
+            holds: "holds: a frequency below this cannot be distinguished from zero",
         },
     ]
 }
@@ -176,7 +206,8 @@ fn moved(photons: u64) -> Claim {
     Claim {
         said: "scenes are not stationary: what blocks the light varies in space (6)",
         shown: format!(
-            "share of the power above 15 /m behind an array of 20 /m that ends at ± 2 m, central rays {offsets:?} m from its middle"
+            "share of the power above 15 /m behind an array of 20 /m that ends at ± 2 m, for \
+            central rays {offsets:?} m from its middle"
         ),
         checks: vec![
             decreasing(&shares),
@@ -184,7 +215,7 @@ fn moved(photons: u64) -> Claim {
                 "beside it",
                 shares[3].value / shares[0].value,
                 Below(0.01),
-                "the window does not reach it",
+                "the window does not reach the array",
             ),
         ],
         numbers: shares.to_vec(),
@@ -197,17 +228,17 @@ fn homogeneous(photons: u64) -> Claim {
     let shares = halves.map(|half| share(2.4, half, photons));
     Claim {
         said: "smaller neighbourhoods have more homogeneous properties (6)",
-        shown: format!("the same, 0.4 m beside the array, windows of ± {halves:?} m"),
+        shown: format!("the same, 0.4 m beside the array, in windows of ± {halves:?} m"),
         checks: vec![
             decreasing(&shares),
             Check::new(
                 "± 0.3 m",
                 shares[2].value,
                 AtMost(1e-4),
-                "what light is seen is free",
+                "all light in the window passes beside the array",
             ),
         ],
         numbers: shares.to_vec(),
-        holds: "holds: the narrowest sees free light alone",
+        holds: "holds: in the narrowest window, all light passes beside the array",
     }
 }

@@ -15,7 +15,8 @@ use number::ClaimNumber;
 const PHOTONS: u64 = 1 << 20;
 /// Maximum deviation of a measured number from its prediction, in standard errors.
 const PULL: f64 = 4.0;
-const CHANCE: &str = "1 in 16,000 by chance, of some 60 numbers";
+const CHANCE: &str = "by chance, 1 of 16,000 numbers is farther off, and there are about 60 \
+    numbers";
 
 /// A statement of the paper, with the result that photons give for it.
 struct Claim {
@@ -44,8 +45,12 @@ pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "What the paper says in words, with photons".to_owned(),
         text: format!(
-            "{photons} photons and more for each scene, seed 1. Numbers are read off measured spectra, with their jackknife errors over 64 batches; in brackets is what the prediction of the same scene \
-             gives by the same estimator. Required beforehand: each number within {PULL} errors of its prediction, and what the statement says of the numbers."
+            "Each scene is traced with {photons} photons or more, seed 1. Numbers are read from \
+            measured spectra, with their jackknife errors over 64 batches. The numbers in \
+            brackets come from the prediction of the same scene, by the same estimator. The \
+            bounds were fixed before the run. Required: each number is within {PULL} errors of \
+            its prediction, and the numbers are as the statement says, or as the column *holds* \
+            says if the statement does not hold."
         ),
         header: vec![
             "statement",
@@ -80,5 +85,9 @@ fn decreasing(numbers: &[ClaimNumber]) -> Check {
         let error = pair[0].error.hypot(pair[1].error);
         pair[0].value - pair[1].value > PULL * error
     });
-    Check::fact("falling", falls, "each below the one before, beyond noise")
+    Check::fact(
+        "falling",
+        falls,
+        "each number is below the one before, beyond noise",
+    )
 }

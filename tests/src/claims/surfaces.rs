@@ -79,15 +79,16 @@ fn reciprocity(photons: u64) -> Claim {
     let ratio = both_ways("Reflects(brdf: (lobe: Phong(20)))", photons);
     Claim {
         said: "a BRDF of the angle to the mirror direction is not reciprocal (4.1)",
-        shown: "BRDF of a Phong lobe from 20° to 50° over that from 50° to 20°".to_owned(),
+        shown: "BRDF of a Phong lobe from 20° to 50° over the same BRDF from 50° to 20°".to_owned(),
         checks: vec![Check::new(
             "off 1",
             (ratio.value - 1.0).abs(),
             Below(0.01),
-            "windows of 0.02 m and 0.02 rad: second order, and noise",
+            "the windows of 0.02 m and 0.02 rad cause an error of second order, and there is \
+            noise",
         )],
         numbers: vec![ratio],
-        holds: "not: it is reciprocal",
+        holds: "does not hold: it is reciprocal",
     }
 }
 
@@ -96,7 +97,8 @@ fn fresnel(photons: u64) -> Claim {
     let ratio = both_ways(brdf, photons);
     Claim {
         said: "the same, with a factor f(θ_i') (4.3)",
-        shown: "the same with the Fresnel factor of glass at the angle of incidence".to_owned(),
+        shown: "the same ratio with the Fresnel factor of glass at the angle of incidence"
+            .to_owned(),
         checks: vec![Check::new(
             "ratio",
             ratio.value,
@@ -104,7 +106,7 @@ fn fresnel(photons: u64) -> Claim {
             "F(20°)/F(50°) = 0.70",
         )],
         numbers: vec![ratio],
-        holds: "holds of such a BRDF",
+        holds: "holds for such a BRDF",
     }
 }
 
@@ -142,7 +144,9 @@ fn mirror_sphere(photons: u64) -> Claim {
     Claim {
         said: "a mirror sphere maps the full 360° to the 180° of its normals (4.1)",
         shown: format!(
-            "photons of a beam leave in directions up to {widest:.2}° from where it comes from, at twice the angle of the normal; largest deviation from twice {off:.0e} rad"
+            "photons of a beam leave in directions up to {widest:.2}° from the direction to its \
+            source, at twice the angle of the normal; the largest deviation from twice this angle \
+            is {off:.0e} rad"
         ),
         numbers: Vec::new(),
         checks: vec![
@@ -150,16 +154,16 @@ fn mirror_sphere(photons: u64) -> Claim {
                 "off twice",
                 off,
                 Below(1e-8),
-                "rounding at the rim, where the root of 1 − k² r² is small",
+                "rounding is larger at the rim, where the root of 1 − k² r² is small",
             ),
             Check::new(
                 "widest",
                 widest,
                 AtLeast(176.0),
-                "normals to 88°: at the rim few photons land",
+                "normals reach 88°, because few photons land at the rim",
             ),
         ],
-        holds: "holds, to the rim",
+        holds: "holds up to the rim",
     }
 }
 
@@ -206,25 +210,26 @@ fn curvature(photons: u64) -> [Claim; 2] {
         Claim {
             said: "curvature has no effect on the directional bandwidth of the outgoing light field (4.2)",
             shown: format!(
-                "95 % bandwidth over ν [/rad] of what leaves a glossy surface, k = {curvatures:?} /m"
+                "95 % bandwidth over ν [/rad] of the light that leaves a glossy surface with k = \
+                {curvatures:?} /m"
             ),
             checks: vec![Check::new(
                 "spread",
                 spread(&angular),
                 Below(0.03),
-                "the lobe is cut by a window of 0.6 rad, off its middle where the surface turns",
+                "a window of 0.6 rad cuts the lobe, and off its middle where the surface turns",
             )],
             numbers: angular,
             holds: "holds on the surface, for the light field as a whole",
         },
         Claim {
-            said: "it has a strong one on spatial frequencies (4.2)",
-            shown: "the same over ρ [/m]".to_owned(),
+            said: "curvature has a strong effect on spatial frequencies (4.2)",
+            shown: "the same bandwidth over ρ [/m]".to_owned(),
             checks: vec![Check::new(
                 "spread",
                 spread(&spatial),
                 Above(0.5),
-                "twice k shears ν into ρ",
+                "a shear by twice k maps ν to ρ",
             )],
             numbers: spatial,
             holds: "holds",
@@ -288,7 +293,9 @@ fn cosine(photons: u64) -> Claim {
     Claim {
         said: "with the equator in the plane of incidence the cosine depends on θ alone, to first order (5.2)",
         shown: format!(
-            "spectrum of light times cos θ apart from that times cos θ cos φ, windows over φ of {halves:?} rad; it falls with the window to the {exponent:.2}"
+            "relative difference between the spectra of light times cos θ and light times cos θ \
+            cos φ, in windows over φ of {halves:?} rad; it falls with the window to the power \
+            {exponent:.2}"
         ),
         checks: vec![
             Check::new("exponent", exponent, AtLeast(1.9), "second order in φ"),
@@ -328,20 +335,21 @@ fn lobe(photons: u64) -> Claim {
     Claim {
         said: "off the peak a lobe is influenced more by θ than by φ (5.3)",
         shown: format!(
-            "change of the reflected light over θ over that over φ, within ± {half}, {aside:?} rad off the mirror direction"
+            "change of the reflected light with θ over its change with φ, within ± {half} rad of \
+            a direction that is {aside:?} rad off the mirror direction"
         ),
         checks: vec![
             Check::new(
                 "at the peak",
                 (ratios[0].value - 1.0).abs(),
                 Below(0.1),
-                "the distance to it alone counts",
+                "only the distance to the peak counts",
             ),
             Check::new(
                 "off it",
                 ratios[1].value.min(ratios[2].value),
                 AtLeast(4.0),
-                "first order against second",
+                "one change is of first order and the other of second order",
             ),
         ],
         numbers: ratios.to_vec(),
@@ -385,8 +393,11 @@ fn environment(photons: u64) -> [Claim; 2] {
     let [far, near] = [far, near].map(apart);
     [
         Claim {
-            said: "the cosine is a convolution over normals for light that varies in angle alone: a spectrum at Ωx/k (6.1)",
-            shown: "energy of the spectrum of a diffuse sphere of k = 1 /m minus that of k = 3 /m at Ωx/k, over the former".to_owned(),
+            said: "for light that varies only in angle, the cosine is a convolution over normals: \
+                the spectrum depends on Ωx/k (6.1)",
+            shown: "energy of the difference between the spectra of diffuse spheres of k = 1 /m \
+                and k = 3 /m at the same Ωx/k, relative to the energy of the former"
+                .to_owned(),
             checks: vec![Check::new(
                 "apart",
                 far.value / far.error,
@@ -394,14 +405,19 @@ fn environment(photons: u64) -> [Claim; 2] {
                 CHANCE,
             )],
             numbers: vec![far],
-            holds: "holds: it is a function of Ωx/k",
+            holds: "holds: the spectrum is a function of Ωx/k",
         },
         Claim {
             said: "the same, under a light that varies in space",
-            shown: "the same, a square of 0.5 m, 0.5 m away".to_owned(),
-            checks: vec![Check::new("apart", near.value, AtLeast(0.002), "far beyond noise")],
+            shown: "the same for a square light of 0.5 m, 0.5 m away".to_owned(),
+            checks: vec![Check::new(
+                "apart",
+                near.value,
+                AtLeast(0.002),
+                "far beyond noise",
+            )],
             numbers: vec![near],
-            holds: "not: its spectrum is no line",
+            holds: "does not hold: the spectrum of such light is not a line",
         },
     ]
 }

@@ -45,7 +45,7 @@ const FAULTS: [(&str, SizedFault); 7] = [
         SizedFault::Predicted(|size| widened(0.0, size)),
     ),
     (
-        "field moved along x, of the half-width",
+        "field moved along x, relative to the half-width",
         SizedFault::Predicted(|size| {
             Box::new(move |scene, plane| {
                 let shift = plane.window.x.half_width() * size;
@@ -97,7 +97,12 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
         let sizes: Vec<Option<f64>> = sizes.collect();
         let checks = sizes.iter().map(|size| {
             let size = size.unwrap_or(f64::INFINITY);
-            Check::new("size", size, Below(LARGEST), "what was rejected before")
+            Check::new(
+                "size",
+                size,
+                Below(LARGEST),
+                "the largest planted size is rejected",
+            )
         });
         let shown = sizes
             .iter()
@@ -109,8 +114,10 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     ReportSection {
         title: format!("The smallest faults at {:.0e} photons", photons as f64),
         text: format!(
-            "Each fault is planted with a size of 1 % and {HALVES} times with half of the size before. The table has the smallest \
-             that is rejected together with all larger ones, for photons of nets and of random numbers. Required: smaller than 1 %."
+            "Each fault is planted with a size of 1 %, and then {HALVES} times with half of the \
+            size before. The table shows the smallest size that is rejected together with all \
+            larger sizes, for photons from nets and from random numbers. Required: this size is \
+            smaller than 1 %."
         ),
         header: vec!["fault", "nets", "random numbers"],
         rows,

@@ -51,9 +51,10 @@ impl Tallies {
         ReportSection {
             title: "Hostile input".into(),
             text: format!(
-                "Mutated files as input, seed {seed}. Required: a result or one clear message, at \
-                 most 30 s and 1 GB, nothing written that is not a result, and no other result \
-                 from a folder that was damaged.{}{told}",
+                "The program reads files that were mutated at random, seed {seed}. Required: each \
+                case gives a result or one clear message, and takes at most 30 s and 1 GB. \
+                Nothing is written that is not a result, and a damaged folder never gives a \
+                different result.{}{told}",
                 if bad.is_empty() { "" } else { "\n\n" }
             ),
             header: vec![
@@ -61,17 +62,17 @@ impl Tallies {
                 "cases",
                 "refused: syntax",
                 "refused: values",
-                "sound",
-                "also run",
+                "accepted",
+                "accepted and run",
                 "panics",
                 "aborts",
                 "> 30 s",
                 "> 1 GB",
-                "written",
+                "wrote other files",
                 "bad message",
-                "accepted and changed",
-                "worst s",
-                "worst MB",
+                "different result",
+                "longest time in s",
+                "most memory in MB",
             ],
             rows,
             checks: vec![Check::none("bad cases", bad.len())],

@@ -88,10 +88,10 @@ fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> ReportSec
         Row::new(row, Vec::new())
     });
     let mut text = format!(
-        "Commands killed, started twice at once, and on full disks, in folders with an earlier \
-         result and files of the user's; seed {}. Required: every index is of a whole result, \
-         every file of the user's stays as it is, and the next run succeeds and leaves nothing \
-         behind.",
+        "Commands are killed at random moments, started twice at once, or run on full disks. \
+        Their folders hold an earlier result and files of the user; seed {}. Required: every \
+        index belongs to a whole result, every file of the user stays as it is, and the next run \
+        succeeds and leaves nothing behind.",
         options.seed
     );
     if !told.is_empty() {
@@ -113,11 +113,11 @@ fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> ReportSec
             "second writer refused",
             "broken results",
             "index without its hash",
-            "foreign files lost",
-            "strange exits",
+            "user files lost",
+            "unexpected exits",
             "next run failed",
             "leftovers after next run",
-            "edited file not spared",
+            "edited file overwritten",
         ],
         rows: rows.collect(),
         checks: vec![Check::none("bad endings", told.len())],

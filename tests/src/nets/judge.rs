@@ -41,7 +41,8 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
     ];
     for (title, reading, scale) in faults {
         let title = format!("Planted: {}", title.to_lowercase());
-        let text = "Required: with the bounds above, this fails.";
+        let text = "A fault is planted, as the title says. Required: this table fails by the \
+            bounds above.";
         sections.push(judged(outcomes, reading, scale).planted(title, text, is_sound));
     }
     sections
@@ -69,24 +70,22 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     ReportSection {
         title: format!("{} scenes", outcomes.len()),
         text: format!(
-            "Four complex numbers a scene, and the one at zero frequency; ± is the standard error \
-            over the scenes, whose \
-             four numbers may depend on each other. \
-             Expected beyond 1, 2, 3: {one:.1}, {two:.2} and {three:.2} %; at zero {a:.1}, {b:.1} \
-             and {c:.2} %. \
-             Required: every share within {BORNE} of its errors; p of the first of the four \
-             numbers uniform by \
-             Kolmogorov–Smirnov at 1 % over the three groups; the mean square of L2 ratios within \
-             {BORNE} of its errors of \
-             1 to {OF_ONE:.3}; no L2 ratio above {LARGEST}. The nets are the same in all scenes, \
-             so that these have errors in \
-             common: ± of the mean square is the scatter of the same number from 16 pairs of \
-             nets; that of the shares does \
-             not know of it."
+            "Each scene gives four complex numbers, and the real number at zero frequency. The \
+            columns have the shares of these numbers that are more than 1, 2 and 3 standard \
+            errors from the truth; ± is the standard error over the scenes, because the four \
+            numbers of a scene may depend on each other. The shares expected beyond 1, 2 and 3 \
+            are {one:.1}, {two:.2} and {three:.2} %; at zero frequency they are {a:.1}, {b:.1} \
+            and {c:.2} %. Required: every share is within {BORNE} of its errors of the expected \
+            share. The p-value of the first of the four numbers is uniform by Kolmogorov–Smirnov \
+            at 1 % over the three groups. The mean square of the L2 ratios is within {BORNE} of \
+            its errors of the range from 1 to {OF_ONE:.3}. No L2 ratio is above {LARGEST}. All \
+            scenes have the same nets, and therefore their errors are correlated. The error of \
+            the mean square includes this: it is the scatter of the mean square from 16 pairs of \
+            nets. The errors of the shares do not include it."
         ),
         header: vec![
+            "group",
             "scenes",
-            "number",
             "d > 1",
             "d > 2",
             "d > 3",
@@ -127,13 +126,18 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let squares: Vec<f64> = of_group.iter().map(|m| (m.ratio / scale).powi(2)).collect();
     let [square, over_scenes] = mean(&squares);
     let error = common(of_group, scale).max(over_scenes);
-    let (slack, reason) = (BORNE * error, "1 to 31/29, within its errors");
+    let (slack, reason) = (BORNE * error, "expected from 1 to 31/29, within its errors");
     let largest = of_group.iter().map(|m| m.ratio / scale).fold(0.0, worse);
     row.checks.extend([
         Check::new("p", uniform, AtLeast(0.01 / 3.0), "1 % over all groups"),
         Check::new("square", square, AtLeast(1.0 - slack), reason),
         Check::new("square", square, Below(OF_ONE + slack), reason),
-        Check::new("ratio", largest, Below(LARGEST), "3e-5 are beyond it"),
+        Check::new(
+            "ratio",
+            largest,
+            Below(LARGEST),
+            "a share of 3e-5 is beyond this by chance",
+        ),
     ]);
     row.cells.push(format!("{uniform:.3}"));
     row.cells.push(format!("{square:.3} ± {error:.3}"));
@@ -204,9 +208,9 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     ReportSection {
         title: "By kind of scene".to_owned(),
         text: format!(
-            "{left_out} scenes were left out since their truth is not known to a tenth of the \
-            stated error. \
-             Required: nothing more than above."
+            "The scenes are grouped by kind. {left_out} scenes were left out, because the error \
+            of their truth is above a tenth of the stated error. This table has no requirements \
+            of its own."
         ),
         header: vec![
             "kind",
@@ -214,8 +218,8 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
             "d > 1",
             "d > 2",
             "d > 3",
-            "L2 ratio: least, median, largest",
-            "mean square",
+            "L2 ratio: smallest, median, largest",
+            "mean square of L2 ratios",
             "stated errors",
             "largest error of the truth, in stated errors",
         ],
@@ -241,11 +245,19 @@ fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
         Row::new(cells, Vec::new())
     };
     ReportSection {
-        title: "The scenes farthest off".to_owned(),
+        title: "The scenes with the largest errors".to_owned(),
         text:
-            "By L2 ratio. A number makes the same scene again. Required: nothing more than above."
+            "These are the scenes with the largest L2 ratios. The generator makes the same scene \
+            again from its number. This table has no requirements of its own."
                 .to_owned(),
-        header: vec!["number", "kind", "L2 ratio", "stated", "at zero", "d"],
+        header: vec![
+            "number",
+            "kind",
+            "L2 ratio",
+            "stated error",
+            "deviation at zero, in errors",
+            "d of the four numbers",
+        ],
         rows: all.iter().take(WORST).map(row).collect(),
         checks: Vec::new(),
     }

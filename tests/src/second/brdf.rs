@@ -32,8 +32,8 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
-        "from the surface" => 90.0 - angle.to_degrees(),
-        "over the cosine" => 90.0 * (1.0 - angle.cos()),
+        "angle measured from the surface" => 90.0 - angle.to_degrees(),
+        "interpolated over the cosine" => 90.0 * (1.0 - angle.cos()),
         _ => angle.to_degrees(),
     };
     let pairs = values.windows(2).enumerate();
@@ -80,7 +80,7 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
         return 0.0;
     }
     let unit = match fault {
-        "(n + 2)/2π in front" => exponent + 2.0,
+        "factor (n + 2)/2π" => exponent + 2.0,
         _ => exponent + 1.0,
     };
     unit / (2.0 * PI) * (exponent * cosine.ln()).exp()
@@ -89,7 +89,7 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
 /// Returns the microfacet normal that reflects one direction into the other.
 fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     match fault {
-        "facet on the side of one direction" => unit(plus(from, 1.1, to)),
+        "facet closer to one direction" => unit(plus(from, 1.1, to)),
         _ => unit(plus(from, 1.0, to)),
     }
 }
@@ -98,7 +98,7 @@ fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
 /// Torrance 1982; Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let masks = match fault {
-        "masked one way only" => mask(from),
+        "masking in one direction only" => mask(from),
         _ => mask(from) * mask(to),
     };
     density * masks / (4.0 * from[2] * to[2])

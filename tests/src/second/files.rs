@@ -21,10 +21,10 @@ const EACH: u32 = 20;
 const FAULTS: &[&str] = &[
     "blend order swapped",
     "flipped",
-    "left for right",
+    "left and right swapped",
     "axes swapped",
     "sign of t",
-    "along turned over",
+    "direction along reversed",
 ];
 
 /// The file name of the picture.

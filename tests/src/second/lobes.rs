@@ -36,20 +36,20 @@ fn predicted_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
 const SEPARABLE: &[&str] = &[
     "h for f",
     "h left out",
-    "from the surface",
-    "over the cosine",
+    "angle measured from the surface",
+    "interpolated over the cosine",
 ];
 const SUM: &[&str] = &["weights swapped", "a term left out", "phase subtracted"];
 const FRESNEL: &[&str] = &["s alone", "p alone", "media swapped", "k left out"];
-const PHONG: &[&str] = &["about the half-way vector", "(n + 2)/2π in front"];
+const PHONG: &[&str] = &["about the half-way vector", "factor (n + 2)/2π"];
 const BECKMANN: &[&str] = &[
     "α² is the variance along an axis",
-    "masked one way only",
-    "facet on the side of one direction",
+    "masking in one direction only",
+    "facet closer to one direction",
 ];
 const GGX: &[&str] = &[
     "Beckmann's masking",
-    "masked one way only",
+    "masking in one direction only",
     "D to the power 3/2",
 ];
 

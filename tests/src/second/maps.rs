@@ -19,17 +19,20 @@ use std::path::Path;
 const STEP: f64 = 1e-5;
 
 const MIRROR: &[&str] = &[
-    "sign of latitude",
-    "the central normal",
+    "wrong sign of latitude",
+    "central normal instead of the local normal",
     "not turned about the normal",
-    "hollow for convex",
+    "hollow instead of convex",
 ];
 const ONTO: &[&str] = &[
-    "sign of latitude",
-    "the central normal",
-    "hollow for convex",
+    "wrong sign of latitude",
+    "central normal instead of the local normal",
+    "hollow instead of convex",
 ];
-const OFF: &[&str] = &["sign of latitude", "the central normal"];
+const OFF: &[&str] = &[
+    "wrong sign of latitude",
+    "central normal instead of the local normal",
+];
 
 pub(super) fn checks() -> Vec<SecondCheck> {
     let check = |name, faults, difference: fn(&mut Dice, &str) -> f64| SecondCheck {
@@ -37,7 +40,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
         rounds: [300, 4],
         tolerance: (
             1e-7,
-            "differences over 10⁻⁵: its square times third derivatives",
+            "error of finite differences over 10⁻⁵: its square times third derivatives",
         ),
         faults,
         difference: Box::new(difference),

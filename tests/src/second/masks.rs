@@ -17,14 +17,22 @@ const EACH: u32 = 20;
 
 const SHAPES: &[&str] = &[
     "x and y swapped",
-    "sizes are half-widths",
+    "sizes taken as half-widths",
     "the other half of the plane",
     "from the central ray",
 ];
 const GRATING: &[&str] = &["axes swapped", "from the central ray", "phase subtracted"];
-const SQUARES: &[&str] = &["x and y swapped", "half a pitch off", "sides of a pitch"];
+const SQUARES: &[&str] = &[
+    "x and y swapped",
+    "shifted by half a pitch",
+    "sides as long as a pitch",
+];
 const SLIDE: &[&str] = &["widths swapped", "axes swapped", "no π"];
-const WINDOW: &[&str] = &["cosine not squared", "half-width is the width", "no π"];
+const WINDOW: &[&str] = &[
+    "cosine not squared",
+    "half-width taken as the width",
+    "no π",
+];
 
 pub(super) fn checks() -> Vec<SecondCheck> {
     let exact = (0.0, "a number of two"); // 0 or 1 on both sides
@@ -99,7 +107,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
             "from the central ray" => [at[0] + center[0], at[1] + center[1]],
             _ => at,
         };
-        let part = if fault == "sizes are half-widths" {
+        let part = if fault == "sizes taken as half-widths" {
             1.0
         } else {
             0.5
@@ -138,10 +146,10 @@ fn squares(dice: &mut Dice, fault: &str) -> f64 {
     against(dice, &scene, center, |at| {
         let at = match fault {
             "x and y swapped" => [at[1], at[0]],
-            "half a pitch off" => [at[0] + 0.5 * pitch, at[1]],
+            "shifted by half a pitch" => [at[0] + 0.5 * pitch, at[1]],
             _ => at,
         };
-        let side = if fault == "sides of a pitch" {
+        let side = if fault == "sides as long as a pitch" {
             pitch
         } else {
             fill * pitch
@@ -233,7 +241,7 @@ fn window(dice: &mut Dice, fault: &str) -> f64 {
     });
     let [x, y, u, v] = profiles;
     let fast = Window { x, y, u, v };
-    let half = if fault == "half-width is the width" {
+    let half = if fault == "half-width taken as the width" {
         0.5
     } else {
         1.0

@@ -17,8 +17,8 @@ use std::path::Path;
 const EACH: u32 = 50;
 
 const TRIANGLE: &[&str] = &["normals in another order", "u and v swapped"];
-const CURVATURE: &[&str] = &["axes swapped", "hollow for convex", "scale left out"];
-const NORMAL: &[&str] = &["axes swapped", "hollow for convex"];
+const CURVATURE: &[&str] = &["axes swapped", "hollow instead of convex", "scale left out"];
+const NORMAL: &[&str] = &["axes swapped", "hollow instead of convex"];
 
 pub(super) fn checks() -> Vec<SecondCheck> {
     vec![
@@ -130,7 +130,7 @@ impl Hill {
         let scene = world.scene(Path::new("."));
         let (curvature, scale) = match fault {
             "axes swapped" => ([l, k], scale),
-            "hollow for convex" => ([-k, -l], scale),
+            "hollow instead of convex" => ([-k, -l], scale),
             "scale left out" => ([k, l], 1.0),
             _ => ([k, l], scale),
         };

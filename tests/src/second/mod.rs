@@ -43,9 +43,10 @@ pub(crate) fn second() -> io::Result<ReportSection> {
     Ok(ReportSection {
         title: "Second implementation".to_owned(),
         text: format!(
-            "What theory and the tracers share, and the BRDFs of each, against a second \
-             implementation from their definitions, at random points (seed {SEED}). Required: \
-             differences within the tolerance, and beyond it with each planted fault."
+            "Theory and the tracers share some functions, and each has its own BRDFs. All of \
+            these are compared with a second implementation from their definitions, at random \
+            points (seed {SEED}). Required: the largest difference is within the tolerance, and \
+            it is beyond the tolerance with each planted fault."
         ),
         header: vec![
             "function",
@@ -53,11 +54,15 @@ pub(crate) fn second() -> io::Result<ReportSection> {
             "largest difference",
             "tolerance",
             "planted fault",
-            "then off by",
+            "difference with this fault",
             "verdict",
         ],
         rows: checks.iter().flat_map(rows).collect(),
-        checks: vec![report::Check::fact("faults", named, "rows are of faults")],
+        checks: vec![report::Check::fact(
+            "faults",
+            named,
+            "every row needs a fault",
+        )],
     })
 }
 

@@ -11,14 +11,14 @@ use crate::hostile::dice::Dice;
 use std::path::Path;
 
 const FRAMES: &[&str] = &[
-    "X not turned round",
-    "not turned to where it goes",
-    "T turned over",
-    "sign of longitude",
-    "N in front of light gone through",
+    "X not reversed",
+    "frame not turned to the new direction",
+    "T reversed",
+    "wrong sign of longitude",
+    "N in front of transmitted light",
 ];
 
-const RECTANGLE: &[&str] = &["edges along Y", "turned over"];
+const RECTANGLE: &[&str] = &["edges along Y", "facing the other way"];
 
 /// The change of direction of the central ray at a surface.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ impl Legs {
         let t = across(light.d, normal);
         // The tangent, along −X at normal incidence.
         let t = times(-dot(t, light.x).signum(), t);
-        let t = if fault == "T turned over" {
+        let t = if fault == "T reversed" {
             times(-1.0, t)
         } else {
             t
@@ -85,7 +85,7 @@ impl Legs {
         // The longitude is measured from N towards T.
         let longitude = |axes: &Axes, away: Vector| {
             let theta = dot(away, axes.x).atan2(dot(away, axes.d));
-            if fault == "sign of longitude" {
+            if fault == "wrong sign of longitude" {
                 -theta
             } else {
                 theta
@@ -93,7 +93,7 @@ impl Legs {
         };
         let arriving = surface(1.0);
         let leaving = match turn {
-            Turn::Through(_) if fault != "N in front of light gone through" => surface(-1.0),
+            Turn::Through(_) if fault != "N in front of transmitted light" => surface(-1.0),
             _ => surface(1.0),
         };
         Self {
@@ -109,11 +109,7 @@ impl Legs {
     /// smallest angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
-        let x_sign = if fault == "X not turned round" {
-            1.0
-        } else {
-            -1.0
-        };
+        let x_sign = if fault == "X not reversed" { 1.0 } else { -1.0 };
         let (x, y, d, to) = match turn {
             Turn::Through(to) => (before.x, before.y, before.d, to),
             Turn::Back(to) => (
@@ -124,7 +120,7 @@ impl Legs {
             ),
         };
         let along = match fault {
-            "not turned to where it goes" => |a: Vector, _: Vector, _: Vector| a,
+            "frame not turned to the new direction" => |a: Vector, _: Vector, _: Vector| a,
             _ => turned_along,
         };
         Axes {
@@ -206,7 +202,7 @@ fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let scene = world.scene(Path::new("."));
     let (facing, along) = match fault {
         "edges along Y" => (facing, world.light.y),
-        "turned over" => (times(-1.0, facing), world.light.x),
+        "facing the other way" => (times(-1.0, facing), world.light.x),
         _ => (facing, world.light.x),
     };
     let fast = world.light.in_world(&scene.surfaces[0].frame);

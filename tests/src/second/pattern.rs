@@ -52,7 +52,7 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
 /// and the value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = match fault {
-        "a side is a period" => period,
+        "a side taken as a period" => period,
         _ => period / 2.0,
     };
     let odd = |t: f64| (t / side).floor().rem_euclid(2.0) > 0.5;
@@ -77,7 +77,7 @@ impl Levels {
             return 0.0;
         }
         let left = match fault {
-            "left for right" => width / 2.0 - s,
+            "left and right swapped" => width / 2.0 - s,
             _ => width / 2.0 + s,
         };
         let top = match fault {
@@ -115,7 +115,7 @@ fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let before = (0..last).rev().find(|i| centres[*i] <= at).unwrap_or(0);
     let share = (at - centres[before]) / (centres[before + 1] - centres[before]);
     match fault {
-        "nearest pixel" => (before, share.round()),
+        "nearest pixel instead of interpolation" => (before, share.round()),
         _ => (before, share),
     }
 }

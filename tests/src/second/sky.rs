@@ -16,7 +16,7 @@ const EACH: u32 = 20;
 
 const MAP: &[&str] = &[
     "turned by 90°",
-    "sign of longitude",
+    "wrong sign of longitude",
     "upside down",
     "the way light goes",
     "centres at corners",
@@ -113,7 +113,7 @@ impl Levels {
         let [w, h] = [self.width as f64, self.height as f64];
         let longitude = match fault {
             "turned by 90°" => longitude + PI / 2.0,
-            "sign of longitude" => -longitude,
+            "wrong sign of longitude" => -longitude,
             "centres at corners" => longitude + PI / w,
             _ => longitude,
         };

@@ -64,10 +64,12 @@ impl Smooth {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
             ("axes swapped", _) => self.axes = Axes::new(origin, d, y),
-            ("along turned over", _) => self.axes = Axes::new(origin, d, times(-1.0, x)),
-            ("hollow for convex", Form::Sphere(k)) => self.form = Form::Sphere(-k),
-            ("hollow for convex", Form::Cylinder(k)) => self.form = Form::Cylinder(-k),
-            ("hollow for convex", Form::Paraboloid(k, l)) => self.form = Form::Paraboloid(-k, -l),
+            ("direction along reversed", _) => self.axes = Axes::new(origin, d, times(-1.0, x)),
+            ("hollow instead of convex", Form::Sphere(k)) => self.form = Form::Sphere(-k),
+            ("hollow instead of convex", Form::Cylinder(k)) => self.form = Form::Cylinder(-k),
+            ("hollow instead of convex", Form::Paraboloid(k, l)) => {
+                self.form = Form::Paraboloid(-k, -l)
+            }
             ("curvature is the diameter's", Form::Sphere(k)) => self.form = Form::Sphere(2.0 * k),
             ("aperture is a diameter", _) => self.aperture *= 0.5,
             _ => {}

@@ -18,13 +18,13 @@ const EACH: u32 = 20;
 
 const FORMS: &[&str] = &[
     "axes swapped",
-    "along turned over",
-    "hollow for convex",
+    "direction along reversed",
+    "hollow instead of convex",
     "curvature is the diameter's",
 ];
 const HITS: &[&str] = &[
     "axes swapped",
-    "hollow for convex",
+    "hollow instead of convex",
     "aperture is a diameter",
 ];
 const EVENTS: &[&str] = &[

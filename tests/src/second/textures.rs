@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 const COSINE: &[&str] = &["axes swapped", "phase subtracted"];
-const BOARD: &[&str] = &["parity", "a side is a period"];
+const BOARD: &[&str] = &["parity", "a side taken as a period"];
 const PICTURE: &[&str] = &[
     "flipped",
-    "left for right",
+    "left and right swapped",
     "axes swapped",
-    "nearest pixel",
+    "nearest pixel instead of interpolation",
     "centres at corners",
 ];
 const BLEND: &[&str] = &[

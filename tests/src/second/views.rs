@@ -15,9 +15,9 @@ use std::path::Path;
 const EACH: u32 = 32;
 
 const VIEWS: &[&str] = &[
-    "sign of longitude",
-    "sign of latitude",
-    "the central normal",
+    "wrong sign of longitude",
+    "wrong sign of latitude",
+    "central normal instead of the local normal",
     "not turned about the normal",
     "foot on the tangent plane",
     "cosines left out",
@@ -170,7 +170,7 @@ impl Looking<'_> {
         }
         let (point, normal) = self.met(foot, along, fault)?;
         let turned = |axis: Vector| match fault {
-            "the central normal" => axis,
+            "central normal instead of the local normal" => axis,
             _ => turned_along(axis, self.surface.d, normal),
         };
         let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
@@ -181,7 +181,7 @@ impl Looking<'_> {
         if self.view == View::Mirrored && fault != "not turned about the normal" {
             (theta, phi) = (-theta, -phi);
         }
-        if fault == "sign of latitude" {
+        if fault == "wrong sign of latitude" {
             phi = -phi;
         }
         let [s, t, _] = self.surface.coordinates(point);

@@ -63,10 +63,12 @@ fn replicas() -> Statement {
     }
     Statement {
         said: "replicas sit at the blockers' frequency f (3.4)",
-        measured: "peak of a light's spectrum behind strips 0.2, 0.1, 0.05 m apart, relative to 1/pitch, largest deviation".to_owned(),
+        measured: "largest deviation of a peak from 1/pitch, relative to 1/pitch, in the spectrum \
+            of a light behind strips 0.2, 0.1, 0.05 m apart"
+            .to_owned(),
         number: worst,
         expected: [0.0, 1e-3],
-        holds: "holds; smaller patterns put them farther away",
+        holds: "holds: for smaller patterns, replicas are farther away",
     }
 }
 
@@ -118,29 +120,32 @@ fn combined() -> Vec<Statement> {
     }
     vec![
         Statement {
-            said: "combined blockers can be over-estimated, not under-estimated (3.4)",
+            said: "combined blockers can be over-estimated, but not under-estimated (3.4)",
             measured: format!(
-                "largest |V̂₁₂|/(|V̂₁| ⊗ |V̂₂|) over {pairs} pairs of random strips, |n| ≤ 16"
+                "largest ratio |V̂₁₂|/(|V̂₁| ⊗ |V̂₂|) for {pairs} pairs of random strips, |n| ≤ \
+                16"
             ),
             number: largest,
             expected: [0.2, 1.0],
-            holds: "holds at every frequency, magnitudes without phase being a bound",
+            holds: "holds at every frequency, because magnitudes without phase are a bound",
         },
         Statement {
-            said: "the same, of complementary half-planes in one plane",
-            measured: "largest true |V̂₁₂| over the bound without phase".to_owned(),
+            said: "the same, for two complementary half-planes in one plane",
+            measured: "largest ratio of the true |V̂₁₂| to the bound without phase".to_owned(),
             number: complementary(),
             expected: [0.0, 1e-12],
-            holds: "the bound may be all there is: they let nothing pass",
+            holds: "the bound can be far too large: these half-planes let nothing pass",
         },
         Statement {
-            said: "the same, of a bandwidth that is a share of the energy",
+            said: "the same, for a bandwidth that holds a share of the energy",
             measured: format!(
-                "share of the pairs whose 90 % bandwidth the magnitudes under-estimate (they over-estimate {over})"
+                "share of the pairs whose 90 % bandwidth is under-estimated by magnitudes ({over} \
+                are over-estimated)"
             ),
             number: f64::from(under) / f64::from(pairs),
             expected: [0.0, 0.0],
-            holds: "holds of all pairs, though shares of energy need not keep the order of magnitudes",
+            holds: "holds for all pairs, although the order of magnitudes does not fix the order \
+                of such bandwidths",
         },
     ]
 }
@@ -184,18 +189,21 @@ fn wedge() -> Vec<Statement> {
     let logs = [0.2_f64, 0.1, 0.05].map(|m| [m.ln(), content(m).ln()]);
     vec![
         Statement {
-            said: "non-planar blockers keep to a wedge of angular frequencies (3.2)",
-            measured: "content at (0, f), outside the wedge, of two full cosine gratings 1 m apart, over that at zero".to_owned(),
+            said: "the spectrum of non-planar blockers stays in a wedge of angular frequencies \
+                (3.2)",
+            measured: "content at (0, f), outside the wedge, relative to the content at zero, for \
+                two full cosine gratings 1 m apart"
+                .to_owned(),
             number: content(1.0),
             expected: [0.249, 0.251],
-            holds: "not where rays meet two blockers",
+            holds: "does not hold where rays meet two blockers",
         },
         Statement {
-            said: "the same, of faint blockers",
-            measured: "exponent with which that content falls with the modulation".to_owned(),
+            said: "the same, for faint blockers",
+            measured: "exponent with which this content falls with the modulation".to_owned(),
             number: slope(&logs),
             expected: [1.9, 2.2],
-            holds: "to first order in what is blocked",
+            holds: "holds to first order in the blocked light",
         },
     ]
 }
@@ -256,24 +264,27 @@ fn average() -> Vec<Statement> {
         Statement {
             said: "small blockers act as their average (3.4)",
             measured: format!(
-                "exponent with which the ripple of irradiance under strips falls with their pitch, {:.4} to {:.4} m",
+                "exponent with which the ripple of the irradiance under strips falls with their \
+                pitch, from {:.4} to {:.4} m",
                 pitches[0], pitches[3]
             ),
             number: slope(&logs),
             expected: [0.9, 1.1],
-            holds: "holds, to first order in the pitch",
+            holds: "holds to first order in the pitch",
         },
         Statement {
-            said: "the same, of the spectrum at one frequency",
+            said: "the same, for the spectrum at one frequency",
             measured: format!(
-                "exponent from pitch 0.3 to 0.15 m, differences {:.1e} and {:.1e}",
+                "exponent from the pitch 0.3 to 0.15 m, where the differences are {:.1e} and \
+                {:.1e}",
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
             // The spectrum falls with the pitch like the tail of a Gaussian at f d₁/D − 0.7, in a
             // window of 0.4 m. This number is 1.5 and 3.7 cycles per metre for the two pitches.
             expected: [4.0, 100.0],
-            holds: "holds, faster than any power: only replicas' tails arrive",
+            holds: "holds, and the ripple falls faster than any power: only the tails of replicas \
+                arrive",
         },
     ]
 }
@@ -309,24 +320,27 @@ fn soft_shadow() -> Vec<Statement> {
     vec![
         Statement {
             said: "soft shadows are a primal convolution in a special case (6.1)",
-            measured: "∫ over a uniform light of what a planar mask lets pass, against light ⊗ mask, without g".to_owned(),
+            measured: "difference between light ⊗ mask and the integral, over a uniform light, of \
+                what a planar mask lets pass, without g"
+                .to_owned(),
             number: off(&|_, _| 1.0),
             expected: [0.0, 1e-12],
             holds: "holds for a uniform diffuse light parallel to mask and receiver",
         },
         Statement {
             said: "the same, with the cosine factor g of the receiver",
-            measured: "the same, the convolution multiplied by g towards the light's centre".to_owned(),
+            measured: "the same, with the convolution multiplied by g towards the light's centre"
+                .to_owned(),
             number: off(&|_, v| g(v)),
             expected: [1e-4, 0.1],
-            holds: "not exactly: g varies over the light",
+            holds: "does not hold exactly: g varies over the light",
         },
         Statement {
             said: "the same, with a light that is not diffuse",
             measured: "the same, for a lobe 1 + 3v".to_owned(),
             number: off(&|_, v| 1.0 + 3.0 * v),
             expected: [1e-4, 10.0],
-            holds: "not: its spectrum is no line",
+            holds: "does not hold: the spectrum of such light is not a line",
         },
     ]
 }

@@ -108,7 +108,7 @@ fn separable() -> Vec<OperatorComparison> {
         OperatorComparison {
             operator,
             line: Some(line),
-            compared: "reflection, step 7".to_owned(),
+            compared: "reflection after step 7".to_owned(),
             off: apart(&chain(&reflection(vec![right])), &traced),
             fault: (name, apart(&chain(&reflection(vec![wrong])), &traced)),
         }
@@ -166,7 +166,7 @@ fn separable() -> Vec<OperatorComparison> {
                 ..surface(Some(&gaussian))
             },
             glossy(Factor::Other(&lopsided_hat)),
-            "f̂(Ω) for f̂(−Ω)",
+            "f̂(Ω) instead of f̂(−Ω)",
             glossy(Factor::Other(&conjugate)),
         ),
         row(
@@ -242,7 +242,7 @@ fn listed() -> [OperatorComparison; 2] {
     let row = |operator, off, fault| OperatorComparison {
         operator,
         line: Some(Line::Separable),
-        compared: "reflection, step 7".to_owned(),
+        compared: "reflection after step 7".to_owned(),
         off,
         fault,
     };
@@ -287,7 +287,7 @@ fn weighted() -> OperatorComparison {
     OperatorComparison {
         operator: "weighted sum of two lobes",
         line: Some(Line::SpaceVarying),
-        compared: "reflection, step 7".to_owned(),
+        compared: "reflection after step 7".to_owned(),
         off: by(&one, &rest),
         fault: ("weights swapped", by(&rest, &one)),
     }
@@ -322,7 +322,7 @@ fn sum() -> OperatorComparison {
     OperatorComparison {
         operator: "sum of three separable terms",
         line: Some(Line::Separable),
-        compared: "reflection, step 7".to_owned(),
+        compared: "reflection after step 7".to_owned(),
         off: apart(&right, &traced),
         fault: (
             "a term left out",
@@ -361,7 +361,10 @@ fn textured() -> OperatorComparison {
         line: Some(Line::Texture),
         compared: "reflection times 1 + 0.7 cos(2π 1.5 s + 0.4)".to_owned(),
         off: apart(&with(1.5), &traced),
-        fault: ("its frequency 5 % off", apart(&with(1.575), &traced)),
+        fault: (
+            "frequency of the texture 5 % off",
+            apart(&with(1.575), &traced),
+        ),
     }
 }
 
@@ -399,6 +402,6 @@ fn varying() -> OperatorComparison {
         line: Some(Line::SpaceVarying),
         compared: "reflection by a lobe that turns along s".to_owned(),
         off: apart(&through(&|w| bell.spectrum(w)), &traced),
-        fault: ("a separable ρ", apart(&through(&straight), &traced)),
+        fault: ("a separable ρ instead", apart(&through(&straight), &traced)),
     }
 }

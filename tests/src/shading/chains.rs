@@ -32,21 +32,21 @@ fn faults() -> Vec<(&'static str, Change)> {
         ("onto: 1/cos θ₀ beside x left out", |c| {
             row(&mut c.onto, 0, c.incidence.cos());
         }),
-        ("onto: 1/cos θ₀ beside x twice", |c| {
+        ("onto: 1/cos θ₀ beside x counted twice", |c| {
             row(&mut c.onto, 0, 1.0 / c.incidence.cos());
         }),
         ("off: curvature left out", |c| {
             let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&c.off);
         }),
-        ("off: sign of curvature", |c| {
+        ("off: wrong sign of curvature", |c| {
             let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&forth).then(&c.off);
         }),
         ("off: cos θ₁ beside x left out", |c| {
             row(&mut c.off, 0, 1.0 / c.outgoing[0].cos());
         }),
-        ("off: sign of y", |c| row(&mut c.off, 1, -1.0)),
+        ("off: wrong sign of y", |c| row(&mut c.off, 1, -1.0)),
     ]
 }
 
@@ -105,8 +105,12 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "Faults planted in the first-order chain of shading".to_owned(),
         text: format!(
-            "The affine maps onto the glossy sphere and off it, each changed alone, at {:.0e} photons. Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the \
-             central ray shrinks. Required: rejected every fault, accepted without.",
+            "The affine maps onto the glossy sphere and off it are each changed alone, at {:.0e} \
+            photons. The chain is judged as in a run: it is rejected when a part of its error \
+            above 10⁻⁵ remains as the neighbourhood of the central ray shrinks. *Excess* is the \
+            disagreement with the photons beyond noise, and *bound* is the upper 95 % bound of \
+            the excess. Required: the chain is rejected with every fault, and accepted without a \
+            fault.",
             photons as f64
         ),
         header: vec![
@@ -116,7 +120,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
             "excess",
             "bound",
             "error of the sound chain",
-            "stays",
+            "error that remains",
             "verdict",
         ],
         rows,

@@ -49,7 +49,13 @@ pub(super) fn errata() -> ReportSection {
     let rows = all.into_iter().map(|e| {
         let checks = vec![
             Check::new("printed", e.off, AtLeast(e.at_least), "it is wrong"),
-            Check::new("corrected", e.mended, Below(e.at_most), "good to so much"),
+            Check::new(
+                "corrected",
+                e.mended,
+                Below(e.at_most),
+                "the reference is accurate to \
+                this",
+            ),
         ];
         let cells = vec![
             e.place.to_owned(),
@@ -67,20 +73,24 @@ pub(super) fn errata() -> ReportSection {
     let rows = rows.collect();
     ReportSection {
         title: "Errata of shading".to_owned(),
-        text: "No photons. What the paper prints and what should stand there, held against quadratures of the primal (up to Eq. 17: two wide Gaussians reflected at k = 0.5 /m, θ₀ = 0.5; \
-               section 6.1: two Gaussians in an environment, k = 0.6 /m) and rays traced off a circle (section 6.2, Eqs. 20, 21). Required beforehand: the print off by at least, what is corrected by \
-               at most, the figures beside them."
+        text: "No photons are traced here. Each formula is evaluated as the paper prints it and \
+              as it should be, and both are compared with a reference. Up to Eq. 17, the \
+              reference is a quadrature in ray space of two wide Gaussians reflected at k = 0.5 \
+              /m, θ₀ = 0.5. In section 6.1, it is a quadrature of two Gaussians in an \
+              environment, k = 0.6 /m. In section 6.2 (Eqs. 20, 21), it is rays traced off a \
+              circle. Required: the printed formula is off by at least the number beside it, and \
+              the corrected formula is off by at most the number beside it."
             .to_owned(),
         header: vec![
             "place",
             "printed",
             "corrected",
-            "printed off by",
-            "at least",
-            "printed",
-            "corrected off by",
-            "at most",
-            "corrected",
+            "printed is off by",
+            "required: at least",
+            "printed is",
+            "corrected is off by",
+            "required: at most",
+            "corrected is",
             "verdict",
         ],
         rows,
@@ -222,7 +232,7 @@ fn environment() -> Vec<Erratum> {
         };
         Erratum {
             place,
-            printed: "env^(Ωx/k) cos⁺^(Ωx/k − Ωθ), hats put in".to_owned(),
+            printed: "env^(Ωx/k) cos⁺^(Ωx/k − Ωθ), with hats added".to_owned(),
             corrected: "env^(Ωx/k) cos⁺^(Ωx/k + Ωθ)/|k|".to_owned(),
             off: apart(&of(&|[x, t]| hat(x / k) * cosine_hat(x / k - t)), &plain),
             at_least,

@@ -71,23 +71,29 @@ fn cosines() -> Vec<OperatorComparison> {
         OperatorComparison {
             operator: "clamped cosine",
             line: Some(Line::Cosine),
-            compared: "cos⁺^(Ω), ∫ cos θ e^(−2πiΩθ)".to_owned(),
+            compared: "cos⁺^(Ω) with ∫ cos θ e^(−2πiΩθ)".to_owned(),
             off: apart(&curve(cosine_hat), &clamped),
-            fault: ("cosine twice", apart(&curve(cosine_squared_hat), &clamped)),
+            fault: (
+                "cosine counted twice",
+                apart(&curve(cosine_squared_hat), &clamped),
+            ),
         },
         OperatorComparison {
             operator: "cosine along latitudes",
             line: Some(Line::Cosine),
-            compared: "C₂(Ω), ∫ cos² φ e^(−2πiΩφ)".to_owned(),
+            compared: "C₂(Ω) with ∫ cos² φ e^(−2πiΩφ)".to_owned(),
             off: apart(&curve(cosine_squared_hat), &squared),
-            fault: ("cosine once", apart(&curve(cosine_hat), &squared)),
+            fault: ("cosine counted once", apart(&curve(cosine_hat), &squared)),
         },
         OperatorComparison {
             operator: "full-circle series",
             line: Some(Line::Cosine),
             compared: "24 coefficients of cos⁺".to_owned(),
             off: apart(&said, &series),
-            fault: ("the transform for the series", apart(&printed, &series)),
+            fault: (
+                "the transform instead of the series",
+                apart(&printed, &series),
+            ),
         },
     ]
 }
@@ -143,7 +149,7 @@ fn fresnel() -> Vec<OperatorComparison> {
             "Fresnel · cosine, n = 1.5",
             glass,
             &snell,
-            "Schlick's instead",
+            "Schlick's formula instead",
             &|w| schlick.cosine_hat(w),
         ),
         row(
@@ -284,7 +290,7 @@ fn differential_irradiance() -> OperatorComparison {
     OperatorComparison {
         operator: "differential irradiance, g",
         line: None,
-        compared: "L ⊗ ĝ, transform of ℓ (1 + v²)^(−3/2)".to_owned(),
+        compared: "L ⊗ ĝ with the transform of ℓ (1 + v²)^(−3/2)".to_owned(),
         off: apart(&with(&|q| g_hat(q).into()), &primal),
         fault: ("g of twice the size", apart(&with(&area), &primal)),
     }
@@ -348,7 +354,7 @@ fn environments() -> Vec<OperatorComparison> {
             line: Some(Line::Environment),
             compared: format!("E^ at k = {k} /m"),
             off: apart(&of(&|[x, _]| irradiance(k, x, &hat)), &floor),
-            fault: ("the sign of k", apart(&of(&turned), &floor)),
+            fault: ("wrong sign of k", apart(&of(&turned), &floor)),
         });
     }
     rows

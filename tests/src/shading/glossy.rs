@@ -378,12 +378,19 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             told += i32::from(rejected);
             let within = |id, x: f64, slack: f64| {
                 let bounds = [Above(ours[0] - slack), Below(ours[1] + slack)];
-                bounds.map(|bound| Check::new(id, x, bound, "what is said, with its error"))
+                bounds.map(|bound| Check::new(id, x, bound, "within the error of the criterion"))
             };
             let mut checks = vec![Check::new("noise", off.abs(), Below(MOST), "errors")];
             checks.extend(within("exact one", exact, 0.0));
             checks.extend(within("measured one", found.value, noise));
-            checks.extend(apart.then(|| Check::fact("rejected", rejected, "the print is apart")));
+            checks.extend(apart.then(|| {
+                Check::fact(
+                    "rejected",
+                    rejected,
+                    "the printed criterion \
+                differs by more than the errors",
+                )
+            }));
             worst = worst.max(off.abs());
             if floor <= 0.0 {
                 farthest = farthest.max((exact / said - 1.0).abs());
@@ -419,22 +426,39 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     let section = ReportSection {
         title: "Sampling criteria against photons (section 6.2)".to_owned(),
         text: format!(
-            "{photons} photons for each of {count} points, seeds 1 to {count}. Bandwidth in slope at a fixed point of a plane across the ray to the eye: what holds 95 % of the energy, in cycles per unit slope. A sphere with a glossy BRDF \
-             is lit by a beam (an environment with content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; an edge by itself has all frequencies). Where nothing else is said k = 0.5/m, θ₀ = −θ₁ = 0.5, d = 0.5 m, \
-             Phong n = 2500; n = 400 beside the mirror direction and behind the slit. Said: Ω_ρ |1 + 2kd/cos θ₁| and Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|, Ω_ρ being the 95 % cutoff of the lobe. Exact: quadrature through \
-             the real geometry, by the same estimator with the same windows. Measured: with its jackknife error over 64 batches. \
-             Required beforehand: measured within {MOST} errors of exact (the largest of {count} is {worst:.2}; so large or larger by chance with p = {all:.2}, Šidák); exact within the error of what is said, and \
-             measured within that and {MOST} errors; the print rejected by the same measure wherever it says something else by more than these. It is at {told} of {count} points. What is said is off by {:.1} % at most where the window holds the lobe. The error of a criterion is {:.0} %: it is first order in the neighbourhood, which the lobe \
-             opens to ±0.05 and more and x to ±{ACROSS} m; a sum over frequencies reaches half a step, 0.6 %, beyond the last; the slit has a thirtieth of the lobe's variance; the beam is wide, but a Gaussian. Where the lobe is seen wider than the window in slope may be \
-             (±{WIDEST}), as where a concave mirror undoes travel, the window widens the spectrum, and what is measured may be greater by up to the window's own bandwidth of {:.2}, in squares; those \
-             rows say `window`.",
+            "For each of {count} points, {photons} photons are traced, with the seeds 1 to \
+            {count}. The bandwidth in slope is measured at a fixed point of a plane across the \
+            ray to the eye: it is the frequency, in cycles per unit slope, below which 95 % of \
+            the energy lies. A sphere with a glossy BRDF is lit by a beam (an environment with \
+            content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; \
+            an edge by itself has all frequencies). Unless a row states other values, k = 0.5/m, \
+            θ₀ = −θ₁ = 0.5, d = 0.5 m, and Phong n = 2500; n = 400 beside the mirror direction \
+            and behind the slit. *Said* is the corrected criterion, Ω_ρ |1 + 2kd/cos θ₁| or Ω_ρ \
+            |1 + d (cos θ₀/d' + 2k)/cos θ₁|, where Ω_ρ is the 95 % cutoff of the lobe. *Exact* is \
+            a quadrature through the real geometry, by the same estimator with the same windows. \
+            *Measured* comes from the photons, with its jackknife error over 64 batches. The \
+            bounds were fixed before the run. Required: the measured bandwidth is within {MOST} \
+            errors of the exact one (the largest deviation of {count} is {worst:.2} errors; the \
+            largest is this or more by chance with p = {all:.2}, Šidák). The exact bandwidth is \
+            within the error of the corrected criterion, and the measured bandwidth is within \
+            this error and {MOST} errors of its own. The printed criterion is rejected by the \
+            same measure wherever it differs from the corrected one by more than these errors. It \
+            is rejected at {told} of {count} points. The corrected criterion is off by {:.1} % at \
+            most where the window holds the lobe. Its error is taken as {:.0} %, for four \
+            reasons. It is of first order in the neighbourhood, which the lobe extends to ±0.05 \
+            and more in angle, and which extends to ±{ACROSS} m in x. A sum over frequencies \
+            reaches half a step, 0.6 %, beyond the last. The slit has a thirtieth of the lobe's \
+            variance. The beam is wide, but a Gaussian. Where a concave mirror undoes travel, for \
+            example, the lobe is seen wider in slope than the window may be (±{WIDEST}). There \
+            the window widens the spectrum, and the measured bandwidth may be greater by up to \
+            the window's own bandwidth of {:.2}, added in squares. These rows say `window`.",
             100.0 * farthest,
             100.0 * ERROR,
             BOX / WIDEST,
         ),
         header: vec![
             "sweep",
-            "at",
+            "value",
             "said",
             "printed",
             "exact",
@@ -443,7 +467,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             "exact/said",
             "printed/measured",
             "said, with its error",
-            "the print is",
+            "printed is",
             "verdict",
         ],
         rows,

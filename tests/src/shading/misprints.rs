@@ -59,10 +59,17 @@ pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "Errata of shading, with photons".to_owned(),
         text: format!(
-            "The misprints of the table in 2D that a spectrum of photons can tell, in 4D, at {:.0e} photons. Eq. 6 on a diffuse sphere; a mirror as a BRDF without 1/cos θ, which leaves \
-             the light times cos⁺ θ cos² φ, the cosine of the plane-sphere parameterisation; section 6.1 on the light that arrives at the sphere in the environment, times the cosine and turned \
-             about the normals, where the corrected formula is a midpoint rule over the window. Eqs. 15, 17, 20 and 21 are about steps by themselves and \
-             stay with quadrature in 2D. Apart: printed from corrected, of the spectrum. Required: p < {level:.5}, α = {ALPHA} over {count} planes, of what is printed, and p of what is corrected not below.",
+            "This table repeats in 4D, at {:.0e} photons, those misprints of the table in 2D that \
+            a spectrum of photons can show. Eq. 6 is tested on a diffuse sphere. The mirror is \
+            tested as a BRDF without 1/cos θ: this leaves the light times cos⁺ θ cos² φ, the \
+            cosine of the plane-sphere parameterisation. Section 6.1 is tested on the light that \
+            arrives at the sphere in the environment, times the cosine and turned about the \
+            normals; the corrected formula is evaluated by a midpoint rule over the window. Eqs. \
+            15, 17, 20 and 21 concern single steps, and only quadrature in 2D tests them. *Apart* \
+            is the difference between the printed and the corrected spectrum, relative to the \
+            corrected one. Required: the p-value of the printed formula is below {level:.5}, \
+            which is α = {ALPHA} over {count} planes, and the p-value of the corrected formula is \
+            not below it.",
             photons.unwrap_or_default() as f64
         ),
         header: vec![
@@ -73,9 +80,9 @@ pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
             "plane",
             "apart",
             "p printed",
-            "printed",
+            "printed is",
             "p corrected",
-            "corrected",
+            "corrected is",
             "verdict",
         ],
         rows,

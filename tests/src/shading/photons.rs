@@ -40,8 +40,10 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
         if outcome.scene.name == "fig10" {
             let agree = rows[before..].iter().filter(|row| row.passes()).count();
             whole = format!(
-                "The whole chain of Fig. 10, seven steps that are seven planes: onto the surface, into its local normals, times the cosine, turned about the normal, \
-                 convolved with the lobe, back to one frame, and off the surface; {agree} of {} pass.",
+                "The whole chain of Fig. 10 has seven steps, with a plane after each: onto the \
+                surface, into its local normals, times the cosine, turned about the normal, \
+                convolved with the lobe, back to one frame, and off the surface; {agree} of {} \
+                pass.",
                 outcome.planes.len()
             );
         }
@@ -51,11 +53,20 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
             "Shading in 4D: photons against the exact prediction and against the first-order chain"
                 .to_owned(),
         text: format!(
-            "Photons and seeds as in the files. The exact prediction is a quadrature of rays through the real geometry; the chain is affine maps onto the surface and off it, \
-             the clamped cosine and the lobe that the central ray meets. Error: of the chain, computed from the exact prediction. Excess: its disagreement with the photons \
-             beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise lets one see. Backward: against rays followed from the plane to the light, where \
-             that has an area or is an environment. Required beforehand of every plane: light; p exact ≥ {level:.6} unless the stated error of the prediction may be all of it, α = {ALPHA} over all {planes} planes; bound ≤ 1.1 errors \
-             or 1 %; p backward ≥ the same level; and that what the scene emits is what it absorbs, stops and lets go, to {LEDGER:.0e}. {whole}"
+            "Photons and seeds are those of the files. Photons are compared with an exact \
+            prediction and with a first-order chain. The exact prediction is a quadrature of rays \
+            through the real geometry. The chain consists of the affine maps onto the surface and \
+            off it, the clamped cosine, and the lobe that the central ray meets. *Error* is the \
+            error of the chain, computed from the exact prediction. *Excess* is the disagreement \
+            of the chain with the photons beyond noise, and *bound* is the upper 95 % bound of \
+            the excess. *Resolvable* is the smallest excess that can be detected above the noise. \
+            *p backward* compares photons with rays followed from the plane to the light, where \
+            the light has an area or is an environment. *Ledger* is the relative difference \
+            between the flux that the scene emits and the flux that it absorbs, stops and lets \
+            go. Required of every plane: light arrives. *p exact* is at least {level:.6}, unless \
+            the stated error of the prediction may explain the whole difference; this level is α \
+            = {ALPHA} over all {planes} planes. The bound is at most 1.1 errors or 1 %. *p \
+            backward* is at least the same level. The ledger is balanced to {LEDGER:.0e}. {whole}"
         ),
         header: vec![
             "scene",
@@ -108,7 +119,7 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
     let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
+        Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
         Check::exact(report, level),
         Check::fact("first order", agrees, "by the rule for first-order chains"),
         Check::new("ledger", imbalance.abs(), Below(LEDGER), "rounding"),
@@ -116,7 +127,12 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     if first.is_some_and(|f| f.verdict == Verdict::Undecided) {
         let enough = AtLeast(report.photons_needed.unwrap_or(f64::INFINITY));
         let photons = scene.run.photons as f64;
-        checks.push(Check::new("photons", photons, enough, "so many would tell"));
+        checks.push(Check::new(
+            "photons",
+            photons,
+            enough,
+            "this many photons would decide",
+        ));
     }
     checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));

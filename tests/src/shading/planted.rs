@@ -70,9 +70,15 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "Planted faults of shading".to_owned(),
         text: format!(
-            "Each fault alone, in the prediction or in the photons, of a scene with one of its planes, at {:.0e} photons; p sound is of the same plane without a fault. \
-             Change: of the spectrum, relative to it. In the row of the lobe around the normal the tiles are met at 5°: at 37° no light of it would be in \
-             the window. The environment is turned in the light that arrives at the sphere: of what the diffuse sphere reflects the spectrum would change by 0.3 %, which these photons do not tell. Required: p < {level:.5}, α = {ALPHA} over {count} planes, for every fault, and p sound not below; p is not below 0.00005.",
+            "Each fault is planted alone, in the prediction or in the photons of one plane of a \
+            scene, at {:.0e} photons. *p sound* is the p-value of this plane without the fault. \
+            *Change* is the change of the spectrum relative to the spectrum. In the row of the \
+            lobe around the normal, light meets the tiles at 5°: at 37°, no light of this lobe \
+            would be in the window. The environment is turned in the light that arrives at the \
+            sphere. The light that the diffuse sphere reflects would change by only 0.3 %, which \
+            these photons do not resolve. Required: *p planted* is below {level:.5} for every \
+            fault, which is α = {ALPHA} over {count} planes, and *p sound* is not below it. The \
+            smallest possible p is 0.00005.",
             photons.unwrap_or(PHOTONS) as f64
         ),
         header: vec![
@@ -126,17 +132,20 @@ fn stands() -> Vec<Stand> {
                     "cosine missing",
                     crossings(|s, c| scaled(c, 1.0 / cosine(s, &c))),
                 ),
-                ("cosine twice", crossings(|s, c| scaled(c, cosine(s, &c)))),
                 (
-                    "cosine of the central ray for all",
+                    "cosine counted twice",
+                    crossings(|s, c| scaled(c, cosine(s, &c))),
+                ),
+                (
+                    "cosine of the central ray for all rays",
                     crossings(|s, c| scaled(c, s.planes[0].longitude.cos() / cosine(s, &c))),
                 ),
                 (
-                    "Fresnel factor of s alone",
+                    "Fresnel factor of s-polarised light alone",
                     crossings(|s, c| scaled(c, polarised(cosine(s, &c))[0])),
                 ),
                 (
-                    "Fresnel factor of p alone",
+                    "Fresnel factor of p-polarised light alone",
                     crossings(|s, c| scaled(c, polarised(cosine(s, &c))[1])),
                 ),
                 (
@@ -195,7 +204,7 @@ fn stands() -> Vec<Stand> {
                     Plant::ScatteringSystem(|s| lobe(s, 0.99_f64.powi(-2))),
                 ),
                 (
-                    "modulation of the weights 1 for 0.9",
+                    "modulation of the weights 1 instead of 0.9",
                     Plant::ScatteringSystem(|s| full(&mut s.reflectance)),
                 ),
             ],
@@ -259,7 +268,7 @@ fn stands() -> Vec<Stand> {
             plane: "reflection",
             texts: &[],
             faults: vec![(
-                "α² for α",
+                "α² instead of α",
                 Plant::Photons(
                     |s| {
                         if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {

@@ -22,12 +22,15 @@ type BrdfChange = fn(&mut Reflectance);
 const FAULTS: [(&str, BrdfChange); 6] = [
     ("none", |_| ()),
     ("weights swapped", swapped),
-    ("weights at their means: a product", |r| {
-        for term in &mut r.terms {
-            change(&mut term.weight, |grating| grating.modulation = 0.0);
-        }
-    }),
-    ("sign of the phase", |r| {
+    (
+        "weights replaced by their means, which gives a product",
+        |r| {
+            for term in &mut r.terms {
+                change(&mut term.weight, |grating| grating.modulation = 0.0);
+            }
+        },
+    ),
+    ("wrong sign of the phase", |r| {
         for term in &mut r.terms {
             change(&mut term.weight, |grating| grating.phase = -grating.phase);
         }
@@ -178,10 +181,16 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     ReportSection {
         title: "The semi-convolution in 4D".to_owned(),
         text: format!(
-            "The spectrum behind a sphere with two lobes, whose weights are a cosine along x and what is left of it, against the operator of Durand et al. 2005, section 4.5, \
-             on the spectrum before it: each lobe's transform times it, convolved along Ωx alone with that of its weight. On the slice along x, once with both spectra from \
-             photons, once with both from rays through the real geometry; windows hold all angles. Off: ‖operator − behind‖ over ‖behind‖, beyond noise. The operator is \
-             of first order: its lobe depends on differences of angles alone. Required: off by less than {:.1} % and the noise once more, and by more with each fault.",
+            "The operator of Durand et al. 2005, section 4.5, is compared with the spectrum \
+            behind a sphere with two lobes; the weight of one lobe is a cosine along x, and the \
+            other lobe has the rest of the weight. The operator multiplies the spectrum before \
+            the sphere by the transform of each lobe, and convolves the product along Ωx alone \
+            with the transform of the lobe's weight. The comparison is on the slice along x, once \
+            with both spectra from photons, and once with both from rays through the real \
+            geometry; the windows hold all angles. *Off* is ‖operator − behind‖ over ‖behind‖, \
+            beyond noise. The operator is of first order, because its lobe depends on differences \
+            of angles alone. Required: *off* is less than {:.1} % plus the noise, and with each \
+            fault it is more.",
             100.0 * LARGEST
         ),
         header: vec![
@@ -199,7 +208,8 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
 
 /// Maximum relative error of a correct operator.
 const LARGEST: f64 = 0.002;
-const WHY: &str = "4 and 8 million photons leave 0.11 % and 0.13 % beyond their noise; noise spreads by less than itself";
+const WHY: &str = "with 4 and 8 million photons, 0.11 % and 0.13 % remain beyond noise; the noise \
+    varies by less than its own size";
 
 #[cfg(test)]
 mod tests {

@@ -36,9 +36,11 @@ fn discontinuity(n: i32) -> Statement {
         .into();
     let expected = f64::from(n + 1);
     Statement {
-        said: "a discontinuity in the n-th derivative falls off as 1/Ωⁿ⁺¹ (footnote 1)",
+        said: "the spectrum of a discontinuity in the n-th derivative falls off as 1/Ωⁿ⁺¹ \
+            (footnote 1)",
         measured: format!(
-            "exponent of the envelope of the transform of cosⁿ on the half-circle, n = {n}, Ω from 6 to 51"
+            "exponent with which the envelope of the transform of cosⁿ on the half-circle falls, \
+            for n = {n} and Ω from 6 to 51"
         ),
         number: -slope(&points),
         expected: [expected - 0.02, expected + 0.02],
@@ -110,31 +112,33 @@ fn curvature() -> Vec<Statement> {
     vec![
         Statement {
             said: "curvature leaves the angular bandwidth unchanged (4.2)",
-            measured: "relative change of the rms Ωθ over k = −1 … 1 /m, light field on the surface, step 2".to_owned(),
+            measured: "relative change of the rms Ωθ of the light field on the surface, after \
+                step 2, over k = −1 … 1 /m"
+                .to_owned(),
             number: everywhere(ReflectionStep::Curvature, Factor::One),
             expected: [0.0, 1e-9],
             holds: "holds for each step on the surface",
         },
         Statement {
-            said: "the same, of the light that leaves",
-            measured: "the same after step 7, without cosine".to_owned(),
+            said: "the same, for the light that leaves",
+            measured: "the same after step 7, without the cosine".to_owned(),
             number: everywhere(ReflectionStep::Outgoing, Factor::One),
             expected: [0.0, 1e-9],
-            holds: "holds on the surface, as a whole",
+            holds: "holds on the surface, for the light as a whole",
         },
         Statement {
-            said: "the same, of light that is cut by the cosine",
+            said: "the same, for light that the cosine cuts",
             measured: "the same after step 7, with the cosine".to_owned(),
             number: everywhere(ReflectionStep::Outgoing, Factor::Cosine),
             expected: [1e-6, 0.1],
-            holds: "nearly: the cosine counts from normals that turn",
+            holds: "holds nearly: the cosine is measured from normals that turn",
         },
         Statement {
-            said: "the same, of what an eye sees",
+            said: "the same, for the light that an eye sees",
             measured: "the same at a point 1.5 m away".to_owned(),
             number: eye,
             expected: [0.3, 100.0],
-            holds: "not after travel, which is why Eq. 20 has k",
+            holds: "does not hold after travel, and therefore Eq. 20 contains k",
         },
     ]
 }
@@ -173,9 +177,9 @@ fn cosine() -> Vec<Statement> {
     vec![
         Statement {
             said: "the cosine is a primal convolution in a special case (6.1)",
-            measured:
-                "irradiance of an environment on a convex surface against env ⊗ cos⁺, as spectra"
-                    .to_owned(),
+            measured: "difference between the spectra of env ⊗ cos⁺ and of the irradiance of an \
+                environment on a convex surface"
+                .to_owned(),
             number: off(&|_| 1.0),
             // The error of the trapezoid rule at the kink of the cosine is step²/12.
             expected: [0.0, 2e-4],
@@ -183,10 +187,10 @@ fn cosine() -> Vec<Statement> {
         },
         Statement {
             said: "the same, with light that varies in space",
-            measured: "the same, times 1 + cos(2π 0.3 s)".to_owned(),
+            measured: "the same, with light times 1 + cos(2π 0.3 s)".to_owned(),
             number: off(&|s| 1.0 + (TAU * 0.3 * s).cos()),
             expected: [0.1, 10.0],
-            holds: "not: its spectrum is no line",
+            holds: "does not hold: the spectrum of such light is not a line",
         },
     ]
 }

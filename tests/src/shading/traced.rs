@@ -44,10 +44,10 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     vec![
         ("no cosine", Box::new(|r| r.terms[0].before = Factor::One)),
         (
-            "cosine twice",
+            "cosine counted twice",
             Box::new(move |r| r.terms[0].before = Factor::Other(twice)),
         ),
-        ("sign of k", Box::new(|r| r.curvature = -r.curvature)),
+        ("wrong sign of k", Box::new(|r| r.curvature = -r.curvature)),
         (
             "lobe 5 % wider",
             Box::new(|r| {
@@ -81,7 +81,12 @@ pub(super) fn traced() -> ReportSection {
                 Some(known) => order(fitted, known),
                 None => {
                     let largest = errors.into_iter().fold(0.0, worse);
-                    Check::new("error", largest, Below(ROUNDING), "what trapezoids leave")
+                    Check::new(
+                        "error",
+                        largest,
+                        Below(ROUNDING),
+                        "error of the trapezoid rule",
+                    )
                 }
             };
             let cells = vec![
@@ -101,7 +106,7 @@ pub(super) fn traced() -> ReportSection {
     let right = convex.error(ReflectionStep::Outgoing, SIZES[3], &|_| ());
     for (name, plant) in planted() {
         let errors = SIZES.map(|size| convex.error(ReflectionStep::Outgoing, size, &*plant));
-        let reason = "of a right chain the error falls with the size";
+        let reason = "the error of a correct chain falls with the size";
         let check = Check::new("seen", errors[3], Above(SEEN * right), reason);
         let cells = vec![
             "outgoing".to_owned(),
@@ -111,27 +116,34 @@ pub(super) fn traced() -> ReportSection {
             format!("{:.2e}", errors[0]),
             format!("{:.2e}", errors[3]),
             "–".to_owned(),
-            "stays".to_owned(),
+            "error remains".to_owned(),
         ];
         rows.push(Row::new(cells, vec![check]));
     }
     ReportSection {
         title: "A glossy circle, all steps, against traced rays".to_owned(),
         text: format!(
-            "No photons. A Gaussian field e wide and a Gaussian lobe of 0.6 e, cosine included, at 24 frequencies with content: the spectrum after every step \
-             against a quadrature of rays traced onto the circle, weighted by the cosine to its normal there, spread by the lobe, and followed off it; at e = 0.02 and 0.0025, \
-             and the exponent with which the difference falls. Required beforehand: within {ORDER} of 1 where light comes at an angle, of 2 along the normal, where the first \
-             step leaves nothing out and is below {ROUNDING:.0e}; and with a fault planted in the chain, more than {SEEN} times as far off as the right one at e = 0.0025."
+            "No photons are traced here. A Gaussian light field of width e is reflected by a \
+            circle with a Gaussian lobe of width 0.6 e, and the cosine is included. At 24 \
+            frequencies where the spectrum is not negligible, the spectrum after every step is \
+            compared with a quadrature of rays. These rays are traced onto the circle, weighted \
+            by the cosine to its normal at that point, spread by the lobe, and followed off the \
+            circle. *Error* is the difference at e = 0.02 and 0.0025, and *order* is the exponent \
+            with which it falls. Required: the order is within {ORDER} of 1 where light comes at \
+            an angle, and of 2 where it comes along the normal. Along the normal, the first step \
+            leaves nothing out, and its error is below {ROUNDING:.0e}. With a fault planted in \
+            the chain, the error at e = 0.0025 is more than {SEEN} times the error of the correct \
+            chain."
         ),
         header: vec![
             "up to",
             "surface",
             "θ₀",
             "k",
-            "error at .02",
-            "at .0025",
+            "error, e = 0.02",
+            "error, e = 0.0025",
             "order",
-            "known",
+            "known order",
             "verdict",
         ],
         rows,

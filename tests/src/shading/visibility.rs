@@ -98,7 +98,7 @@ fn row(operator: &'static str, mask: &Mask, blocked: [[f64; 2]; 2]) -> OperatorC
     OperatorComparison {
         operator,
         line: Some(Line::Visibility),
-        compared: "spectrum behind the mask, transform of what passes it".to_owned(),
+        compared: "spectrum behind the mask with the transform of what passes the mask".to_owned(),
         off: apart(&theory(&[mask]), &primal),
         fault: ("the mask left out", apart(&theory(&[]), &primal)),
     }

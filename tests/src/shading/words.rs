@@ -23,7 +23,15 @@ pub(super) fn words() -> ReportSection {
     let rows = all.map(|s| {
         let [low, high] = s.expected;
         let checks = [AtLeast(low), AtMost(high)];
-        let checks = checks.map(|bound| Check::new("number", s.number, bound, "known beforehand"));
+        let checks = checks.map(|bound| {
+            Check::new(
+                "number",
+                s.number,
+                bound,
+                "bounds fixed \
+            before the run",
+            )
+        });
         let cells = vec![
             s.said.to_owned(),
             s.measured,
@@ -36,10 +44,19 @@ pub(super) fn words() -> ReportSection {
     let rows = rows.collect();
     ReportSection {
         title: "What the paper says in words".to_owned(),
-        text: "No photons: quadratures of the primal and closed forms of strips. Where a statement holds only in part, the rows after it show where it does not. Required beforehand: the \
-               number within the bounds beside it."
-            .to_owned(),
-        header: vec!["statement", "measured", "number", "required", "holds", "verdict"],
+        text: "No photons are traced here: the numbers come from quadratures in ray space and \
+              from closed forms of strips. Where a statement holds only in part, the rows after \
+              it show where it does not hold. Required: the number is within the bounds beside \
+              it."
+        .to_owned(),
+        header: vec![
+            "statement",
+            "measured",
+            "number",
+            "required",
+            "holds",
+            "verdict",
+        ],
         rows,
         checks: Vec::new(),
     }

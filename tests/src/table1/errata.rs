@@ -48,7 +48,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             of(Edition::Equations, |s, p| s.incidence = p.incidence),
         ),
         (
-            "Eq. 9, scale: ℓ̂(−c₀ Ωx) for ℓ̂(−Ωx/c₀)",
+            "Eq. 9, scale: ℓ̂(−c₀ Ωx) instead of ℓ̂(−Ωx/c₀)",
             "incidence",
             Box::new(|s, theta0, _| {
                 let (c, row) = (theta0.cos(), &mut s.incidence.matrix[0]);
@@ -56,7 +56,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             }),
         ),
         (
-            "Eq. 9, factor: c₀ for 1/c₀",
+            "Eq. 9, factor: c₀ instead of 1/c₀",
             "incidence",
             Box::new(|s, theta0, _| s.incidence.factor *= theta0.cos().powi(2)),
         ),
@@ -76,7 +76,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             of(Edition::Equations, |s, p| s.outgoing = p.outgoing),
         ),
         (
-            "Eq. 10, scale: ℓ̂(Ωx/c₁) for ℓ̂(c₁ Ωx)",
+            "Eq. 10, scale: ℓ̂(Ωx/c₁) instead of ℓ̂(c₁ Ωx)",
             "outgoing",
             Box::new(|s, theta0, _| s.outgoing.matrix[0][0] /= theta0.cos().powi(2)),
         ),
@@ -90,7 +90,11 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
             "outgoing",
             of(Edition::Table, |s, p| s.outgoing = p.outgoing),
         ),
-        ("Eq. 11, sign", "curvature", cosine(|theta0| theta0, -1.0)),
+        (
+            "Eq. 11, wrong sign",
+            "curvature",
+            cosine(|theta0| theta0, -1.0),
+        ),
         (
             "Eq. 19, M without cosine, before",
             "curvature",
@@ -138,7 +142,11 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
         let is_due = printed.verdict == due;
         let is_sound = sound.verdict == Verdict::Pass;
         let checks = vec![
-            Check::fact("printed", is_due, "it is wrong, unless slips cancel"),
+            Check::fact(
+                "printed",
+                is_due,
+                "the formula is wrong, unless its errors cancel",
+            ),
             Check::fact("corrected", is_sound, "it is right"),
             Check::new("chain", bench.apart(index), Below(SAME), "rounding"),
         ];
@@ -163,22 +171,26 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
 fn section(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Errata: each misprint alone".to_owned(),
-        text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
-               chains; and the corrected chain. Excess: disagreement with the photons beyond noise, of what is predicted; where a missing 2π moves all \
-               light out of the window nothing is predicted. Required: printed rejected, but for all of Table 1 on a plane mirror, where its slips cancel; corrected accepted, and the corrected chain the one theory reads off the \
-               scene."
+        text: "In each row, one step of the chain is as the paper prints it, and all other steps \
+              are correct. This printed chain and the corrected chain are compared with the \
+              photons of the file, by the rule for first-order chains. *Excess* is the \
+              disagreement with the photons beyond noise, relative to the prediction. Where a \
+              missing 2π moves all light out of the window, no light is predicted. Required: the \
+              printed chain is rejected, except for all of Table 1 on a plane mirror, where its \
+              errors cancel. The corrected chain is accepted, and it equals the chain that theory \
+              derives from the scene."
             .to_owned(),
         header: vec![
             "scene",
             "plane",
             "misprint",
             "printed: excess",
-            "p",
-            "printed",
+            "printed: p",
+            "the printed chain is",
             "corrected: excess",
-            "bound",
-            "error",
-            "corrected",
+            "corrected: bound",
+            "corrected: error",
+            "the corrected chain is",
         ],
         rows: outcomes.iter().flat_map(|outcome| rows(outcome)).collect(),
         checks: Vec::new(),
@@ -219,16 +231,18 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     ReportSection {
         title: "Scenes predicted as printed".to_owned(),
         text: format!(
-            "What `etendue run --expect disagreement` sees. Required: the first-order chain rejected on some plane of each, the exact prediction on \
-             none (p ≥ {level:.6}, unless its stated error may be all of it)."
+            "The files of these scenes ask for the printed formulas, and `etendue run --expect \
+            disagreement` makes these comparisons. Required: the first-order chain is rejected on \
+            some plane of each scene. The exact prediction is rejected on no plane (p ≥ \
+            {level:.6}, unless its stated error may explain the whole difference)."
         ),
         header: vec![
             "scene",
             "plane",
             "p exact",
             "printed: excess",
-            "p",
-            "printed",
+            "printed: p",
+            "the printed chain is",
         ],
         rows,
         checks,

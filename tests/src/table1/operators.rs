@@ -31,13 +31,22 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             rows.len()
         ),
         text: format!(
-            "Photons against the exact ray-space prediction and against the chain of affine maps. Error: of the chain, computed from the exact \
-             prediction. Excess: its disagreement with the photons beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise \
-             lets one see. Order: exponent with which the error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares; last: from 1/4 \
-             to 1/8. 2D: the section in the plane of incidence as in the table above, for one surface whose principal axes lie in it. Required of every plane: light; p exact ≥ {level:.6} unless the stated error of the prediction may be all of it, α = 0.01 over all {planes} planes (scenes with the same light are lit by the same photons, so \
-             that their p are alike, and the level is on the safe side); bound ≤ 1.1 errors or 1 %; order \
-             within {ORDER} of 1 where light comes at an angle, of 2 where it comes along normals, no error where nothing is left out; p first \
-             order < {level:.6} wherever the error is above twice the resolvable excess."
+            "Photons are compared with the exact prediction in ray space and with the first-order \
+            chain of affine maps. *Error* is the error of the chain, computed from the exact \
+            prediction. *Excess* is the disagreement of the chain with the photons beyond noise, \
+            and *bound* is the upper 95 % bound of the excess. *Resolvable* is the smallest \
+            excess that can be detected above the noise. *Order* is the exponent with which the \
+            error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares, and \
+            *last* is the exponent from 1/4 to 1/8. The columns *2D* repeat the table above for \
+            the section in the plane of incidence, for one surface whose principal axes lie in \
+            this plane. Required of every plane: light arrives. *p exact* is at least {level:.6}, \
+            unless the stated error of the prediction may explain the whole difference; this \
+            level is α = 0.01 over all {planes} planes (scenes with the same light are lit by the \
+            same photons, so that their p-values are alike, and the level is on the safe side). \
+            The bound is at most 1.1 errors or 1 %. The order is within {ORDER} of 1 where light \
+            comes at an angle and of 2 where it comes along normals, and there is no error where \
+            the chain leaves nothing out. *p first order* is below {level:.6} wherever the error \
+            is above twice the resolvable excess."
         ),
         header: vec![
             "scene",
@@ -55,7 +64,7 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             "p first order",
             "order",
             "last",
-            "known",
+            "known order",
             "verdict",
         ],
         rows,
@@ -75,14 +84,14 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
     let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
+        Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
         Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
         follows(&fall, known),
     ];
     if resolvable.is_some_and(|r| error > 2.0 * r) {
         let p = p_first.unwrap_or(1.0);
-        let reason = "the error is twice what noise hides";
+        let reason = "the error is twice what noise can hide";
         checks.push(Check::new("told apart", p, Below(level), reason));
     }
     let planar = section(&view).map(|(path, stage)| path.found(stage));
@@ -120,7 +129,12 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
         return order::check(fall.order, known);
     }
     let largest = fall.errors.into_iter().fold(0.0, worse);
-    Check::new("order", largest, Below(QUADRATURE), "two quadratures")
+    Check::new(
+        "order",
+        largest,
+        Below(QUADRATURE),
+        "difference of two quadratures",
+    )
 }
 
 /// Returns the name of the last step before a plane, and the row of the paper's Table 1 that

@@ -18,7 +18,7 @@ pub(crate) const ORDER: f64 = 0.15;
 /// Checks that the order fitted to decreasing errors equals the known order.
 pub(crate) fn check(fitted: f64, known: f64) -> Check {
     let off = (fitted - known).abs();
-    Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
+    Check::new("order", off, AtMost(ORDER), "error of a fit to four sizes")
 }
 
 /// Angle of incidence below which an angle counts as 0, radians.

@@ -79,10 +79,16 @@ pub(super) fn planar() -> ReportSection {
     ReportSection {
         title: "Operators in 2D: theory against quadrature".to_owned(),
         text: format!(
-            "A Gaussian field e wide through travel over 1 m, a circle of curvature k met at θ₀, and travel over 0.7 m; 24 frequencies. Map: the \
-             operators' spectrum against a plain quadrature of the field they map. Traced: against that of the field traced off the circle, at e = 0.02 and at \
-             0.0025, and the exponent with which it falls. Required: map below {ROUNDING:.0e}; order within {ORDER} of 1 where light comes at an angle, of 2 along \
-             the normal, and where nothing is left out but that slopes are tangents: travel, and off a plane mirror."
+            "A Gaussian light field of width e travels over 1 m, meets a circle of curvature k at \
+            the angle θ₀, and travels over 0.7 m. The spectrum that the operators give is \
+            compared with two quadratures at 24 frequencies. *Up to* names the last operator that \
+            is applied. *Map* is the difference from a plain quadrature of the field that the \
+            operators map. *Traced* is the difference from a quadrature of the field that is \
+            traced off the circle, at e = 0.02 and at 0.0025, and *order* is the exponent with \
+            which this difference falls. Required: *map* is below {ROUNDING:.0e}. The order is \
+            within {ORDER} of the known one, which is 1 where light comes at an angle and 2 where \
+            it comes along the normal. It is also 2 where the only approximation is that angles \
+            replace tangents: for travel, and off a plane mirror."
         ),
         header: vec![
             "up to",
@@ -90,10 +96,10 @@ pub(super) fn planar() -> ReportSection {
             "θ₀",
             "k",
             "map",
-            "traced .02",
-            "traced .0025",
+            "traced, e = 0.02",
+            "traced, e = 0.0025",
             "order",
-            "known",
+            "known order",
             "verdict",
         ],
         rows,
@@ -125,7 +131,7 @@ pub(super) struct StageFound {
 impl StageFound {
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
-            Check::new("map", self.map, Below(ROUNDING), "rounding of a sum"),
+            Check::new("map", self.map, Below(ROUNDING), "rounding error of a sum"),
             order::check(self.order, self.known),
         ]
     }

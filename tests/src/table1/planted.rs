@@ -27,41 +27,43 @@ fn cosine(map: &mut SpectrumMap<4>, at: usize, by: f64) {
 fn faults() -> Vec<(&'static str, MirrorChange)> {
     vec![
         ("none", |_, _| ()),
-        ("sign of travel", |s, _| s.distance = -s.distance),
-        ("incidence: sign of x", |s, _| turned(&mut s.incidence, 0)),
+        ("travel: wrong sign", |s, _| s.distance = -s.distance),
+        ("incidence: wrong sign of x", |s, _| {
+            turned(&mut s.incidence, 0)
+        }),
         ("incidence: φ not flipped", |s, _| {
             turned(&mut s.incidence, 3);
         }),
-        ("incidence: sign of θ₀", |s, _| {
+        ("incidence: wrong sign of θ₀", |s, _| {
             s.incidence.phase[2] = -s.incidence.phase[2];
         }),
-        ("curvature: sign", |s, b| {
+        ("curvature: wrong sign", |s, b| {
             s.curvature = AffineMap::<4>::back(b.shape, b.theta0).spectrum_map();
         }),
-        ("back: sign, the shears cancel", |s, b| {
+        ("back: wrong sign, so that the shears cancel", |s, b| {
             s.back = AffineMap::<4>::curvature(b.shape, -b.theta0).spectrum_map();
         }),
         ("mirror: θ not turned", |s, _| turned(&mut s.mirror, 2)),
         ("mirror: φ not turned", |s, _| turned(&mut s.mirror, 3)),
-        ("outgoing: sign of θ₁", |s, _| {
+        ("outgoing: wrong sign of θ₁", |s, _| {
             s.outgoing.phase[2] = -s.outgoing.phase[2];
         }),
-        ("incidence: cos for 1/cos beside x", |s, b| {
+        ("incidence: cos instead of 1/cos beside x", |s, b| {
             cosine(&mut s.incidence, 0, b.theta0.cos().powi(2));
         }),
-        ("incidence: cos for 1/cos in front", |s, b| {
+        ("incidence: cos instead of 1/cos in front", |s, b| {
             s.incidence.factor *= b.theta0.cos().powi(2);
         }),
-        ("outgoing: 1/cos for cos beside x", |s, b| {
+        ("outgoing: 1/cos instead of cos beside x", |s, b| {
             cosine(&mut s.outgoing, 0, b.theta0.cos().powi(-2));
         }),
-        ("outgoing: 1/cos for cos in front", |s, b| {
+        ("outgoing: 1/cos instead of cos in front", |s, b| {
             s.outgoing.factor *= b.theta0.cos().powi(-2);
         }),
         ("mirror: times cos θ₀", |s, b| {
             s.mirror.factor *= b.theta0.cos();
         }),
-        ("curvature: cos θ₀ on the row of θ", |s, b| {
+        ("curvature: cos θ₀ in the row of θ", |s, b| {
             // Replaces diag(1, c₀) M by diag(c₀, 1) M.
             s.curvature = swapped(b, -1.0).spectrum_map();
             s.back = swapped(b, 1.0).spectrum_map();
@@ -148,11 +150,22 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
     }
     ReportSection {
         title: "Faults planted in the affine maps".to_owned(),
-        text: "Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the central ray shrinks. The plane of which most \
-               stays, its excess over the photons of the file, what stays, and how many of the planes that the fault touches reject it. Required: rejected every \
-               fault, accepted without."
+        text: "Each fault changes the affine maps of the chain. The chain is judged as in a run: \
+              it is rejected when a part of its error above 10⁻⁵ remains as the neighbourhood of \
+              the central ray shrinks. Each row names the plane on which the largest part \
+              remains, the excess of this plane over the photons of the file, the part that \
+              remains, and how many of the planes that the fault touches reject it. Required: the \
+              chain is rejected with every fault, and accepted without a fault."
             .to_owned(),
-        header: vec!["scene", "fault", "plane", "excess", "stays", "planes", "run"],
+        header: vec![
+            "scene",
+            "fault",
+            "plane",
+            "excess",
+            "error that remains",
+            "planes that reject it",
+            "run is",
+        ],
         rows,
         checks: Vec::new(),
     }
@@ -178,7 +191,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
         ("k − 2 %", |v| scaled(v, Parameter::Curvature(0, 0), 0.98)),
         ("θ₀ + 1°", |v| turned(v, 1.0)),
         ("θ₀ − 1°", |v| turned(v, -1.0)),
-        ("indices of the wrong sides", |v| {
+        ("indices of the two sides swapped", |v| {
             let mut view = v.clone();
             let Specular::Refraction { front, back } = &mut view.system.elements[0].event else {
                 return None;
@@ -235,10 +248,20 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     ReportSection {
         title: "Wrong numbers in the exact prediction".to_owned(),
         text: format!(
-            "Judged by the smallest p of the planes after the surface at the photons of the file, against {level:.6}, of what is beyond the stated error of the \
-             prediction; p is not below 0.00005. Required: rejected every wrong number, accepted without."
+            "Each fault is a wrong number in the exact prediction. The prediction is judged by \
+            the smallest p of the planes after the surface, with the photons of the file: it is \
+            rejected if this p is below {level:.6}. Here p counts only what is beyond the stated \
+            error of the prediction, and the smallest possible p is 0.00005. Required: the \
+            prediction is rejected with every wrong number, and accepted without one."
         ),
-        header: vec!["scene", "fault", "plane", "p", "planes", "run"],
+        header: vec![
+            "scene",
+            "fault",
+            "plane",
+            "smallest p",
+            "planes that reject it",
+            "run is",
+        ],
         rows,
         checks: Vec::new(),
     }

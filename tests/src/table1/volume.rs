@@ -59,17 +59,30 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
             outcome.scene.planes[index].name.clone(),
         ];
         cells.extend(found.map(|(_, d)| format!("{d:.1e}")));
-        let checks = found.map(|(id, d)| Check::new(id, d, Below(ROUNDING), "rounding of steps"));
+        let checks = found.map(|(id, d)| {
+            Check::new(
+                id,
+                d,
+                Below(ROUNDING),
+                "rounding error of \
+            finite differences",
+            )
+        });
         rows.push(Row::new(cells, checks.into()));
     }
     ReportSection {
-        title: "Étendue and the way back".to_owned(),
+        title: "Étendue and reversed rays".to_owned(),
         text: format!(
-            "Rays followed through the real surfaces, 16 about the central ray, from the light's plane to the last plane across the path, in positions and \
-             index times direction cosines. Volume: |det J| − 1 of their Jacobian J by differences; invariant: largest entry of Jᵀ Ω J − Ω, the Lagrange \
-             invariant of any two neighbours; both of the chain of affine maps with slopes: chain. Behind a thin lens both are of positions and slopes: the ideal lens, \
-             u' = u − x/f, keeps those, and étendue only to second order. Back: how far a ray sent back arrives from where it came. \
-             Required: below {ROUNDING:.0e}."
+            "Around the central ray, 16 rays are followed through the real surfaces, from the \
+            light's plane to the last plane across the path. Their coordinates are positions, and \
+            the index of refraction times direction cosines. *Volume* is |det J| − 1, where J is \
+            their Jacobian by finite differences. *Invariant* is the largest entry of Jᵀ Ω J − Ω, \
+            the change of the Lagrange invariant of any two neighbours. *Chain* tests both for \
+            the chain of affine maps, with slopes as coordinates. Behind a thin lens, rays also \
+            have positions and slopes as coordinates: the ideal lens, u' = u − x/f, preserves the \
+            volume of these, and étendue only to second order. *Back* is the distance, in \
+            positions and direction cosines, between the start of a ray and the end of the same \
+            ray after it is sent back. Required: all numbers are below {ROUNDING:.0e}."
         ),
         header: vec![
             "scene",

@@ -41,10 +41,10 @@ pub(super) enum Culprit {
 impl Culprit {
     pub(super) fn says(self) -> &'static str {
         match self {
-            Self::Theory => "the tracers agree, theory does not",
-            Self::Tracer => "the tracers do not agree",
-            Self::Handful => "a handful of rays decides",
-            Self::Unknown => "left open who is wrong",
+            Self::Theory => "both tracers agree, but theory disagrees with them",
+            Self::Tracer => "the two tracers disagree",
+            Self::Handful => "a few rays carry the result",
+            Self::Unknown => "it is open which side is wrong",
         }
     }
 }

@@ -101,8 +101,9 @@ pub(super) fn planted() -> ReportSection {
     ReportSection {
         title: "Faults planted behind two glossy surfaces".to_owned(),
         text: format!(
-            "Each fault alone, in the prediction of plane `{PLANE}` of `{SCENE}`, at {PHOTONS} photons. \
-             Required: p < {SEEN} for every fault, and not for none; p is not below 0.00005."
+            "Each fault is planted alone in the prediction of plane `{PLANE}` of `{SCENE}`, which \
+            is compared with {PHOTONS} photons. Required: p < {SEEN} for every fault, and p is \
+            not below this without a fault. The smallest possible p is 0.00005."
         ),
         header: vec!["fault", "p", "verdict"],
         rows,

@@ -156,9 +156,10 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
     ReportSection {
         title: format!("Several surfaces in a row, seed {}", options.seed),
         text: format!(
-            "{} random scenes of two or three surfaces, with masks on any leg and a plane behind two \
-             surfaces or more, {} photons each. Required: photons reject no prediction twice, the second \
-             time with another seed and {MORE_PHOTONS} times as many photons.",
+            "There are {} random scenes of two or three surfaces, with masks on any leg and a \
+            plane behind two surfaces or more. Each is traced with {} photons and compared with \
+            its prediction. Required: photons reject no prediction twice; the second time has \
+            another seed and {MORE_PHOTONS} times as many photons.",
             tried.len(),
             options.photons
         ),
@@ -170,9 +171,9 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
             "by paths",
             "reference",
             "skipped",
-            "pass",
+            "passed",
             "undecided",
-            "rejected, by number",
+            "numbers of rejected scenes",
             "median seconds",
             "verdict",
         ],

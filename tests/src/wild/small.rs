@@ -343,23 +343,24 @@ fn section(options: &SmallOptions, tried: &[Option<TriedSmall>]) -> ReportSectio
     ReportSection {
         title: format!("Small objects, seed {}", options.seed),
         text: format!(
-            "{} random scenes with one small object in the light of one plane, {} photons each. \
-             Required: photons reject no prediction twice, \
-             the second time with another seed and {MORE_PHOTONS} times as many photons.",
+            "There are {} random scenes with one small object in the light of one plane. Each is \
+            traced with {} photons and compared with its prediction. Required: photons reject no \
+            prediction twice; the second time has another seed and {MORE_PHOTONS} times as many \
+            photons.",
             tried.len(),
             options.photons
         ),
         header: vec![
             "object",
             "planes",
-            "no theory: the object",
-            "no theory: other",
+            "no theory because of the object",
+            "no theory for another reason",
             "skipped",
             "exact",
             "first-order",
-            "pass",
+            "passed",
             "undecided",
-            "rejected, by number",
+            "numbers of rejected scenes",
             "verdict",
         ],
         rows: KINDS.iter().enumerate().map(row).collect(),

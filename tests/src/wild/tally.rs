@@ -67,19 +67,23 @@ impl Tally {
         };
         let none = &mut Vec::new();
         row("scenes".into(), self.scenes, none);
-        row("not drawn".into(), self.undrawn.len(), &mut self.undrawn);
+        row(
+            "scenes that could not be drawn".into(),
+            self.undrawn.len(),
+            &mut self.undrawn,
+        );
         for (why, which) in &mut self.refused {
             row(format!("refused: {why}"), which.len(), which);
         }
-        row("taken".into(), self.judged, none);
+        row("scenes that were judged".into(), self.judged, none);
         for (verdict, count) in &self.verdicts {
             row(format!("planes, {verdict}"), *count, none);
         }
         row("runs with a verdict".into(), self.runs, none);
         let expected = ALPHA * self.runs as f64;
-        let fails = format!("of these, fail ({expected:.1} expected by chance)");
+        let fails = format!("runs of these that fail ({expected:.1} expected by chance)");
         row(fails, self.fails, none);
-        row("of these, not again".into(), self.chance, none);
+        row("failures that do not repeat".into(), self.chance, none);
         let checks = vec![
             Check::none("panics", self.panics.len()),
             Check::none("hangs", self.hangs.len()),
@@ -94,14 +98,14 @@ impl Tally {
             row(what.into(), which.len(), which);
         }
         for (culprit, which) in &mut self.wrong {
-            let what = format!("**wrong**, fail again: {}", culprit.says());
+            let what = format!("**wrong**, failures that repeat: {}", culprit.says());
             row(what, which.len(), which);
         }
         ReportSection {
             title: format!("Wild scenes, seed {seed}"),
-            text: "Scenes drawn from the whole vocabulary of scene files. One that fails is run \
-                   with two other seeds; required are no panic, no hang and no plane that fails \
-                   again."
+            text: "Scenes are drawn from the whole vocabulary of scene files. A scene that fails \
+                  is run with two other seeds. Required: no scene panics or hangs, and no plane \
+                  fails again with the other seeds."
                 .into(),
             header: vec!["what", "count", "scenes"],
             rows,

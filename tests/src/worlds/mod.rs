@@ -184,7 +184,7 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
             WorldOutcome::Nothing => "pixels that see nothing".to_owned(),
             WorldOutcome::Wrong(planes) => {
                 wrong += 1;
-                format!("**wrong**, fail again: {planes}")
+                format!("**wrong**, failures that repeat: {planes}")
             }
             WorldOutcome::Broken(why) => {
                 broken += 1;
@@ -210,9 +210,10 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
     );
     ReportSection {
         title: format!("Random worlds, seed {seed}"),
-        text: "Random worlds with all shapes, materials, textures and lights of Mitsuba scenes that \
-               Étendue reads, each probed at a random pixel: camera, and two surfaces. A probe that \
-               fails is repeated with two other seeds; none may fail each time."
+        text: "Random worlds have all shapes, materials, textures and lights of Mitsuba scenes \
+              that Étendue reads. Each world is probed at a random pixel, with planes at the \
+              camera and at two surfaces. A probe that fails is repeated with two other seeds. \
+              Required: no probe fails each time, and none ends without a verdict."
             .into(),
         header: vec!["what", "count", "worlds"],
         rows,
