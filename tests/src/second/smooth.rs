@@ -68,7 +68,7 @@ impl Smooth {
             ("hollow instead of convex", Form::Sphere(k)) => self.form = Form::Sphere(-k),
             ("hollow instead of convex", Form::Cylinder(k)) => self.form = Form::Cylinder(-k),
             ("hollow instead of convex", Form::Paraboloid(k, l)) => {
-                self.form = Form::Paraboloid(-k, -l)
+                self.form = Form::Paraboloid(-k, -l);
             }
             ("curvature is the diameter's", Form::Sphere(k)) => self.form = Form::Sphere(2.0 * k),
             ("aperture is a diameter", _) => self.aperture *= 0.5,

@@ -29,7 +29,7 @@ fn faults() -> Vec<(&'static str, MirrorChange)> {
         ("none", |_, _| ()),
         ("travel: wrong sign", |s, _| s.distance = -s.distance),
         ("incidence: wrong sign of x", |s, _| {
-            turned(&mut s.incidence, 0)
+            turned(&mut s.incidence, 0);
         }),
         ("incidence: φ not flipped", |s, _| {
             turned(&mut s.incidence, 3);
