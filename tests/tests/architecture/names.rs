@@ -14,6 +14,10 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "Plastic",
         "a word of worlds, and the BRDF that it stands for",
     ),
+    (
+        "Principled",
+        "a word of worlds, and the BRDF that it stands for",
+    ),
     ("Light", "of a bench scene, and of a world"),
     ("Shape", "of a bench scene, and of a world"),
     ("Triangles", "of a bench scene, and of a world"),

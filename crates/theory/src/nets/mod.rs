@@ -133,11 +133,9 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ for a small number of rays, so that the best sampling strategy can be
-/// chosen. The number of rays must not be too small, because a strategy that is best for very few
-/// rays may not be best for the many rays of a prediction. The nets of a trial differ from the nets
-/// of predictions. If they were the same, the chosen strategy would often be one whose rays of
-/// large weight happen to be absent from the nets. The prediction would then lack these rays too.
+/// Returns ‖error‖/‖F‖ for a small number of rays, to choose the best sampling strategy. A strategy
+/// that is best for very few rays may not be best for many. The nets of a trial are not the nets of
+/// predictions; otherwise, rays of large weight would often be absent from both.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
