@@ -79,7 +79,8 @@ pub(crate) struct SeenSurface {
 }
 
 impl SeenSurface {
-    /// Returns the radiance for values of base and lobe, with the factors of the surface.
+    /// Multiplies the values of base and lobe by the factors of the surface, and returns the
+    /// radiance.
     pub(crate) fn light(&self, [base, lobe]: [f64; 2]) -> f64 {
         self.factors[0] * base + self.factors[1] * lobe
     }

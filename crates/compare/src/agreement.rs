@@ -82,8 +82,8 @@ impl Agreement {
     }
 
     /// Returns the number of photons with which the noise would equal the resolution. Returns
-    /// `None` where the error of the prediction alone exceeds the resolution, or where noise does
-    /// not prevent a verdict.
+    /// `None` if the error of the prediction exceeds the resolution by itself, or if the noise is low
+    /// enough for a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

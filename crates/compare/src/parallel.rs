@@ -92,8 +92,8 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Returns the corners of rectangles that contain every part of a layer that light for a plane may
-/// meet.
+/// Returns the corners of rectangles. Together, they contain every part of a layer that light may
+/// meet on its way to a plane.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
     // A half-plane or grating is cut off at a thousand times the extent of the light.
     let lengths = tube(scene, plane).into_iter().flatten();

@@ -91,8 +91,8 @@ impl Microfacets {
         })
     }
 
-    /// Returns D of a normal of unit length or of its opposite, per steradian (Walter et al., Eqs.
-    /// 25 and 33, with slopes divided by α along each axis).
+    /// Returns D, per steradian, of a normal of unit length of either sign (Walter et al., Eqs. 25
+    /// and 33, with slopes divided by α along each axis).
     #[inline]
     pub(crate) fn d(&self, normal: DVec3) -> f64 {
         match self.distribution {

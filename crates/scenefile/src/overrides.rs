@@ -68,7 +68,7 @@ fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the child `name` of a node, skipping the name of a variant.
+/// Returns the child called `name`. If the node is a variant of an enum, looks inside the variant.
 fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
     match node {
         Value::Array(items) => items.get_mut(name.parse::<usize>().ok()?),

@@ -210,7 +210,7 @@ pub(super) fn ray_to(
             let direction = direction.normalize();
             CheckRay { point, direction }.begun()
         }
-        // No theory that uses this check traces rays of a file.
+        // The theories that use this check do not predict the light of ray files.
         Light::Rays { .. } => return None,
     };
     (ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))

@@ -93,7 +93,7 @@ impl GraphSurface {
     }
 }
 
-/// Traces a ray that a surface at the angle of incidence θ₀ reflects. The ray is given in the frame
+/// Traces a ray that meets a surface at the angle of incidence θ₀ and is reflected. The ray is given in the frame
 /// before the reflection and returned in the frame after it.
 pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
     let ray = LightAxes::coming(theta0).ray(z);
