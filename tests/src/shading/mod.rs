@@ -11,6 +11,7 @@ mod errata;
 mod eye;
 mod factors;
 mod glossy;
+mod glossy_bench;
 mod light;
 mod misprints;
 mod operators;

@@ -162,9 +162,10 @@ fn probed(
             .map(|plane| format!("{} {}", word(plane, "name"), plane["report"]["p_value"]));
         return Ok(WorldOutcome::Wrong(told.collect::<Vec<_>>().join(", ")));
     }
-    let verdict = |plane: &Value| match plane["judge"].as_str() {
-        Some("BSDF rays") => format!("{}, by BSDF rays", word(plane, "verdict")),
-        _ => word(plane, "verdict"),
+    let verdict = |plane: &Value| match (plane["judge"].as_str(), plane["photons_miss"].as_str()) {
+        (Some("photons"), Some(_)) => "undecided: photons miss light".to_owned(),
+        (Some("photons"), None) => word(plane, "verdict"),
+        _ => format!("{}, by BSDF rays", word(plane, "verdict")),
     };
     Ok(WorldOutcome::Planes(planes.iter().map(verdict).collect()))
 }
