@@ -384,15 +384,29 @@ fn ellipsoids_have_their_own_normals() {
     }
 }
 
+/// Returns a picture of two by two squares with the values 0.2 and 0.8.
+fn board() -> Texture {
+    Texture::Checkerboard {
+        to_uv: DAffine2::IDENTITY,
+        values: [0.2, 0.8],
+    }
+}
+
+/// Returns the placement of a light above the floor that shines down. Its X is X of the floor, and its
+/// Y is −Y of the floor.
+fn downward(height: f64) -> DAffine3 {
+    DAffine3::from_mat3_translation(
+        DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+        DVec3::new(0.0, 0.0, height),
+    )
+}
+
 /// The picture of a spot has the first value where both texture coordinates are below or above ½.
 /// These places are towards X and −Y of the floor, which are X and Y of the spot, or opposite to
 /// both.
 #[test]
 fn spots_may_have_pictures() {
-    let picture = Texture::Checkerboard {
-        to_uv: DAffine2::IDENTITY,
-        values: [0.2, 0.8],
-    };
+    let picture = board();
     for (x, y, value) in [
         (0.1, -0.1, 0.2),
         (0.1, 0.1, 0.8),
@@ -400,10 +414,7 @@ fn spots_may_have_pictures() {
         (-0.1, -0.1, 0.8),
     ] {
         let spot = Light::Spot {
-            to_world: DAffine3::from_mat3_translation(
-                DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
-                DVec3::new(0.0, 0.0, 1.0),
-            ),
+            to_world: downward(1.0),
             intensity: 4.0,
             beam: 0.3,
             cutoff: 0.5,
@@ -422,10 +433,7 @@ fn spots_may_have_pictures() {
 /// X and −Y of the floor.
 #[test]
 fn projectors_light_a_plane_evenly() {
-    let picture = Texture::Checkerboard {
-        to_uv: DAffine2::IDENTITY,
-        values: [0.2, 0.8],
-    };
+    let picture = board();
     for (x, y, value) in [
         (0.1, -0.1, 0.2),
         (0.1, 0.1, 0.8),
@@ -435,10 +443,7 @@ fn projectors_light_a_plane_evenly() {
         (0.1, -0.16, 0.0),
     ] {
         let projector = Light::Projector {
-            to_world: DAffine3::from_mat3_translation(
-                DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
-                DVec3::new(0.0, 0.0, 2.0),
-            ),
+            to_world: downward(2.0),
             half: DVec2::new(0.15, 0.075),
             picture: picture.clone(),
             scale: 4.0,

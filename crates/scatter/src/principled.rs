@@ -113,8 +113,8 @@ impl Principled {
         if all <= 0.0 {
             return [0.5, 0.0];
         }
-        let coat = coat / all;
-        [(facets / all).clamp(MIN_SHARE, 1.0 - coat), coat]
+        let facets = (facets / all).max(MIN_SHARE);
+        [facets, (coat / all).min(1.0 - facets)]
     }
 }
 

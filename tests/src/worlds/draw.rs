@@ -7,6 +7,19 @@ use std::fmt::Display;
 /// Number of pixels across and down.
 pub(super) const SIZE: [usize; 2] = [48, 32];
 
+/// Parameters of `principled` from 0 to 1.
+const PRINCIPLED: [&str; 9] = [
+    "metallic",
+    "roughness",
+    "anisotropic",
+    "specular",
+    "spec_tint",
+    "flatness",
+    "sheen",
+    "clearcoat",
+    "clearcoat_gloss",
+];
+
 /// Returns a world with all kinds of shapes, materials, textures and lights, and a pixel of its
 /// camera.
 pub(super) fn world(seed: u64, number: u64) -> (String, [usize; 2]) {
@@ -70,6 +83,15 @@ struct WorldDraw(Dice);
 impl WorldDraw {
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.unit()
+    }
+
+    /// Returns a number from 0 to 1, often one of the two ends.
+    fn share(&mut self) -> String {
+        match self.0.below(4) {
+            0 => "0".to_owned(),
+            1 => "1".to_owned(),
+            _ => format!("{:.3}", self.0.unit()),
+        }
     }
 
     /// Returns a number whose logarithm is uniformly distributed.
@@ -190,8 +212,7 @@ impl WorldDraw {
                 ))
             }
             5 => {
-                let shares = ["metallic", "roughness", "anisotropic"]
-                    .map(|name| number(name, format!("{:.3}", self.between(0.1, 0.9))));
+                let shares = PRINCIPLED.map(|name| number(name, self.share()));
                 let inside = shares.concat() + &self.reflectance("base_color");
                 both(bsdf("principled", &inside))
             }

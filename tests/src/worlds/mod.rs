@@ -62,7 +62,7 @@ const VERDICTS: [i32; 3] = [0, 1, 4];
 const AGAIN: u64 = 2;
 
 /// What was found in one world.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug)]
 enum WorldOutcome {
     /// The ray of the pixel meets nothing.
     Nothing,

@@ -140,10 +140,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn projector(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         let picture = self.emission(object, "irradiance");
-        let scale = match self.has(object, "scale") {
-            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
-            false => Some(1.0),
-        };
+        let scale = self.scale(object);
         let rigid = self.rigid(object);
         let picture = picture?;
         let size = match &picture {
@@ -161,10 +158,7 @@ impl<'a> MitsubaReader<'a> {
     }
 
     fn sky(&mut self, object: &'a MitsubaObject) -> Option<Light> {
-        let scale = match self.has(object, "scale") {
-            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
-            false => Some(1.0),
-        };
+        let scale = self.scale(object);
         let to_world = self.rigid(object);
         let pixels = self.picture(object, false)?;
         let (scale, to_world) = (scale?, to_world?);
@@ -185,6 +179,14 @@ impl<'a> MitsubaReader<'a> {
             to_world: to_world.matrix3,
             radiance: Arc::new(LatLong::from_pole_to_pole(radiance)),
         }))
+    }
+
+    /// Returns the factor on the picture of a projector or of an environment.
+    fn scale(&self, object: &'a MitsubaObject) -> Option<f64> {
+        match self.has(object, "scale") {
+            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
+            false => Some(1.0),
+        }
     }
 
     /// Returns `to_world`, which must preserve lengths and angles, or `None` if a cause of refusal

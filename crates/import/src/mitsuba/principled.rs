@@ -3,7 +3,6 @@
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::texture::as_number;
-use crate::range::MAX_SHARE;
 use crate::spectrum::Role;
 use etendue_world::{Material, Principled, Texture};
 
@@ -48,14 +47,8 @@ impl<'a> MitsubaReader<'a> {
         name: &str,
         default: f64,
     ) -> Option<Texture> {
-        let texture = self.texture_or(object, name, Role::Number, default)?;
-        let texture = self.not_negative(object, name, texture)?;
-        if texture.largest() <= MAX_SHARE {
-            return Some(as_number(texture));
-        }
-        let message = format!("{name} goes up to {}; allowed: 0 to 1", texture.largest());
-        self.report.cause(self.place_of(object, name), message);
-        None
+        self.share(object, name, Role::Number, default)
+            .map(as_number)
     }
 
     /// Checks that the material transmits no light; otherwise, this is a cause of refusal.

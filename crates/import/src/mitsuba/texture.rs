@@ -28,15 +28,25 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Reads a property like [`Self::texture_or`], but for reflectances, which must be from 0 to
-    /// 1.
+    /// Reads a reflectance, which must be from 0 to 1.
     pub(super) fn reflectance(
         &mut self,
         object: &'a MitsubaObject,
         name: &str,
         default: f64,
     ) -> Option<Texture> {
-        let texture = self.texture_or(object, name, Role::Reflectance, default)?;
+        self.share(object, name, Role::Reflectance, default)
+    }
+
+    /// Reads a property like [`Self::texture_or`], but its values must be from 0 to 1.
+    pub(super) fn share(
+        &mut self,
+        object: &'a MitsubaObject,
+        name: &str,
+        role: Role,
+        default: f64,
+    ) -> Option<Texture> {
+        let texture = self.texture_or(object, name, role, default)?;
         let texture = self.not_negative(object, name, texture)?;
         let largest = texture.largest();
         if largest <= MAX_SHARE {

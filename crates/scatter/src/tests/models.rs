@@ -157,19 +157,24 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
     model(name, 4.0, plastic)
 }
 
-pub(super) fn principled(color: f64, metallic: f64, roughness: f64) -> Model {
-    let mixture = Principled {
-        facets: ggx([roughness * roughness; 2]),
-        index: 1.5,
-        color,
-        metallic,
-        roughness,
-        tint: 0.5,
-        flatness: 0.3,
-        sheen: 0.4,
-        clearcoat: 0.8,
-        coat_alpha: 0.05,
-    };
+/// A mixture with all lobes.
+const MIXTURE: Principled = Principled {
+    facets: Microfacets {
+        distribution: MicrofacetDistribution::Ggx,
+        alpha: [0.16, 0.16],
+    },
+    index: 1.5,
+    color: 0.7,
+    metallic: 0.0,
+    roughness: 0.4,
+    tint: 0.5,
+    flatness: 0.3,
+    sheen: 0.4,
+    clearcoat: 0.8,
+    coat_alpha: 0.05,
+};
+
+pub(super) fn principled(mixture: Principled) -> Model {
     // The facets sample at least a tenth of the directions, and the clear coat is sampled in
     // proportion to D without masking.
     model(format!("{mixture:?}"), 10.0, mixture)
@@ -203,9 +208,34 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
-    let shares = [[0.7, 0.0, 0.4], [0.5, 0.5, 0.7], [0.9, 1.0, 0.3]];
-    models
-        .extend(shares.map(|[color, metallic, roughness]| principled(color, metallic, roughness)));
+    models.extend(
+        [
+            MIXTURE,
+            Principled {
+                facets: ggx([0.49, 0.49]),
+                color: 0.5,
+                metallic: 0.5,
+                roughness: 0.7,
+                ..MIXTURE
+            },
+            Principled {
+                facets: ggx([0.09, 0.09]),
+                color: 0.9,
+                metallic: 1.0,
+                roughness: 0.3,
+                ..MIXTURE
+            },
+            // Only the clear coat reflects light from near the normal.
+            Principled {
+                index: 1.0,
+                color: 0.0,
+                sheen: 0.0,
+                clearcoat: 1.0,
+                ..MIXTURE
+            },
+        ]
+        .map(principled),
+    );
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
     for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {
