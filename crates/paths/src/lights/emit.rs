@@ -72,21 +72,10 @@ impl SampledLight {
                 position,
                 intensity,
             } => Some(draw.away(*position, &Cone::SPHERE, &|_| *intensity)),
-            Self::Spot {
-                to_local, cutoff, ..
-            } => {
-                let to_world = to_local.inverse();
-                let intensity = |along| self.intensity(to_local.transform_vector3(along));
-                let cone = Cone::new(to_world.matrix3.z_axis, libm::cos(*cutoff));
-                Some(draw.away(to_world.translation, &cone, &intensity))
-            }
-            Self::Projector { to_local, half, .. } => {
-                let to_world = to_local.inverse();
-                let intensity = |along| self.intensity(to_local.transform_vector3(along));
-                // The cone through the corners of the picture.
-                let cosine = (1.0 + half.length_squared()).sqrt().recip();
-                let cone = Cone::new(to_world.matrix3.z_axis, cosine);
-                Some(draw.away(to_world.translation, &cone, &intensity))
+            Self::Beam(beam) => {
+                let to_world = beam.to_local.inverse();
+                let cone = Cone::new(to_world.matrix3.z_axis, beam.cosine);
+                Some(draw.away(to_world.translation, &cone, &|along| beam.intensity(along)))
             }
             Self::Directional { toward, irradiance } => {
                 Some(draw.afar(geometry, *toward, *irradiance))

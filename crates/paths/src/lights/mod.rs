@@ -2,6 +2,7 @@
 //! the density of the drawn directions.
 
 mod ball;
+mod beam;
 mod emit;
 mod incoming;
 mod shape;
@@ -9,10 +10,11 @@ mod sky;
 
 use crate::space::{Hit, SceneGeometry};
 use ball::ShiningSphere;
+use beam::{Beam, BeamPattern};
 pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use etendue_field::whole;
-use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
-use glam::{DAffine3, DVec2, DVec3};
+use etendue_world::{Geometry, Light, Shape, Texture, World};
+use glam::DVec3;
 pub(crate) use incoming::Incoming;
 use incoming::way;
 use shape::ShiningShape;
@@ -30,28 +32,9 @@ pub(crate) struct LightSampler {
 enum SampledLight {
     ShiningShape(ShiningShape),
     ShiningSphere(ShiningSphere),
-    Point {
-        position: DVec3,
-        intensity: f64,
-    },
-    Spot {
-        to_local: DAffine3,
-        intensity: f64,
-        beam: f64,
-        cutoff: f64,
-        falloff: Falloff,
-        picture: Option<Texture>,
-    },
-    Projector {
-        to_local: DAffine3,
-        half: DVec2,
-        picture: Texture,
-        scale: f64,
-    },
-    Directional {
-        toward: DVec3,
-        irradiance: f64,
-    },
+    Point { position: DVec3, intensity: f64 },
+    Beam(Beam),
+    Directional { toward: DVec3, irradiance: f64 },
     Sky(SampledSky),
 }
 
@@ -161,25 +144,32 @@ impl From<&Light> for SampledLight {
                 cutoff,
                 falloff,
                 picture,
-            } => Self::Spot {
+            } => Self::Beam(Beam {
                 to_local: to_world.inverse(),
-                intensity: *intensity,
-                beam: *beam,
-                cutoff: *cutoff,
-                falloff: *falloff,
-                picture: picture.clone(),
-            },
+                cosine: libm::cos(*cutoff),
+                pattern: BeamPattern::Spot {
+                    intensity: *intensity,
+                    beam: *beam,
+                    cutoff: *cutoff,
+                    falloff: *falloff,
+                    picture: picture.clone(),
+                },
+            }),
             Light::Projector {
                 to_world,
                 half,
                 picture,
                 scale,
-            } => Self::Projector {
+            } => Self::Beam(Beam {
                 to_local: to_world.inverse(),
-                half: *half,
-                picture: picture.clone(),
-                scale: *scale,
-            },
+                // The cone passes through the corners of the picture.
+                cosine: (1.0 + half.length_squared()).sqrt().recip(),
+                pattern: BeamPattern::Projector {
+                    half: *half,
+                    picture: picture.clone(),
+                    scale: *scale,
+                },
+            }),
             Light::Directional {
                 direction,
                 irradiance,
@@ -212,9 +202,9 @@ impl SampledLight {
                     density: None,
                 })
             }
-            Self::Spot { to_local, .. } | Self::Projector { to_local, .. } => {
-                let (toward, distance) = way(at, to_local.inverse().translation);
-                let intensity = self.intensity(to_local.transform_vector3(-toward));
+            Self::Beam(beam) => {
+                let (toward, distance) = way(at, beam.to_local.inverse().translation);
+                let intensity = beam.intensity(-toward);
                 (intensity > 0.0).then_some(Incoming {
                     toward,
                     distance,
@@ -238,47 +228,6 @@ impl SampledLight {
                     density: Some(density),
                 })
             }
-        }
-    }
-}
-
-impl SampledLight {
-    /// Returns the intensity of a spot or projector along a direction in the light's own
-    /// coordinates, W sr⁻¹.
-    fn intensity(&self, local: DVec3) -> f64 {
-        match self {
-            Self::Spot {
-                intensity,
-                beam,
-                cutoff,
-                falloff,
-                picture,
-                ..
-            } => {
-                let angle = libm::atan2(local.truncate().length(), local.z);
-                let plain = intensity * falloff.share(angle, *beam, *cutoff);
-                match picture {
-                    Some(picture) if plain > 0.0 => {
-                        let at = local.truncate() / (local.z * libm::tan(*cutoff));
-                        plain * picture.value(0.5 + 0.5 * at)
-                    }
-                    _ => plain,
-                }
-            }
-            Self::Projector {
-                half,
-                picture,
-                scale,
-                ..
-            } => {
-                let at = local.truncate() / (local.z * *half);
-                if local.z <= 0.0 || at.abs().max_element() > 1.0 {
-                    return 0.0;
-                }
-                let secant = local.length() / local.z;
-                scale * picture.value(0.5 - 0.5 * at) * secant * secant * secant
-            }
-            _ => 0.0,
         }
     }
 }

@@ -1,0 +1,68 @@
+//! Point lights whose intensity depends on the direction: spots and projectors.
+
+use etendue_world::{Falloff, Texture};
+use glam::{DAffine3, DVec2, DVec3};
+
+/// A spot or a projector.
+#[derive(Debug)]
+pub(super) struct Beam {
+    pub(super) to_local: DAffine3,
+    /// Cosine of the half-angle of a cone around Z that contains all light.
+    pub(super) cosine: f64,
+    pub(super) pattern: BeamPattern,
+}
+
+/// The intensity by direction, with the parameters of [`etendue_world::Light`].
+#[derive(Debug)]
+pub(super) enum BeamPattern {
+    Spot {
+        intensity: f64,
+        beam: f64,
+        cutoff: f64,
+        falloff: Falloff,
+        picture: Option<Texture>,
+    },
+    Projector {
+        half: DVec2,
+        picture: Texture,
+        scale: f64,
+    },
+}
+
+impl Beam {
+    /// Returns the intensity along a direction in world coordinates, W sr⁻¹.
+    pub(super) fn intensity(&self, along: DVec3) -> f64 {
+        let local = self.to_local.transform_vector3(along);
+        match &self.pattern {
+            BeamPattern::Spot {
+                intensity,
+                beam,
+                cutoff,
+                falloff,
+                picture,
+            } => {
+                let angle = libm::atan2(local.truncate().length(), local.z);
+                let plain = intensity * falloff.share(angle, *beam, *cutoff);
+                match picture {
+                    Some(picture) if plain > 0.0 => {
+                        let at = local.truncate() / (local.z * libm::tan(*cutoff));
+                        plain * picture.value(0.5 + 0.5 * at)
+                    }
+                    _ => plain,
+                }
+            }
+            BeamPattern::Projector {
+                half,
+                picture,
+                scale,
+            } => {
+                let at = local.truncate() / (local.z * *half);
+                if local.z <= 0.0 || at.abs().max_element() > 1.0 {
+                    return 0.0;
+                }
+                let secant = local.length() / local.z;
+                scale * picture.value(0.5 - 0.5 * at) * secant * secant * secant
+            }
+        }
+    }
+}
