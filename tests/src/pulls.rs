@@ -343,8 +343,8 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// Returns a section of the report with a table of the largest pulls and of the scenes, planes and
-/// parameters to which they belong.
+/// Returns a section of the report with a table of the largest pulls. For each pull, the table
+/// names the scene, the plane and the parameter.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));

@@ -67,7 +67,8 @@ impl Frame {
         d: DVec3::Z,
     };
 
-    /// Returns the frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
+    /// Returns the frame at `origin` with D along `d`. X is along the part of `x` that is
+    /// perpendicular to `d`.
     ///
     /// Returns `None` if `d` or `x` has zero length, or if they are parallel to within a
     /// millionth.

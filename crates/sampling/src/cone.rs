@@ -29,8 +29,8 @@ impl Cone {
         }
     }
 
-    /// Returns the cone of directions from an observer to a sphere. `way` leads from the observer
-    /// to the centre of the sphere. Returns `None` if the observer is inside the sphere.
+    /// Returns the cone of directions from an observer to a sphere. `way` is the vector from the
+    /// observer to the centre of the sphere. Returns `None` if the observer is inside the sphere.
     #[must_use]
     pub fn around_sphere(way: DVec3, radius: f64) -> Option<Self> {
         let squared = way.length_squared();

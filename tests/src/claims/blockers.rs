@@ -283,8 +283,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Two maximum frequencies, per metre. Bounds are compared with spectra up to the first, and the
-/// sum in a bound is computed up to the second.
+/// Two maximum frequencies, per metre. Up to the first frequency, bounds are compared with spectra.
+/// Up to the second frequency, the sum in a bound is computed.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 

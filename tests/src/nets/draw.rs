@@ -66,7 +66,7 @@ impl BlockerKind {
         }
     }
 
-    /// Checks whether a closed form exists with which the nets' prediction is compared.
+    /// Checks whether a closed form exists; the nets' prediction is then compared with it.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,

@@ -201,7 +201,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// Returns a ray from a point of the light's plane with direction cosines.
+/// Returns the ray that starts at a point of the light's plane and has the given direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),

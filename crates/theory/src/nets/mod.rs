@@ -43,7 +43,7 @@ const FIRST_NODES: u32 = 1 << 11;
 /// underestimates the error.
 const MIN_NODES: u32 = 1 << 14;
 
-/// Criterion for when to stop adding nodes.
+/// The criterion by which a prediction stops adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
     /// Maximum number of nodes of all nets together. If this budget ends the prediction, at least
@@ -76,7 +76,7 @@ impl RayNode {
 pub(crate) trait Integrand: Sync {
     /// Returns the number of fields.
     fn fields(&self) -> usize;
-    /// Returns the number of coordinates of a point that the fields depend on, at most
+    /// Returns how many coordinates of a point the fields depend on. The number is at most
     /// [`DIMENSIONS`].
     fn dimensions(&self) -> usize {
         6
@@ -109,7 +109,7 @@ impl Predicted {
     }
 }
 
-/// A net whose nodes are not yet all summed.
+/// The sums over the nodes of a net, to which more nodes can be added.
 struct Running {
     net: NetPoints,
     /// The sums of each field so far.

@@ -16,8 +16,8 @@ const MOST_NODES: f64 = 72.0;
 /// of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
 /// Edges in other planes increase the bandwidth, and only this fraction of the increased bandwidth
-/// is resolved. The rest is reached only in the corners of the grid of frequencies, where spectra
-/// are small.
+/// is resolved. Higher frequencies are reached only in the corners of the grid of frequencies,
+/// where spectra are small.
 const FAR_SHARE: f64 = 0.7;
 /// Maximum number of terms of an expansion that results from splitting discs.
 const MOST_TERMS: f64 = 3e5;
@@ -140,9 +140,9 @@ impl DiscResolution {
     }
 }
 
-/// A bound on the bandwidth of the integrals of the field along the lines x − h u = c, as functions
-/// of c. The spectrum of these integrals at frequency γ is the spectrum of the other factors of the
-/// field at (Ωx − γ, Ωu + h γ).
+/// A bound on the bandwidth of a function of c, which is the integral of the field along the line x
+/// − h u = c. The spectrum of this function at frequency γ is the spectrum of the other factors of
+/// the field at (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],

@@ -273,7 +273,7 @@ mod tests {
             for h in [[0, 0, 0, 0], [3, -2, -4, 3], [1, 2, 0, -1], [-2, 0, 3, 0]] {
                 let frequency = [0, 1, 2, 3].map(|axis| h[axis] as f64 * spacing[axis]);
                 let difference = harmonics.at(h) - at(&chain, &window, frequency);
-                assert!(difference.norm() < 1e-10 * zero, "{h:?}"); // as of the slices
+                assert!(difference.norm() < 1e-10 * zero, "{h:?}"); // the tolerance of slices
             }
         }
     }

@@ -24,8 +24,8 @@ pub(crate) struct Vertex {
     pub(crate) edge: usize,
 }
 
-/// A convex polygon with corners in counter-clockwise order, or a segment, whose two corners are
-/// in order of increasing slope.
+/// A convex polygon or a segment. The corners of a polygon are in counter-clockwise order, and the
+/// two corners of a segment are in order of increasing slope.
 ///
 /// A segment along (shear, 1) represents δ(position − shear · slope), so integrals along the
 /// segment are over the slope.

@@ -161,13 +161,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Returns the lower edge of the cells with index `i` along an axis.
+    /// Returns the coordinate of the lower edge of the cells with index `i` along an axis.
     fn edge(&self, i: usize, axis: usize) -> f64 {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Returns a value for each position bin: the integral of density · W over the cell of this bin
-    /// in slope bin `j`, summed over polygons.
+    /// Returns the values of all cells in slope bin `j`, one for each position bin. The value of a
+    /// cell is the integral of density · W over the cell, summed over polygons.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];

@@ -45,8 +45,8 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// Sampling of the two ray coordinates that a light with extent has in addition to the two inner
-/// coordinates of its emission.
+/// The sampling of the two outer coordinates of a ray. Only a light with extent needs them, in
+/// addition to the two inner coordinates of its emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
     /// The two additional coordinates are not sampled, because they are the same for all rays.

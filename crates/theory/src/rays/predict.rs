@@ -259,7 +259,7 @@ impl AffineLeg {
     }
 }
 
-/// Returns the flux per unit of the emission's coordinates of a ray that has passed the masks.
+/// Returns the flux of a ray behind the masks, per unit of the emission's coordinates.
 fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])

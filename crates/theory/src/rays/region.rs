@@ -17,7 +17,8 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
 /// Number of cells along each side of the box in which rays are sought.
 const CELLS: usize = 32;
-/// Rays with less than this fraction of the strongest ray's contribution are ignored.
+/// Rays are ignored if their contribution is less than this fraction of the strongest ray's
+/// contribution.
 const MIN_SHARE: f64 = 1e-13;
 /// Number of bisections that locate an edge in a cell up to rounding error.
 const HALVINGS: usize = 40;
@@ -120,8 +121,8 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
-    /// Returns the absolute contribution to the windowed ray space of the ray at inner coordinates
-    /// of the emission.
+    /// Returns the absolute value of a ray's contribution to the windowed ray space. The ray is
+    /// given by inner coordinates of the emission.
     fn strength(&self, inner: [f64; 2]) -> f64 {
         self.node(self.ray(inner), 1.0).weight.abs()
     }
@@ -218,7 +219,7 @@ fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     [at(0, i), at(1, j)]
 }
 
-/// Returns the part of a convex polygon with n·p ≤ c.
+/// Returns the part of a convex polygon where n·p ≤ c.
 fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     let height = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - c;
     let mut kept = Vec::new();

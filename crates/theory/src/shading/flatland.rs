@@ -198,7 +198,7 @@ mod tests {
     use etendue_field::Rectangle;
 
     const STRIPS: [[f64; 2]; 3] = [[-0.31, -0.19], [-0.06, 0.06], [0.19, 0.27]];
-    /// A length greater than that of any window.
+    /// A length greater than the width of any window.
     const ENDLESS: f64 = 1e3;
 
     fn flatland() -> Flatland {

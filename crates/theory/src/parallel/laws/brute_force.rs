@@ -4,7 +4,7 @@ use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain as seen from its end, with the distances of the masks upstream and the number of factors
+/// A chain, described from its end: the distances of the masks upstream, and the number of factors
 /// G.
 struct WalkedRay<'a> {
     distance: f64,

@@ -11,11 +11,11 @@ const NATS: f64 = 28.0;
 /// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
 /// panels.
 const MAX_NODES: usize = 48;
-/// Number of additional nodes on an arc, beyond the nodes that the arc's length requires. They are
-/// needed because the direction of the arc changes.
+/// Number of additional nodes on an arc, beyond the nodes that the arc's length requires. The
+/// additional nodes are needed because the direction of the arc changes.
 const ARC: usize = 10;
-/// Number of panel lengths for which numbers of nodes are precomputed; each length is half the
-/// previous one.
+/// Number of panel lengths for which numbers of nodes are precomputed. Each length is half of the
+/// previous length.
 const LEVELS: usize = 24;
 /// Estimated number of computing steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
@@ -151,8 +151,8 @@ impl Integrator {
 #[derive(Debug)]
 pub(crate) struct ReceiverDensity<'a> {
     pub(crate) integrator: &'a Integrator,
-    /// Gratings as functions of the slope, with frequencies in cycles per unit slope and phases at
-    /// this point of the receiver.
+    /// Gratings as functions of the slope. Their frequencies are in cycles per unit slope, and
+    /// their phases are for this point of the receiver.
     pub(crate) gratings: Vec<Grating>,
 }
 
@@ -366,6 +366,6 @@ mod tests {
         let side = 1e-7;
         let value = density(&integrator).rectangle([[0.5, 0.5 + side], [0.2, 0.2 + side]]);
         let expected = side * side / 1.29_f64.powi(2);
-        assert!((value / expected - 1.0).abs() < 1e-6); // the lobe varies by that over the side
+        assert!((value / expected - 1.0).abs() < 1e-6); // the lobe varies this much over the side
     }
 }

@@ -23,7 +23,8 @@ pub(crate) struct Kernels {
 }
 
 impl KernelAxis {
-    /// Returns the largest absolute coordinate of the receiver that is seen through the window.
+    /// Returns the largest absolute coordinate among the points of the receiver that are seen
+    /// through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
     }

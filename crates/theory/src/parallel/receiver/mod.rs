@@ -24,8 +24,8 @@ use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
 
-/// A Lambertian receiver, with the light and masks in front of it and the distance that reflected
-/// light travels to the plane where it is observed.
+/// A Lambertian receiver, with the light and the masks in front of the receiver. After the
+/// reflection, light travels to the plane where it is observed.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
     light: ParallelEmitter,
@@ -39,8 +39,8 @@ pub(crate) struct Receiver<'a> {
     albedo: f64,
 }
 
-/// The relation position = origin + b · slope between slopes at the receiver and positions at a
-/// distance h before the receiver.
+/// The relation position = origin + b · slope for some rays. Slopes are at the receiver, and
+/// positions are at a distance h before the receiver.
 #[derive(Clone, Copy, Debug)]
 enum SlopeProjection {
     /// Rays that arrive at the given point of the receiver: b = −h.
