@@ -18,8 +18,8 @@ pub struct FieldGrid {
 }
 
 impl FieldGrid {
-    /// Returns the smallest grid over the support of `window` whose Nyquist frequencies are at
-    /// least the largest frequencies of `slices`.
+    /// Returns the smallest grid over the support of `window` that is fine enough for `slices`. Its
+    /// Nyquist frequencies are at least the largest frequencies of `slices`.
     #[must_use]
     pub fn new(window: &Window, slices: &SliceGrid) -> Self {
         let half_widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
@@ -140,8 +140,8 @@ impl Assignment {
     reason = "the number is not negative; a number too large for usize becomes usize::MAX"
 )]
 fn even_cells(spacings: f64) -> usize {
-    // Because of rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that
-    // it equals.
+    // Because of rounding, a product that equals a whole number may be slightly above this number.
+    // An example is 0.7 · 2 · (5/1.4).
     let whole = (spacings * (1.0 - 1e-12)).ceil();
     (whole as usize).saturating_mul(2).max(8)
 }

@@ -42,8 +42,8 @@ impl Raster {
         &self.values
     }
 
-    /// Returns the four pixels whose centres surround a position, and their weights in bilinear
-    /// interpolation.
+    /// Returns the four pixels whose centres surround a position. Also returns the weights of these
+    /// pixels in bilinear interpolation.
     ///
     /// Positions are in pixels from the left and from the top edge: the centre of the first pixel
     /// is at (½, ½). Beyond the outermost centres, the nearest pixel is used. If the raster

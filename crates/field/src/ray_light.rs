@@ -20,7 +20,7 @@ pub struct FluxRay {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLight {
     rays: Vec<FluxRay>,
-    /// For each ray, the total flux, in watts, of all rays up to and including this one.
+    /// For each ray, the sum of the fluxes of this ray and of all rays before it, in watts.
     upto: Vec<f64>,
     /// Flux of rays that do not go forward, W; these rays are left out.
     behind: f64,

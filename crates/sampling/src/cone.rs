@@ -19,8 +19,8 @@ impl Cone {
         fall: 2.0,
     };
 
-    /// Returns the cone of the directions whose angle to an axis has at least the given cosine. The
-    /// axis has unit length.
+    /// Returns a cone around an axis. It contains the directions whose angle to the axis has at
+    /// least the given cosine. The axis has unit length.
     #[must_use]
     pub fn new(axis: DVec3, cosine: f64) -> Self {
         Self {

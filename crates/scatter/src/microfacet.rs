@@ -138,8 +138,8 @@ impl Microfacets {
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
         let across = across.unwrap_or(DVec3::X);
         let up = view.cross(across);
-        // A point of the projected hemisphere: half of a disc, and the visible part of the other
-        // half.
+        // A point of the projected hemisphere is sampled. The projection consists of half of a
+        // disc, and of the visible part of the other half.
         let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();
         let t1 = radius * cos;

@@ -56,8 +56,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
 }
 
 /// Measures the light that a glossy plane reflects from one angle to another, divided by the
-/// irradiance, for two angles in both orders. The returned number is the reflectance for one order
-/// divided by the reflectance for the other order.
+/// irradiance, for two angles in both orders. The returned number is the ratio of the reflectances
+/// for the two orders.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {

@@ -165,8 +165,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
 }
 
 /// Draws up to three masks between the light and z = 0.9. Scenes of the kinds `Picture` and
-/// `PointAcross` have at least one opaque mask. Without such a mask, a quadrature rule would
-/// predict these scenes, and not nets.
+/// `PointAcross` have at least one opaque mask. Without an opaque mask, a quadrature rule would
+/// replace the nets in the prediction of these scenes.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();

@@ -154,8 +154,8 @@ impl Smooth {
     }
 }
 
-/// Returns the distances at which a line enters and leaves a ball whose centre is at `to_middle`
-/// from the line's start.
+/// Returns the distances at which a line enters and leaves a ball. The vector `to_middle` leads
+/// from the start of the line to the centre of the ball.
 fn chord(to_middle: Vector, towards: Vector, radius: f64) -> Vec<f64> {
     let nearest = dot(to_middle, towards);
     let off = length(plus(to_middle, -nearest, towards));

@@ -14,7 +14,8 @@ const MOST: f64 = 3e4;
 /// The prediction for one disc costs as much as the prediction for this number of rectangles.
 const STRIPS: f64 = 64.0;
 
-/// Draws up to three layers before the first surface, whose distance from the light is given.
+/// Draws up to three layers before the first surface. The distance of this surface from the light
+/// is given.
 pub(super) fn blockers(
     draw: &mut SceneDraw,
     light: &LightFile,

@@ -16,7 +16,7 @@ pub struct AffineMap<const N: usize> {
     pub offset: [f64; N],
 }
 
-/// Step of the finite differences that estimate a map, in metres and radians.
+/// The finite differences that estimate a map have this step, in metres and radians.
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
@@ -114,8 +114,8 @@ impl<const N: usize> AffineMap<N> {
         })
     }
 
-    /// Returns det A, the factor by which volumes of ray space grow. The determinant is negative
-    /// if the map reverses orientation, such as the step onto a surface.
+    /// Returns det A, the factor by which volumes of ray space grow. The determinant is negative if
+    /// the map reverses orientation, as the step onto a surface does.
     #[must_use]
     pub fn det(&self) -> f64 {
         matrix::determinant(&self.matrix)

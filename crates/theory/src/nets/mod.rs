@@ -29,11 +29,11 @@ pub const REPLICATES: usize = 32;
 const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// Minimum and maximum number of nodes in each net for derivatives.
+/// Minimum and maximum number of nodes in each net by which derivatives are computed.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. If a parameter is
-/// measured with such a derivative, the measured value changes by about the square of this error,
-/// times the difference between the measured value and the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
+/// derivative, the measured value of a parameter is wrong by about the square of this error, times
+/// the difference between the measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -72,7 +72,7 @@ impl RayNode {
     };
 }
 
-/// Light fields as functions of a point of the unit cube.
+/// Light fields whose rays are functions of a point of the unit cube.
 pub(crate) trait Integrand: Sync {
     /// Returns the number of fields.
     fn fields(&self) -> usize;

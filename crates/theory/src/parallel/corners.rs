@@ -52,7 +52,7 @@ pub(crate) struct Corners<'a> {
     section: &'a AxisSection,
     waves: &'a [SectionWave],
     corners: Vec<Corner>,
-    /// The values (cos θ, sin θ) for each corner and wave, as [corner, wave].
+    /// The values (cos θ, sin θ) for each corner and each wave. The indices are [corner, wave].
     phases: Vec<[f64; 2]>,
     /// Pairs of directions of the two edges that meet at a corner, with the lower index first. For
     /// the end of a segment the two indices are equal.

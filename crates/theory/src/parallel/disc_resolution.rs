@@ -12,8 +12,8 @@ const SPARE_NODES: f64 = 6.0;
 /// Maximum number of nodes of the rule for discs. With this number, a disc is split into 72²
 /// rectangles.
 const MOST_NODES: f64 = 72.0;
-/// Limit on the bandwidth that edges in other planes cause, as a multiple of the largest frequency
-/// of the spectra.
+/// Edges in other planes increase the bandwidth up to this limit. The limit is a multiple of the
+/// largest frequency of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
 /// Edges in other planes increase the bandwidth, and only this fraction of the increased bandwidth
 /// is resolved. Higher frequencies are reached only in the corners of the grid of frequencies,
@@ -24,8 +24,8 @@ const MOST_TERMS: f64 = 3e5;
 /// Maximum number of strips into which a disc is split.
 const MOST_STRIPS: f64 = 64.0;
 
-/// The methods for splitting the discs of a chain: first for the discs of the light, then for the
-/// discs of each opaque mask.
+/// The methods by which the discs of a chain are split. The first method is for the discs of the
+/// light, and the others are for the discs of each opaque mask.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
@@ -146,7 +146,7 @@ impl DiscResolution {
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
-    /// The half-width of the window's spectrum, by which the window blurs |Ωx| and |Ωu|.
+    /// The half-width of the window's spectrum. The window blurs |Ωx| and |Ωu| by this half-width.
     blur: [f64; 2],
     /// Distances of the planes that have edges: first of the light's plane, then of each opaque
     /// mask.

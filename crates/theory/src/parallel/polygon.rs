@@ -19,8 +19,8 @@ const SERIES_TERMS: u32 = 11;
 pub(crate) struct Vertex {
     /// The coordinates (position, slope).
     pub(crate) at: [f64; 2],
-    /// The direction of the edge from this corner to the next, as an index into a list that many
-    /// polygons share.
+    /// The direction of the edge from this corner to the next corner. It is an index into a list of
+    /// directions that many polygons share.
     pub(crate) edge: usize,
 }
 

@@ -10,8 +10,9 @@ use etendue_field::{TwoPlane, Window};
 pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light. It
-/// returns the ray's coordinates at the plane, and the ray's contribution to ray space at the plane
-/// per unit of the emission's coordinates. The function returns `None` if the ray does not arrive.
+/// returns the ray's coordinates at the plane. It also returns the ray's contribution to ray space
+/// at the plane, per unit of the emission's coordinates. The function returns `None` if the ray
+/// does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
@@ -36,9 +37,9 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// The landing point of the central ray, and the derivative of a ray's landing point with respect
-/// to the ray at the light. Rows are coordinates at the plane, and columns are coordinates at the
-/// light.
+/// The point where the central ray lands, and a derivative. It is the derivative of a ray's landing
+/// point with respect to the ray at the light. Rows are coordinates at the plane, and columns are
+/// coordinates at the light.
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// Returns the neighbourhood from exact rays without masks, or `None` if the central ray or one of

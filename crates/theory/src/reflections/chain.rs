@@ -173,8 +173,8 @@ impl ScatteringSurface {
     }
 }
 
-/// Returns the direction with a longitude and a latitude about a normal, in the axes of a frame
-/// whose D is turned to the normal.
+/// Returns the direction with a longitude and a latitude about a normal. The angles are measured in
+/// the axes of a frame after its D is turned to the normal.
 pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
     let away = DVec3::new(across * sin, up, across * cos);

@@ -21,9 +21,9 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Returns the rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3,
-    /// j − 3] of the period. A ray reaches eight cells, and cells outside the period are wrapped
-    /// once, after all spreading.
+    /// Returns the numbers of rows and columns of the padded fine grid. Its cell [i, j] is the cell
+    /// [i − 3, j − 3] of the period. A ray reaches eight cells, and cells outside the period are
+    /// wrapped once, after all spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
@@ -87,8 +87,8 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
     }
 }
 
-/// Returns the cell of a point among the `count` of a period, and the fraction of a cell by which
-/// the point lies beyond it.
+/// Returns the cell of a point, and the fraction of a cell by which the point lies beyond this
+/// cell. A period has `count` cells.
 ///
 /// A point outside the period is moved into it by whole periods. The sum does not change, because
 /// at the frequencies m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p.

@@ -1,4 +1,5 @@
-//! A reference for tests: transforms of chains by sums over many quasi-random rays.
+//! Transforms of chains, computed as sums over many quasi-random rays. They are a reference for
+//! tests.
 
 use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};

@@ -91,8 +91,8 @@ fn a_grating_is_three_copies() {
 /// zero there.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // The tested frequency is at a zero of the transform of the window, whose half-widths are 0.5
-    // and 0.3.
+    // The window has the half-widths 0.5 and 0.3. At the tested frequency, the transform of the
+    // window is zero.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));

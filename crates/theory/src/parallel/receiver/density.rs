@@ -6,7 +6,7 @@ use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
-/// Negative logarithm −ln ε of the relative error ε = 10⁻¹² of a Gauss rule.
+/// The relative error ε of a Gauss rule is 10⁻¹², and this number is −ln ε.
 const NATS: f64 = 28.0;
 /// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
 /// panels.
@@ -62,7 +62,8 @@ impl SlopePower {
     }
 }
 
-/// The number of nodes that an interval of slopes requires, as a function of the interval's length.
+/// The numbers of nodes that intervals of slopes require. The number depends on the length of the
+/// interval.
 #[derive(Debug)]
 struct NodeCounts {
     /// Length of the longest panel; a panel of level k is 2^k times shorter.
@@ -124,8 +125,8 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     counts.fold(f64::INFINITY, f64::min).ceil() as usize
 }
 
-/// The lobe, with Gauss rules that integrate the product of the lobe and the gratings in front of
-/// the receiver.
+/// The lobe, and Gauss rules for its integrals. The rules integrate the product of the lobe and the
+/// gratings in front of the receiver.
 #[derive(Debug)]
 pub(crate) struct Integrator {
     lobe: SlopePower,
@@ -136,8 +137,8 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per
-    /// slope along u and along v, add up to `frequencies`.
+    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings. The frequencies of these
+    /// gratings, in cycles per slope, add up to `frequencies` along u and along v.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
             lobe: SlopePower::new(power),
