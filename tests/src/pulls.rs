@@ -56,8 +56,8 @@ const MAX_NOISE: f64 = 0.25;
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the table of single pulls and in the table of single scenes.
 const LISTED: usize = 12;
-/// Maximum CPU seconds of a prediction that takes more time than tracing the photons of its
-/// scene.
+/// A prediction may take more time than tracing the photons of its scene only if it takes at most
+/// this number of CPU seconds.
 const MAX_SECONDS: f64 = 10.0;
 
 /// The pull of one measured number.

@@ -1,5 +1,5 @@
 //! Defines smooth and rough transmitting interfaces between two media. wo is in front of the
-//! interface; `index` is the refractive index of the far side divided by the refractive index of
+//! interface. `index` is the refractive index of the far side, divided by the refractive index of
 //! the side of wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.

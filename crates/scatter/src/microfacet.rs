@@ -16,7 +16,8 @@ pub struct Microfacets {
     pub alpha: [f64; 2],
 }
 
-/// The smallest z of a visible normal before stretching, which keeps normals above the horizon.
+/// The smallest z of a visible normal before stretching. This minimum keeps normals above the
+/// horizon.
 const MIN_HEIGHT: f64 = 1e-12;
 
 impl Microfacets {

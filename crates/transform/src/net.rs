@@ -159,7 +159,8 @@ mod tests {
     use super::*;
     use crate::random::unit;
 
-    /// Total number of coordinates of two blocks that share a net and one block with its own net.
+    /// Total number of coordinates of three blocks. Two of these blocks share a net, and one block
+    /// has its own net.
     const ALL: usize = 3 * WIDTH;
 
     fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {

@@ -167,9 +167,9 @@ fn mirror_sphere(photons: u64) -> Claim {
     }
 }
 
-/// Returns two angles, measured from the direction towards the beam's source: the angle to the
-/// normal at the point where a photon leaves a sphere of 0.5 m, and the angle to the direction of
-/// the photon.
+/// Returns two angles of a photon that leaves a sphere of 0.5 m, measured from the direction
+/// towards the beam's source. The first is the angle to the normal at the point where the photon
+/// leaves, and the second is the angle to the direction of the photon.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ray = crossing.ray;
     let (s, t) = (2.0 * ray.x, 2.0 * ray.y);

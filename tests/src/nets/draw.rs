@@ -6,7 +6,7 @@
 
 use etendue_transform::random::{self, Stream};
 
-/// The kind of a scene: the elements between its light and its plane.
+/// The kind of a scene. It determines the elements between the light and the plane of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockerKind {
     /// A plane perpendicular to the central ray, behind masks.

@@ -34,8 +34,8 @@ pub(super) enum Turn {
 pub(super) struct Legs {
     pub(super) before: Axes,
     pub(super) after: Axes,
-    /// The axes T, B, N for arriving light and for leaving light, each with the longitude of the
-    /// central ray in these axes.
+    /// The axes T, B, N, and the longitude of the central ray in these axes: first for arriving
+    /// light, then for leaving light.
     pub(super) arriving: (Axes, f64),
     pub(super) leaving: (Axes, f64),
 }

@@ -85,7 +85,7 @@ impl Smooth {
 
     /// Returns the point of the surface with the coordinates s and t on its tangent plane.
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
-        // The depth of a circle of radius 1/k below its tangent.
+        // Returns the depth of a circle of radius 1/k below its tangent.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
         let below = match self.form {
             Form::Plane => 0.0,

@@ -1,5 +1,5 @@
-//! Every plane of the shading scenes: photons, the exact prediction, the first-order chain and
-//! backward rays.
+//! Compares photons at every plane of the shading scenes with the exact prediction, with the
+//! first-order chain and with backward rays.
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};

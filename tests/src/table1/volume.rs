@@ -182,8 +182,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Checks whether the path contains an ideal lens. An ideal lens preserves the volume of positions
-/// and slopes, unlike real lenses.
+/// Checks whether the path contains an ideal lens. Unlike a real lens, an ideal lens preserves the
+/// volume of positions and slopes.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events

@@ -9,7 +9,7 @@ use std::io;
 
 /// The smallest size permitted in a scene file, metres.
 const LEAST: f64 = 1e-9;
-/// Maximum number of products of shapes for which a prediction takes an acceptable time.
+/// Maximum number of products of shapes. Up to this number, a prediction takes an acceptable time.
 const MOST: f64 = 3e4;
 /// The prediction for one disc costs as much as the prediction for this number of rectangles.
 const STRIPS: f64 = 64.0;

@@ -67,8 +67,8 @@ pub(crate) struct SectionColumns {
 /// The light field of a path inside a window, expanded as brightness · Σ products · Σ terms
 /// (docs/theory.md (4) and (5d)).
 ///
-/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v),
-/// so the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex
+/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v).
+/// The product source · Π_layers (1 − Σ blockers) is therefore a signed sum of products of convex
 /// polygons. All other factors are sums of products of a wave of (x, u) and a wave of (y, v).
 #[derive(Debug)]
 pub(crate) struct Expansion {

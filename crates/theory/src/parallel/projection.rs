@@ -232,8 +232,8 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: half the mean of W over
-    /// the triangle with the vertices p, p + b and p + c.
+    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square. The result is half the
+    /// mean of W over the triangle with the vertices p, p + b and p + c.
     fn mean(&self, p: [f64; 2], b: [f64; 2], c: [f64; 2], slope: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for &(t, weight) in &self.nodes {

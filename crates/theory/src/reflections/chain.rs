@@ -13,8 +13,8 @@ use glam::DVec3;
 /// The path of the central ray, with first-order maps of the rays near the central ray.
 ///
 /// Local coordinates at a scattering surface are (s, t, θ, φ): positions along T and B in metres,
-/// and the longitude and latitude of a direction away from the surface about the local normal. T
-/// lies in the plane of incidence.
+/// and two angles about the local normal. The angles are the longitude and latitude of a direction
+/// away from the surface. T lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionChain {
     /// The scattering surfaces, in the order in which light meets them.

@@ -4,7 +4,8 @@ use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH, transposed};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// The mapping of rays to the fine grid of one azimuth φ, a period of `rows` × `columns` cells.
+/// The mapping of rays to the fine grid of one azimuth φ. The grid is a period of `rows` ×
+/// `columns` cells.
 ///
 /// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the coordinate of the frequency ρ.
 /// Columns divide the period of q = u cos φ + v sin φ, the coordinate of the frequency ν.

@@ -105,8 +105,8 @@ impl NodeCounts {
 /// the error e^(−[`NATS`]).
 ///
 /// The error of the rule with n nodes is ρ^(−2n) times the largest value of the integrand on an
-/// ellipse around the interval, where the ellipse extends by b in the imaginary direction and ln ρ
-/// = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
+/// ellipse around the interval. The ellipse extends by b in the imaginary direction, and ln ρ =
+/// arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
 /// 19.3). The ellipse contains no pole if b < 1. The number is computed for several values of b,
 /// and the smallest number is used.
 #[expect(

@@ -5,8 +5,8 @@
 //! ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h before
 //! the receiver. Therefore the slopes at (x, y) of the rays through a shape form a scaled copy of
 //! this shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
-//! integrals over rectangles and discs, which are these copies of the light and of the blockers
-//! (docs/theory.md, section 4b).
+//! integrals over rectangles and discs. These rectangles and discs are the scaled copies of the
+//! light and of the blockers (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
