@@ -16,8 +16,8 @@ use etendue_theory::{rays, reflections, scattering};
 pub struct Applicability {
     /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// Descriptions of the objects on the way of the light that no theory covers. The list is empty
-    /// where a theory applies.
+    /// Descriptions of objects that stand in the way of the light and that no theory covers. The
+    /// list is empty where a theory applies.
     pub reasons: Vec<String>,
     /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces. The list
     /// is empty where it does not.
@@ -30,9 +30,9 @@ pub struct Applicability {
 }
 
 impl Theory {
-    /// Describes in words which parts of a scene violate the assumptions of the theory. If light
-    /// meets blockers beside the central ray on a leg, adds these blockers to the obstacles of the
-    /// theory.
+    /// Describes in words which parts of a scene violate the assumptions of the theory. Light may
+    /// meet blockers on a leg where the central ray does not meet them. The function adds these
+    /// blockers to the obstacles of the theory.
     fn obstacles(
         &mut self,
         scene: &Scene,
@@ -85,7 +85,8 @@ impl Applicability {
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
-        // On the first leg, rays are tested against objects that do not lie across the leg.
+        // On the first leg, the theory of rays may apply instead, because it tests rays against
+        // objects that do not lie across the leg.
         let Some(mut view) = system(scene, plane) else {
             return found;
         };

@@ -9,8 +9,8 @@ const MAX_ERROR: f64 = 3e-3;
 /// The accepted relative error of a prediction, times √photons. The noise of the photons is about
 /// 25/√photons.
 const OF_NOISE: f64 = 12.0;
-/// The number of rays of a prediction, as a share of the number of photons. The prediction then
-/// takes less time than tracing the photons.
+/// The number of rays of a prediction, as a share of the number of photons. This share is small
+/// enough that the prediction takes less time than tracing the photons.
 const SHARE: f64 = 0.25;
 /// The smallest number of rays, for runs with few photons.
 const FEWEST: f64 = 1.1e6;

@@ -211,12 +211,12 @@ const NOISE: f64 = 3.0;
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 
-/// If a variance grows by more than this factor from half of the band to the whole band, the band
-/// limits the variance. The variance of a Gaussian grows by 10 % if the band ends at five of its
-/// standard deviations, and by 3 % if the band ends at six.
+/// If a variance over the whole band is larger than the variance over half of the band by more than
+/// this factor, the band limits the variance. The variance of a Gaussian grows by 10 % if the band
+/// ends at five of its standard deviations, and by 3 % if the band ends at six.
 const ENDLESS: f64 = 1.15;
 
-/// Divides each entry by the geometric mean of two variances in a matrix, the variances of the
+/// Divides each entry by the geometric mean of two variances, which are the variances along the
 /// entry's two axes. Returns the largest result.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));

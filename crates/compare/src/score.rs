@@ -15,7 +15,8 @@ pub struct ParameterReport {
     pub unit: String,
     /// Value in the scene.
     pub scene: f64,
-    /// Measured value, with all other parameters held at their values in the scene.
+    /// Measured value. The estimate assumes that all other parameters have their values in the
+    /// scene.
     pub measured: f64,
     /// Standard error of the measured value, including the error of the prediction.
     pub error: f64,

@@ -52,8 +52,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// Returns the event of a surface in the form that it has if the front of the surface faces the
-/// light. `back` states whether the back of the surface faces the light.
+/// Returns the event of a surface, rewritten as if the front of the surface faced the light. `back`
+/// states whether the back of the surface faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -102,8 +102,8 @@ pub fn scattered(
 }
 
 /// Returns the light, all masks and all surfaces of the path, and a plane behind some of these
-/// surfaces. Returns `None` if light comes from a ray file, if it has met a mesh, if no surface has
-/// scattered it, or if too many surfaces have scattered it.
+/// surfaces. Returns `None` if light comes from a ray file or has met a mesh. Also returns `None`
+/// if no surface has scattered the light, or if too many surfaces have.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,

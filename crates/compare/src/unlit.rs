@@ -22,8 +22,8 @@ const MOST_PARTS: usize = 4096;
 /// plane.
 ///
 /// The rays of a section are points (position at the light, slope). Half-planes cut the set of
-/// these rays to a convex polygon, which is empty if no ray passes. All rays are also stopped if a
-/// layer covers every place where they cross its plane.
+/// these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a layer
+/// covers every place where rays cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {

@@ -133,9 +133,9 @@ mod tests {
         .unwrap()
     }
 
-    /// Tests two properties. For any direction, the density over (x, y) integrates to 1, even if
-    /// lines meet the surface twice. The test also checks that sampled points follow the density.
-    /// The mean over these points of a function divided by the density must be the integral of the
+    /// Tests two properties. First, for any direction, the density over (x, y) integrates to 1,
+    /// even if lines meet the surface twice. Second, sampled points follow the density: if a
+    /// function is divided by the density, its mean over these points is the integral of the
     /// function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]

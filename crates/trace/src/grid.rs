@@ -2,7 +2,7 @@
 
 use etendue_field::{Shape, whole};
 
-/// Flat shapes side by side in a plane across the leg, with a grid that finds the shapes that may
+/// Flat shapes that lie side by side in a plane across the leg. A grid finds the shapes that may
 /// contain a point.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {

@@ -1,4 +1,5 @@
-//! Computes where rays of a leg cross virtual planes, and with which coordinates.
+//! Computes the points at which rays of a leg cross virtual planes, and the coordinates of the rays
+//! there.
 
 use crate::heading::Heading;
 use crate::line::{direction, ray_through, start};
@@ -41,7 +42,8 @@ const SIDE: u32 = 9;
 /// The factor by which the largest evaluated angle is increased, to cover directions between the
 /// evaluated directions.
 const MARGIN: f64 = 1.1;
-/// The largest angle to the central ray, in radians, at which light is aimed by its slopes.
+/// The largest angle to the central ray, in radians. At larger angles, light is not aimed by its
+/// slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
 
 /// Returns the points at which a line meets a patch.
@@ -202,10 +204,10 @@ impl PlaneOnLeg {
 }
 
 impl SurfaceCoordinates {
-    /// Returns the frame of the local normal at a point, on the side of the normal at the central
-    /// hit; `None` if these two normals differ by a right angle or more. A line may meet a curved
-    /// surface once from each side, so only one of two points with the same coordinates has a
-    /// frame of the local normal.
+    /// Returns the frame of the local normal at a point. The local normal points to the same side
+    /// as the normal at the central hit. Returns `None` if the two normals differ by a right angle
+    /// or more. A line may meet a curved surface once from each side, so only one of two points
+    /// with the same coordinates has a frame of the local normal.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);

@@ -29,8 +29,8 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The largest number of primitives that are tested one after another without a hierarchy, because
-/// these tests are as fast as the start of a traversal.
+/// Up to this number, primitives are tested one after another without a hierarchy, because these
+/// tests are as fast as the start of a traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
 impl<T> TaggedPrimitive<T> {

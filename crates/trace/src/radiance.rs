@@ -29,8 +29,8 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
-        // The value is divided by the ray's share of the total flux, because the ray is drawn
-        // with this share as probability.
+        // The value is divided by the ray's share of the total flux, because this share is the
+        // probability with which the ray is drawn.
         Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
     }
 }

@@ -137,8 +137,8 @@ fn all_ways_agree(cases: &[Case]) {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 300 tests, at least one exceeds 4.5 standard errors in one run
-                    // of 500.
+                    // A run makes some 300 tests. In one run of 500, at least one of these tests
+                    // exceeds 4.5 standard errors.
                     assert!(z.abs() < 4.5, "{at}: {a:?} and {b:?}");
                 }
                 let most = if way == "aimed" { 0.04 } else { 0.3 };

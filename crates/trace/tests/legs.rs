@@ -1,5 +1,5 @@
-//! Tests several reflections in a row, oblique surfaces and light that leaves a mesh: compares
-//! aimed photons, plain photons, backward rays and a plain quadrature.
+//! Tests several reflections in a row, oblique surfaces, and light that leaves a mesh. The tests
+//! compare aimed photons, plain photons, backward rays and a plain quadrature.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -240,8 +240,8 @@ fn both_ways_agree_behind_smooth_surfaces() {
     }
 }
 
-/// A wall that lights a nearby floor from all around; light therefore travels along and against the
-/// central ray.
+/// A large wall close to a floor. Light from the wall reaches the floor from all sides, so it
+/// travels along the central ray and against it.
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
 const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;

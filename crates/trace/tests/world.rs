@@ -10,8 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Returns a scene with a square light away from the world's origin that shines obliquely. If
-/// `visits` names the curved glossy surface, the light shines on that surface.
+/// Returns a scene with a square light that shines obliquely and does not lie at the world's
+/// origin. If `visits` names the curved glossy surface, the light shines on that surface.
 fn scene(visits: &str, planes: &str) -> Scene {
     let text = format!(
         r#"(light: Rectangle(center: (0.3, -0.2, 0.1), size: (0.06, 0.04), radiance: 2),

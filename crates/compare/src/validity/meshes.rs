@@ -70,7 +70,8 @@ impl Follower<'_> {
         let center = patch.frame.to_local(self.scene.path.ends_at(0)?.point);
         let offset = patch.frame.to_local(point) - center;
         let drawn = [offset.x, offset.y].map(|d| d / (2.0 * patch.aperture));
-        // The apparent area, seen along the ray, of a unit area on the tangent plane at the vertex.
+        // A unit area on the tangent plane at the vertex has this apparent area when it is seen
+        // along the ray.
         let area = ray.direction.dot(normal) / normal.dot(patch.frame.d);
         let on_surface = strength * area.abs() / density(drawn);
         let squared = length * length;
@@ -129,9 +130,9 @@ impl Follower<'_> {
         })
     }
 
-    /// Returns how much the slices change when rays arrive by triangles. The result is the mean of
-    /// the changes from two halves of the rays, plus its standard error, which is half of their
-    /// difference.
+    /// Returns how much the slices change when triangles deflect the rays instead of patches. The
+    /// result is the mean of the changes from two halves of the rays, plus its standard error,
+    /// which is half of their difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();

@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// Returns the first `most` rays that carry light into the window, without relatively dark rays.
-/// Only light inside the window determines which rays count as dark, because the strongest part of
-/// the sky may lie outside the window.
+/// Returns the first `most` rays that carry light into the window. Rays that are dark relative to
+/// the others are left out. Only light inside the window determines which rays count as dark,
+/// because the strongest part of the sky may lie outside the window.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -111,7 +111,7 @@ impl CheckRay {
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
-        // The extremum is at −b/a; a line without an extremum has a single root.
+        // The extremum is at −b/a. If a line has no extremum, there is a single root.
         let first = |t: &&f64| a == 0.0 || (**t < -b / a) == (from < -b / a);
         let found = roots.iter().filter(|t| t.is_finite()).find(first);
         let found = found.copied().filter(|t| *t > 0.0);

@@ -17,8 +17,8 @@ pub(super) struct PlaneSampler {
     pub(super) planes_on_leg: Both<PlaneOnLeg>,
     pub(super) position: [ProfileDensity; 2],
     pub(super) slope: [ProfileDensity; 2],
-    /// Whether slopes are drawn towards points of the light. Slopes are drawn towards points of
-    /// the light if the light restricts slopes more than the window does.
+    /// Whether slopes are drawn towards points of the light. This is the case if the light
+    /// restricts slopes more than the window does.
     pub(super) to_light: bool,
 }
 
