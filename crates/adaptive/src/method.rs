@@ -33,8 +33,8 @@ pub enum SampleMethod {
     /// the criteria, and half follow the errors at the first samples. The errors at the first
     /// samples also calibrate the criteria for each object.
     Auto,
-    /// Samples follow only the measured light. The measure is the standard deviation of the first
-    /// quarter of the samples, which is distributed uniformly.
+    /// Samples follow only the measured light. The first quarter of the samples is distributed
+    /// uniformly, and the standard deviation of these samples is the measure.
     Variance,
 }
 
@@ -165,8 +165,7 @@ pub(crate) struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// Shades all samples of the method. With each sample, stores the metric of all samples
-    /// together.
+    /// Shades all samples of the method. Each sample stores the common metric of all samples.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let method = self.plan.method;
         let (wanted, power) = match method {

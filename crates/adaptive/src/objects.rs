@@ -1,5 +1,5 @@
-//! Computes sums over the first samples of each object. A small share of the sums over all objects
-//! is added to the sums of each object.
+//! Computes sums over the first samples of each object. To each of them, a small share of the sums
+//! over all objects is added.
 
 use std::collections::BTreeMap;
 

@@ -159,7 +159,7 @@ impl Visible {
         row * self.size[0] + column
     }
 
-    /// Returns the pixels up to `radius` to each side of a pixel, in rows from the top.
+    /// Returns the pixels that are at most `radius` to each side of a pixel, in rows from the top.
     pub(crate) fn around(
         &self,
         pixel: [usize; 2],

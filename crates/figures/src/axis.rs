@@ -118,7 +118,7 @@ impl Axis {
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
-    /// Returns the edges of the axis, moved apart if they coincide or are reversed.
+    /// Returns the edges of the axis. If the edges coincide or are reversed, they are moved apart.
     pub(crate) fn range(&self) -> [f64; 2] {
         if self.max > self.min && (self.max - self.min).is_finite() {
             [self.min, self.max]
@@ -226,8 +226,8 @@ const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// Returns the maximum number of ticks whose texts do not overlap along `length`, and the font
-/// size of these texts. If fewer than three ticks fit, smaller texts or less usual steps are
+/// Returns as many ticks as fit along `length` without overlaps of their texts. Also returns the
+/// font size of these texts. If fewer than three ticks fit, smaller texts or less usual steps are
 /// tried.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];

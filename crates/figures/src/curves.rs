@@ -69,7 +69,7 @@ pub struct Curves {
     pub note: String,
     /// The quantity along y.
     pub y: AxisQuantity,
-    /// The panels, from left to right in rows from top to bottom.
+    /// The panels, row by row from the top; each row runs from left to right.
     pub panels: Vec<CurvePanel>,
 }
 

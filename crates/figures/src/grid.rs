@@ -140,8 +140,8 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures. If a width between `least` and `largest` fits, the
-    /// pictures have this width. All pictures have the shape of the first picture.
+    /// Lays out rows of `columns` pictures. The width of the pictures is between `least` and
+    /// `largest`, if such a width fits. All pictures have the shape of the first picture.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.

@@ -25,8 +25,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
     /// The lengths along which the x label and the y label are centred, measured from the left and
-    /// from the top of the panel. The lengths for the labels may include the panels to the right
-    /// and below. The length is `None` for a label that is not written.
+    /// from the top of the panel. These lengths may include panels to the right and below. A label
+    /// whose length is `None` is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 

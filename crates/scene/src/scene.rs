@@ -238,8 +238,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the distance of the surface and its rectangle, if the surface lies across the
-    /// first leg with its edges along X and Y.
+    /// Returns the distance and the rectangle of a surface that lies across the first leg and has
+    /// its edges along X and Y. Returns `None` for any other surface.
     #[must_use]
     #[expect(
         clippy::float_cmp,
@@ -305,7 +305,7 @@ pub struct Run {
     pub batches: u32,
     /// The probability that the verdict rejects a correct scene, for all planes together.
     pub alpha: f64,
-    /// The largest noise, as a share of the spectrum, with which a plane can pass.
+    /// The largest noise, as a share of the spectrum. A plane with more noise cannot pass.
     pub resolution: f64,
     /// The distribution with which photons leave the light.
     pub emission: Emission,

@@ -31,7 +31,7 @@ impl<D: Dimension> Jackknife<D> {
         }
     }
 
-    /// Adds the value of the estimate with the next batch left out.
+    /// Adds the next value, which is the estimate with one batch left out.
     pub(crate) fn add(&mut self, value: &Array<f64, D>) {
         self.count += 1;
         let count = self.count as f64;

@@ -1,4 +1,4 @@
-//! Computes moments of a light field over its rays.
+//! Computes moments of the coordinates of a light field's rays.
 
 use etendue_field::TwoPlane;
 use ndarray::Array2;

@@ -132,8 +132,8 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
 }
 
-/// Tests the field of a box on a frequency grid three times finer than the box's period requires.
-/// The power of this field is known and is not zero.
+/// Tests the field of a box. The frequency grid is three times finer than the box's period
+/// requires. The power of this field is known and is not zero.
 #[test]
 fn jackknife_intervals_cover_the_truth() {
     let (trials, batches) = (300, 16);

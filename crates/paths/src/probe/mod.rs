@@ -55,7 +55,8 @@ pub struct Probe<'a> {
     pub pixel_slope: f64,
 }
 
-/// Maximum number of mirrors that are followed after the last surface of a question, plus one.
+/// Maximum number of surfaces to which the ray is followed after the last surface of a question.
+/// All of them except the last are mirrors.
 const MIRRORS: usize = 4;
 
 /// Maximum slope of a window.
@@ -125,8 +126,7 @@ impl<'a> Probe<'a> {
             let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
             let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
             let widths = [wide, spread.min(WIDEST)];
-            // Among all windows, the window at the next surface sees the largest part of this
-            // surface.
+            // No window sees a larger part of this surface than the window at the next surface.
             let seen = all
                 .get(number)
                 .map_or(wide, |next| wide + (half + widths[1]) * next.distance);

@@ -180,8 +180,8 @@ impl<'a> PhotonProbe<'a> {
         })
     }
 
-    /// Returns the density per solid angle of the direction of photons that continue from a hit,
-    /// without delta components.
+    /// Returns the density, per solid angle, with which photons continue from a hit in a direction.
+    /// Delta components are left out.
     fn onward_density(&self, hit: &Hit, arriving: DVec3, along: DVec3) -> f64 {
         let [wi, wo] = [-arriving, along].map(|of| hit.frame.transpose() * of);
         let plain = self.probe.paths.scatter(hit).density(hit.uv, wo, wi);

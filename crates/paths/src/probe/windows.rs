@@ -62,8 +62,8 @@ impl LineRegion {
         squared * squared.sqrt() / area
     }
 
-    /// Returns the intervals of u and v of the lines through a point. For a point behind the end of
-    /// the leg, positions do not limit the slopes.
+    /// Returns the intervals in which u and v lie for lines through a point. For a point behind the
+    /// end of the leg, positions do not limit the slopes.
     fn slopes(&self, from: DVec3) -> Option<[[f64; 2]; 2]> {
         let from = self.frame.to_local(from);
         let distance = -from.z;
@@ -333,7 +333,7 @@ impl<'a> WindowConnector<'a> {
     }
 
     /// Returns the point at which a line meets the smooth surface at the end of a leg. Returns
-    /// `None` if the leg does not end at a smooth surface, or if windows cannot see the line at
+    /// `None` if the leg does not end at a smooth surface, or if windows do not see the line at
     /// this point.
     fn smooth_end(&self, number: usize, from: DVec3, along: DVec3) -> Option<Hit> {
         let region = &self.regions[number];
@@ -345,8 +345,8 @@ impl<'a> WindowConnector<'a> {
         (at.x.abs().max(at.y.abs()) <= region.position).then_some(hit)
     }
 
-    /// Checks whether the line through a point, traced back from the end of a leg, hits this point
-    /// before any other.
+    /// Traces the line through a point back from the end of a leg, and checks whether it hits this
+    /// point before any other.
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);

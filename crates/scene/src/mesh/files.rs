@@ -30,8 +30,8 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh as a binary little-endian PLY file without loss: coordinates as `double`,
-    /// indices as `uint`.
+    /// Returns the mesh as a binary little-endian PLY file. Coordinates are written as `double` and
+    /// indices as `uint`, so no digits are lost.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {
         ply::write(&self.vertices, &self.triangles)

@@ -300,8 +300,8 @@ impl Resolver<'_> {
         match *profile {
             Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                // A prediction sums a series whose number of terms grows with the cut, the
-                // half-width at which a Gaussian profile ends.
+                // A Gaussian profile ends at a half-width, the cut. A prediction sums a series, and
+                // the number of its terms grows with the cut.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed =
                         "at most 10 widths: beyond 3.5 widths the Gaussian is below 1e-16";

@@ -111,8 +111,8 @@ impl FieldSpectrum {
         lines.into_iter().map(line).collect()
     }
 
-    /// Returns the ratio of the frequency at `index` of `frequencies` to the spacing along
-    /// `axis`, if this ratio is a whole number up to Nyquist.
+    /// Divides the frequency at `index` of `frequencies` by the spacing along `axis`. Returns the
+    /// result if it is a whole number and the frequency does not exceed Nyquist.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the multiple of the frequency is below the number of cells"

@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(bins.counts[[1, 0]], 8); // |(m, n)| = 1 and √2
     }
 
-    /// Tests the means of two known numbers: the number 1, and a number whose mean would change if
+    /// Tests two means that are known: the mean of the number 1, and a mean that would change if
     /// conjugates had a wrong weight.
     #[test]
     fn means_count_conjugates() {
