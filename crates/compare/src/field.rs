@@ -225,7 +225,7 @@ mod tests {
             report.p_value.unwrap()
         };
         let closed = closed_form(&chain, plane, over).unwrap();
-        assert!(p(&closed) > 0.01); // one test, of fixed nets
+        assert!(p(&closed) > 0.01); // a single test with fixed nets
         // The injected fault is the spectrum without the effects of the grid.
         let fault = PredictedField::Exact {
             spectrum: Box::new(alias_free(&chain, plane, over).unwrap()),

@@ -520,9 +520,8 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 
 impl PlaneComparison {
     /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value of
-    /// this spectrum is below the level of the test. There is one exception: the prediction may
-    /// have a systematic error that its replicates do not show. The plane does not fail if this
-    /// error may be visible above the noise.
+    /// this spectrum is below the level of the test. However, it does not fail if a systematic
+    /// error, which replicates do not show, may exceed the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

@@ -533,9 +533,8 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
     }
 }
 
-/// Noise is compared with the larger of both spectra. A prediction that is ten times too dim fails
-/// where a correct prediction passes. If the noise exceeds the resolution, agreement within this
-/// noise does not count.
+/// Noise is compared with the larger of both spectra. A prediction ten times too dim fails where a
+/// correct one passes. Agreement does not count if the noise exceeds the resolution.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);

@@ -1,5 +1,4 @@
-//! Tests which mesh files are read, which are refused and with which message, and generated
-//! surfaces.
+//! Tests mesh files and generated surfaces. Refused files have the expected messages.
 
 use etendue_scene::{Fault, Mesh};
 use glam::{DAffine3, DVec3};

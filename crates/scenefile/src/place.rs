@@ -112,7 +112,7 @@ struct OpenBracket<'a> {
     named: bool,
     index: usize,
     key: Option<&'a str>,
-    /// The value that began after the last comma: the number of steps of the path that lead to it.
+    /// The number of steps of the path to the value that began after the last comma.
     value: Option<Option<usize>>,
 }
 

@@ -259,7 +259,7 @@ impl PhotonSource for Lone {
     ) -> Ledger {
         let (ray, weight) = (self.0, 2.0);
         record(0, &[Crossing { ray, weight }]);
-        record(1, &[Crossing { ray, weight: 1e9 }]); // another plane's
+        record(1, &[Crossing { ray, weight: 1e9 }]); // a crossing of another plane
         progress(4);
         Ledger::default()
     }

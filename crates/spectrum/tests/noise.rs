@@ -148,7 +148,7 @@ fn jackknife_intervals_cover_the_truth() {
         let truth = (t.sin() / t).powi(2);
         let radial = cross.radial();
         let off = (radial.power[[i, j]] - truth).abs();
-        let interval = 2.131 * radial.sigma[[i, j]]; // Student's t, 15 degrees, 97.5 %
+        let interval = 2.131 * radial.sigma[[i, j]]; // 97.5 % quantile of Student's t with 15 degrees of freedom
         covered += u32::from(off < interval);
         halved += u32::from(off < 0.5 * interval);
 
@@ -162,7 +162,7 @@ fn jackknife_intervals_cover_the_truth() {
     // times this error, plus 1 % for the error of the jackknife.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
-    assert!(share(halved) < 0.80); // half of the error covers only 70 %
+    assert!(share(halved) < 0.80); // an interval of half the width covers only 70 %
 }
 
 #[test]

@@ -203,7 +203,7 @@ mod tests {
             assert!(
                 (mean / covered - 1.0).abs() < 0.03,
                 "{surface}: {mean} and {covered}"
-            ); // three standard errors, and as above
+            ); // three standard errors, and the errors named above
         }
     }
 }

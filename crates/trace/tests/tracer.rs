@@ -118,7 +118,7 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     assert!(
         (flux / exact - 1.0).abs() < 1e-12,
         "{flux} W, exact {exact} W"
-    ); // every photon carries the same: rounding
+    ); // rounding; all photons have the same flux
 }
 
 /// If blockers fill their plane, no light passes. Without blockers, two virtual planes on the two

@@ -103,7 +103,7 @@ fn planes_on_a_surface_have_one_flux() {
         let normal = DVec3::new(0.2, -0.5, -1.0).normalize();
         let center = DVec3::new(0.3, 0.4, 0.9) - 2.0 * normal;
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
-        assert!(d.dot(*p - center) < 0.0); // it arrives from outside
+        assert!(d.dot(*p - center) < 0.0); // the photon arrives from outside
     }
     // The other virtual planes also record each tested photon, on the same line and with the same
     // power.

@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(cells(Assignment::Nearest, 7.6), [0]);
         assert_eq!(cells(Assignment::Cic, 7.6), [7, 0]);
         assert_eq!(cells(Assignment::Tsc, 0.2), [7, 0, 1]);
-        assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // what rounding makes of a ray just inside
+        assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // a ray that rounding has moved to the edge
     }
 
     /// Computes ε from its definition, for many positions of a ray.

@@ -447,8 +447,7 @@ impl Backward {
 
 impl Backward {
     /// Returns the radiance that a light without extent causes at a virtual plane on the first leg.
-    /// The function draws a point in the plane's window; only one direction leads from this point
-    /// to the light.
+    /// Draws a point in the plane's window; one direction leads from it to the light.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,
@@ -460,8 +459,7 @@ impl Backward {
         let (point, normal, area) = plane_on_leg.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // This is the ratio of dA to du dv at the light, or to dx dy at the light if the light is
-        // distant.
+        // The ratio of dA to du dv at the light. For distant light, dA is divided by dx dy.
         let cosine = along.dot(normal).abs();
         let per_ray = if light.is_distant() {
             cosine
