@@ -71,10 +71,10 @@ pub(crate) struct SeenSurface {
     pub(crate) axis: DVec3,
     /// Whether the axis is the mirror direction, because the material has a lobe.
     pub(crate) has_lobe: bool,
-    /// The highest frequency around the axis that the material preserves, cycles per radian; 0 if
-    /// the material is black.
+    /// The material preserves frequencies around the axis up to this frequency, cycles per radian;
+    /// 0 if the material is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe, by which shading samples are divided.
+    /// The texture factors of base and lobe. Shading samples are divided by these factors.
     pub(crate) factors: [f64; 2],
 }
 

@@ -74,8 +74,8 @@ fn covered([column, row]: [usize; 2]) -> f64 {
     (0..64 * 64).filter(inside).count() as f64 / 4096.0
 }
 
-/// A convex diffuse ball in uniform light reflects half of this light everywhere, and a pixel at
-/// its edge mixes ball and background by their areas.
+/// A convex diffuse ball in uniform light reflects half of this light everywhere. A pixel at its
+/// edge shows the mean of ball and background, weighted by area.
 #[test]
 fn even_light_stays_even() {
     for method in ALL {

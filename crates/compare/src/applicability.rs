@@ -24,8 +24,8 @@ pub struct Applicability {
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
-    /// The difference between rays that smooth meshes deflect and the same rays deflected by
-    /// osculating patches; `None` without a smooth mesh.
+    /// The difference that arises if osculating patches deflect the rays instead of smooth meshes;
+    /// `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
 }
 
@@ -66,8 +66,8 @@ impl Theory {
     }
 }
 
-/// The offset that separates a plane from an object at the same distance, as a share of that
-/// distance. The offset exceeds rounding errors but is too small to change phases visibly.
+/// A plane and an object at the same distance are separated by this offset. It is given as a share
+/// of the distance. The offset exceeds rounding errors but is too small to change phases visibly.
 const AT_PLANE: f64 = 1e-12;
 
 impl Applicability {

@@ -16,8 +16,8 @@ use etendue_theory::{Model, scattering};
 /// leaves this surface. Returns `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a
 /// lobe's energy lies below its cutoff.
 ///
-/// The edge that limits the light is the edge of the last blockers. Without blockers, the limiting
-/// edge is the edge of the light itself, unless the light is far away.
+/// The edge that limits the light is the edge of the last blockers. Without blockers, the edge of
+/// the light itself limits the light. Distant light has no such edge.
 #[must_use]
 pub fn criterion(
     scene: &Scene,

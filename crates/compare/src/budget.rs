@@ -16,8 +16,8 @@ const SHARE: f64 = 0.25;
 const FEWEST: f64 = 1.1e6;
 
 /// Returns the ray budget of a prediction. The prediction ends when its error is half of the
-/// photons' noise, or when it has taken about as long as tracing the photons. An error of half the
-/// noise raises the smallest detectable change by 12 %.
+/// photons' noise. It also ends when it has taken about as long as the photons take. An error of
+/// half the noise raises the smallest detectable change by 12 %.
 pub(crate) fn budget(scene: &Scene) -> RayBudget {
     let photons = scene.run.photons as f64;
     RayBudget {

@@ -18,9 +18,9 @@ pub struct Convergence {
     /// The shares e of the scene's widths, in descending order, and ‖first order − exact‖/‖exact‖
     /// for each share.
     pub steps: Vec<[f64; 2]>,
-    /// The order n in error ∝ eⁿ, by least squares over the last three steps. The order is `None`
-    /// where the error is not clearly above the error of the quadrature. This condition is not
-    /// checked where several surfaces scatter.
+    /// The order n. The error is proportional to eⁿ, and n is fitted by least squares to the last
+    /// three steps. The order is `None` where the error is not clearly above the error of the
+    /// quadrature. This condition is not checked where several surfaces scatter.
     pub order: Option<f64>,
 }
 

@@ -45,7 +45,8 @@ pub struct CovarianceReport {
     pub measured: Option<Matrix<4>>,
     /// Standard errors of `measured`, by the jackknife over groups of batches.
     pub error: Option<Matrix<4>>,
-    /// The growth of each measured variance from half of the band to the whole band.
+    /// The growth of each measured variance: its value over the whole band divided by its value
+    /// over half of the band.
     pub growth: Option<[f64; 4]>,
     /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
     /// mean of the two variances. The second number is the error of `measured`, divided by the same

@@ -39,8 +39,8 @@ pub struct FirstOrderChain {
     /// the part of the defect that is due to the constant factor of the chain.
     #[serde(default)]
     pub radiance_defect: f64,
-    /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
-    /// formulas.
+    /// The matrix A in z' = A z, which takes rays from the light to the plane. It follows the
+    /// corrected formulas.
     pub matrix: Matrix<4>,
     /// The covariance of the windowed light field as computed from rays, and as propagated by the
     /// chain (see [`Covariance`](crate::Covariance)).

@@ -27,8 +27,8 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program needs for any scene: for its code, for buffers of photons, for pictures,
-/// and for memory that one stage does not free before the next stage.
+/// Bytes that the program needs for any scene. They hold its code, buffers of photons, pictures,
+/// and data that one stage does not free before the next stage.
 const PROGRAM: f64 = 1.5e8;
 
 /// Bytes that a triangle and its part of the hierarchy need during construction. The measured value

@@ -44,7 +44,7 @@ pub struct PlaneComparison {
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
-    /// The full radial spectrum, where the light field was put on a 4D grid and has a prediction.
+    /// The full radial spectrum, if the light field was put on a 4D grid and has a prediction.
     pub full_radial: Option<FullRadialComparison>,
 }
 

@@ -64,11 +64,11 @@ pub struct Covariance {
     pub measured: Matrix<4>,
     /// Standard errors of `measured`, by the jackknife.
     pub error: Matrix<4>,
-    /// The moments of rays that are traced through the real geometry, if the prediction consists of
+    /// If the prediction consists of rays that are traced through the real geometry, the moments of
     /// these rays.
     pub predicted: Option<Matrix<4>>,
-    /// The moments A S Aᵀ that the first-order chain propagates from a Gaussian as wide as the
-    /// light through a Gaussian window. Masks are left out.
+    /// The moments A S Aᵀ of a Gaussian that starts as wide as the light. The first-order chain
+    /// propagates them through a Gaussian window. Masks are left out.
     pub propagated: Option<Matrix<4>>,
 }
 
@@ -88,8 +88,8 @@ pub struct WedgeShare {
     pub nearest: f64,
     /// Longest distance, metres.
     pub farthest: f64,
-    /// The share of the power of the radial spectrum, excluding the main lobe of the window about
-    /// zero.
+    /// The share of the power of the radial spectrum. The main lobe of the window about zero is
+    /// left out.
     pub share: Pair,
 }
 

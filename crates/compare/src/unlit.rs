@@ -74,8 +74,7 @@ impl RaySection {
         let most = scene.light.steepest(axis).min(MAX_SLOPE);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
-        // The coordinates of a plane on a surface differ from the coordinates of a plane across the
-        // leg.
+        // A plane on a surface has other coordinates than a plane across the leg.
         if plane.leg == 0 && plane.orientation == Orientation::Orthogonal {
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);

@@ -470,7 +470,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
 
-/// A batch without a photon shows that there are too few photons for a decision, for every p-value.
+/// If a batch has no photon, there are too few photons for a decision, whatever the p-value is.
 #[test]
 fn a_batch_without_photons_decides_nothing() {
     let [truth, _] = spectrum(1.02);

@@ -215,15 +215,16 @@ impl Axis {
     }
 }
 
-/// Minimum length of an axis whose tick texts may be close to the tick texts of the next panel.
+/// If an axis has at least this length, its tick texts may be close to the tick texts of the next
+/// panel.
 pub(crate) const COMFORTABLE: f64 = 64.0;
-/// The length by which tick texts may extend beyond an axis that is shorter than [`COMFORTABLE`].
+/// Tick texts may extend beyond an axis by this length if the axis is shorter than [`COMFORTABLE`].
 const OVERHANG: f64 = 7.0;
 
 /// The usual first digits of the distance between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// The first digits of the distance between ticks if the usual first digits give fewer than three
-/// ticks.
+/// If the usual first digits give fewer than three ticks, the distance between ticks may have these
+/// first digits.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
 /// Returns as many ticks as fit along `length` without overlaps of their texts. Also returns the

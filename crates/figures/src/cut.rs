@@ -47,7 +47,8 @@ const SMALL_NAME: f64 = 10.0;
 pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
-    /// The area for the range of x, between the names above and the plane numbers below.
+    /// The area that shows the range of x. Names are above this area, and plane numbers are below
+    /// it.
     plot: Area,
     z: Axis,
     x: Axis,

@@ -9,10 +9,9 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 use ndarray::ArrayView2;
 
-/// The length by which an axis label may exceed its panel, along x and y.
+/// An axis label may be longer than its panel by these lengths, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 13.0];
-/// The length by which an axis label may exceed its panel along x if the next panel is at a small
-/// distance.
+/// If the next panel is near, an axis label may be longer than its panel along x by this length.
 const CLOSE_OVERHANG: f64 = 10.0;
 
 /// The position of a heat map, and the texts around it.

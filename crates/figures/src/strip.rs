@@ -33,9 +33,9 @@ pub struct StripColumn<'a> {
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The two rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
-    /// The difference between the measured spectrum and a first-order chain, in percent of the
-    /// largest modulus of the measured spectrum. The row of differences is drawn if each column has
-    /// such a difference.
+    /// The difference between the measured spectrum and a first-order chain. It is given in percent
+    /// of the largest modulus of the measured spectrum. The row of differences is drawn if each
+    /// column has such a difference.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", as markup; may be empty.
     pub verdict: Vec<String>,

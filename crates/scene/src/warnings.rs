@@ -19,8 +19,8 @@ const PIECES: f64 = 8.0;
 /// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// The slopes, in units of the window's half-width, at which the ratio of the radiances of photons
-/// and of backward rays is evaluated for each point.
+/// For each point, the ratio of two radiances, of photons and of backward rays, is evaluated at
+/// these slopes. The unit is the window's half-width.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
@@ -28,7 +28,7 @@ impl Scene {
     /// mesh on the path that is too coarse.
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
-    /// to the normal t of the triangle. If photons come along d and leave along e, their radiance
+    /// to the normal t of the triangle. Let photons come along d and leave along e. Their radiance
     /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
     /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
     /// of two spectra at the measured frequencies along x and y. Both spectra are computed at the

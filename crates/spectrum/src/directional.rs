@@ -175,7 +175,8 @@ impl PolarCell {
     }
 }
 
-/// A cumulative sum of power: the power at |ν · e| below each of many limits.
+/// A cumulative sum of power. For each of many limits, it gives the power at |ν · e| below the
+/// limit.
 struct Cumulative {
     step: f64,
     /// The power between each limit and the next limit.

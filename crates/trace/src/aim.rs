@@ -91,15 +91,14 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has two strategies for the window of each virtual plane on the first leg:
-    /// one draws rays by the window's profiles, and the other draws directions by the
-    /// environment. For each virtual plane on a later leg, aimed emission has a strategy for the
-    /// part of the first surface that this plane sees. If a virtual plane lies on the first
-    /// surface, aimed emission also has a strategy that draws rays by the profiles of that
-    /// plane's window. Plain emission draws positions uniformly over the windows of the virtual
-    /// planes on the first leg, over the first surface, and over the windows of virtual planes on
-    /// that surface. Plain emission always draws directions in proportion to the environment's
-    /// radiance.
+    /// Aimed emission has two strategies for the window of each virtual plane on the first leg: one
+    /// draws rays by the window's profiles, and the other draws directions by the environment. For
+    /// each virtual plane on a later leg, aimed emission has a strategy for the part of the first
+    /// surface that this plane sees. If a virtual plane lies on the first surface, aimed emission
+    /// also has a strategy that draws rays by the profiles of that plane's window. Plain emission
+    /// draws positions uniformly over three regions: the windows of the virtual planes on the first
+    /// leg, the first surface, and the windows of virtual planes on that surface. Plain emission
+    /// always draws directions in proportion to the environment's radiance.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

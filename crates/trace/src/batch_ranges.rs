@@ -9,8 +9,8 @@ pub(crate) const BLOCK: usize = 4096;
 /// run can stop only between parts. Summing up a part takes a few milliseconds.
 const PART: u64 = 1 << 20;
 
-/// The division of the photons of a run into batches of nearly equal size, in the order of the
-/// photons' numbers.
+/// A division of the photons of a run into batches of nearly equal size. Photons stay in the order
+/// of their numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchRanges {
     photons: u64,

@@ -258,8 +258,8 @@ impl Emitter {
     }
 }
 
-/// Returns the density of rays aimed by several proposals, with respect to du dv for a point
-/// light and to dx dy du dv for any other light.
+/// Returns the density of rays that several proposals aim. The density is per du dv for a point
+/// light, and per dx dy du dv for any other light.
 #[inline(always)]
 fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
     let mut sums = [0.0; ABREAST];

@@ -99,8 +99,8 @@ impl FootprintSampler {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // Along a ray with slopes (u, v), an area dA of the surface is projected onto the
-            // area |n · (u, v, 1)| dA of the plane at the beginning of the leg.
+            // Rays with slopes (u, v) project an area dA of the surface onto the plane at the
+            // beginning of the leg. The projected area is |n · (u, v, 1)| dA.
             sum += density / normal.dot(along).abs();
         });
         sum

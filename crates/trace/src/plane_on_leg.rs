@@ -8,8 +8,8 @@ use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The position of a virtual plane on its leg, with the conversion of rays of the leg to
-/// coordinates of the plane.
+/// The position of a virtual plane on its leg. It converts rays of the leg to coordinates of the
+/// plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneOnLeg {
     pub(crate) plane: usize,
@@ -37,9 +37,9 @@ pub(crate) struct SurfaceCoordinates {
     patch: Option<Patch>,
 }
 
-/// The number of angles, along each side of a window, at which slopes are evaluated.
+/// Slopes are evaluated at this number of angles along each side of a window.
 const SIDE: u32 = 9;
-/// The factor by which the largest evaluated angle is increased, to cover directions between the
+/// The largest evaluated angle is multiplied by this factor, to cover directions between the
 /// evaluated directions.
 const MARGIN: f64 = 1.1;
 /// The largest angle to the central ray, in radians. At larger angles, light is not aimed by its
@@ -72,8 +72,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// Returns the point of the virtual plane with given coordinates, in the frame of the leg,
-    /// and the normal and dA / dx dy at this point; `None` if the surface has no such point.
+    /// Finds the point of the virtual plane with given coordinates. Returns this point, the normal
+    /// and dA / dx dy, in the frame of the leg; `None` if the surface has no such point.
     pub(crate) fn point(&self, at: [f64; 2]) -> Option<(DVec3, DVec3, f64)> {
         let Some(view) = &self.surface else {
             return Some((DVec3::new(at[0], at[1], self.distance), DVec3::Z, 1.0));
@@ -290,7 +290,7 @@ impl SurfaceCoordinates {
 
     fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-        // An upper bound of the angle by which the normals of the patch turn within the window.
+        // Within the window, the normals of the patch turn by at most this angle.
         let turns = self.patch.map_or(0.0, |patch| {
             patch.curvature.map(f64::abs).iter().sum::<f64>() * libm::hypot(x, y)
         });

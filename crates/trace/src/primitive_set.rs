@@ -13,7 +13,7 @@ pub(crate) struct TaggedPrimitive<T> {
     pub(crate) tag: T,
 }
 
-/// A primitive that a ray meets, and the number of the part of the primitive at the hit.
+/// A primitive that a ray meets, and the number of the part that the ray meets.
 #[derive(Debug)]
 pub(crate) struct PrimitiveHit<'a, T> {
     primitive: &'a Primitive,

@@ -129,8 +129,9 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Draws slopes along one axis, for rays that leave a point of a surface and cross a window at some
-/// distance. The slopes follow the window's profile over the range of slopes that cross the window.
+/// A sampler of slopes along one axis. The slopes belong to rays that leave a point of a surface
+/// and cross a window at some distance. The slopes follow the window's profile over the range of
+/// slopes that cross the window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,

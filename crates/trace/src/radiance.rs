@@ -3,10 +3,10 @@
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
-/// Returns the radiance along a ray that is given in the plane of the light. For a point light
-/// the value is per du dv, for a beam per dx dy, and for rays of a file per share of flux. The
-/// value follows from dω = du dv / (1 + u² + v²)^(3/2), and from the contribution Φ (1 + u² +
-/// v²)² of a ray of flux Φ to radiance space.
+/// Returns the radiance along a ray that is given in the plane of the light. The value is per du dv
+/// for a point light, per dx dy for a beam, and per share of flux for rays of a file. The value
+/// follows from two relations: dω = du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ contributes Φ
+/// (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     match light {

@@ -164,8 +164,8 @@ pub(crate) fn looks_at_surface(plane: &VirtualPlane) -> bool {
     plane.orientation != Orientation::Orthogonal && plane.side == Side::Before
 }
 
-/// Returns the corners of a box around the part of a patch that the window of a virtual plane
-/// sees, in the frame at the light; `None` if the window may see the entire patch.
+/// The window of a virtual plane sees a part of a patch. Returns the corners of a box around this
+/// part, in the frame at the light; `None` if the window may see the entire patch.
 fn seen_of_patch(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -270,5 +270,5 @@ fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
 /// If the cosine of the angle between light and a normal is below this limit, the light counts as
 /// parallel to the surface. The same limit holds for a distance, as a share of a leg's length.
 const MIN_COSINE: f64 = 1e-3;
-/// The margin by which the aimed region exceeds the visible region, to allow for rounding errors.
+/// The aimed region exceeds the visible region by this margin, to allow for rounding errors.
 const MARGIN: f64 = 1e-9;

@@ -61,7 +61,7 @@ impl Sky {
             Choice::Lobes(lobes, flux) => {
                 let lobe = &lobes[flux.sample(r[0])];
                 let squared = lobe.width * lobe.width;
-                // The value 1 − cos γ, where γ is the angle to the axis of the lobe.
+                // This value is 1 − cos γ, where γ is the angle to the axis of the lobe.
                 let fall = -squared * libm::log1p(r[1] * libm::expm1(-2.0 / squared));
                 about(lobe.from, polar(fall.clamp(0.0, 2.0), r[2]))
             }

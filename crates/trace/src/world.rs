@@ -5,8 +5,8 @@ use etendue_field::{Crossing, Frame, TwoPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// Converts crossings of a virtual plane to rays in world coordinates, and computes the power of
-/// these rays.
+/// A converter from crossings of a virtual plane to rays in world coordinates. It also computes the
+/// power of these rays.
 #[derive(Debug)]
 pub struct PlaneInWorld {
     plane_on_leg: PlaneOnLeg,

@@ -66,7 +66,7 @@ fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
     }
 }
 
-/// The path to a virtual plane, given by the objects of the scene, the objects that the path
+/// The path to a virtual plane. It is given by the objects of the scene, the objects that the path
 /// visits, and the planes.
 type Way<'a> = (String, &'a str, &'a [&'a str]);
 

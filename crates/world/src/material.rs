@@ -35,8 +35,8 @@ pub enum Material {
     /// Two opaque materials, one on each side of the surface; each material scatters as on its own
     /// front.
     TwoSided(Box<[Self; 2]>),
-    /// A partly transparent surface: light passes unchanged except for a fraction that hits the
-    /// material.
+    /// A partly transparent surface. A fraction of the light hits the material, and the rest passes
+    /// unchanged.
     Mask {
         /// The fraction of the light that hits the material.
         opacity: Texture,

@@ -13,14 +13,15 @@ use ndarray::Array3;
 
 /// The number of rays that are drawn to find rays with light in the window.
 const TRIES: u32 = 300_000;
-/// The smallest and the largest number of rays with light in the window that are followed.
+/// The smallest and the largest number of rays that are followed. All of them bring light into the
+/// window.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
 /// The largest number of triangles that are tested for all rays together. The smallest number of
 /// rays is followed in any case.
 const LOOKED_AT: usize = 30_000_000;
-/// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
-/// point that a ray leaves.
+/// A triangle counts as a neighbour of the point that a ray leaves if it is nearer than this
+/// distance, in edges of the triangle.
 const NEIGHBOURS: f64 = 5.0;
 /// The displacement that is assigned to light that meets a surface again. It is the largest
 /// possible displacement.

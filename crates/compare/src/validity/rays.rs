@@ -129,8 +129,8 @@ impl CheckRay {
     }
 }
 
-/// Returns six numbers in (0, 1) that fill the cube uniformly: multiples of powers of the root of
-/// x⁷ = x + 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
+/// Returns six numbers in (0, 1) that fill the cube uniformly. They are multiples of powers of the
+/// root of x⁷ = x + 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
 pub(super) fn lattice(index: u32) -> [f64; 6] {
     const ROOT: f64 = 1.112_775_684_278_705_6;
     std::array::from_fn(|axis| {

@@ -49,9 +49,9 @@ pub(crate) fn off_patches(
     Follower::new(scene, plane, view, &around).off_patches()
 }
 
-/// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. A displacement of rays by this distance changes a spectrum
-/// by about ten times as much, and the change is reported.
+/// The largest accepted distance between the two arrivals of a ray, in half-widths of the window.
+/// One arrival is by a mesh, and the other by its osculating patch. A displacement of rays by this
+/// distance changes a spectrum by about ten times as much, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -86,7 +86,7 @@ impl Followed for FollowedRays<'_> {
     }
 }
 
-/// A ray at the plane, and the share of its light that masks on the first leg transmit.
+/// A ray at the plane, and the share of its light that passes the masks on the first leg.
 pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
 /// Distances whose relative difference is below this limit count as equal.

@@ -176,8 +176,8 @@ impl<'a> Surroundings<'a> {
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
-    /// Returns two shares of the light on a ray of the first leg: the share that passes the
-    /// blockers before `end`, and the share that passes the blockers that theory places before the
+    /// Returns two shares of the light on a ray of the first leg. The first share passes the
+    /// blockers before `end`. The second share passes the blockers that theory places before the
     /// plane.
     pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];

@@ -65,8 +65,8 @@ const WIDEST: f64 = 1.0;
 /// Half-width along x and y of the window for the spectrum of a picture, as a fraction of the
 /// half-width at the camera's plane.
 const POINT: f64 = 1e-9;
-/// Number of frequencies on either side of zero in the spectrum of a picture, up to 6 cycles per
-/// half-width of the window.
+/// Number of frequencies on either side of zero in the spectrum of a picture. The highest frequency
+/// is 6 cycles per half-width of the window.
 const PICTURE_FREQUENCIES: usize = 24;
 /// Number of azimuths of the spectrum of a picture. At the highest frequency, adjacent azimuths are
 /// half a cycle per half-width apart. This distance is smaller than the width of the main lobe of

@@ -200,8 +200,8 @@ struct Onward {
     density: Option<f64>,
 }
 
-/// Returns the factor by which the BSDF times the cosine to the shading normal is multiplied to
-/// obtain flux. For flux, both cosines refer to the geometric normal.
+/// Returns a factor. The BSDF times the cosine to the shading normal, multiplied by this factor,
+/// gives flux. For flux, both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

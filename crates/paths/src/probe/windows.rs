@@ -7,16 +7,15 @@ use crate::space::{Hit, Ray};
 use etendue_field::{Crossing, Frame, TwoPlane, VirtualPlane};
 use glam::DVec3;
 
-/// Number of lines through a window that are traced to find the objects that are seen through the
-/// window.
+/// Number of lines that are traced through a window, to find the objects that are seen through it.
 const LINES: u64 = 4096;
-/// Factor by which the region of connections exceeds the region of the traced lines, because other
-/// lines may lie slightly outside.
+/// The region of connections is larger than the region of the traced lines by this factor, because
+/// other lines may lie slightly outside.
 const MARGIN: f64 = 1.1;
 /// Maximum slope of a connection.
 const STEEPEST: f64 = 1.0;
 
-/// The region of the lines of a leg that windows see, directly or in smooth surfaces.
+/// Windows see lines of a leg, directly or in smooth surfaces. This is the region of these lines.
 #[derive(Clone, Copy, Debug)]
 struct LineRegion {
     /// The frame at the end of the leg.

@@ -58,8 +58,8 @@ fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     [[left, bottom], [right, top]]
 }
 
-/// The largest overlap, as a share of the sizes of the shapes, that counts as a rounding error.
-/// Shapes may touch, and rounding may make touching shapes overlap.
+/// An overlap up to this share of the sizes of the shapes counts as a rounding error. Shapes may
+/// touch, and rounding may make touching shapes overlap.
 const TOUCH: f64 = 1e-9;
 
 fn meet(a: &Shape, b: &Shape) -> bool {

@@ -234,8 +234,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// Returns the event of a smooth surface at the end of a leg, the frame of the surface as a
-    /// lens, and the normal at the hit on the side that the surface faces.
+    /// Describes a smooth surface at the end of a leg. Returns its event, its frame as a lens, and
+    /// its normal at the hit, on the side that the surface faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,

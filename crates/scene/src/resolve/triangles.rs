@@ -28,7 +28,7 @@ pub(super) struct MeshPlacement<'a> {
     pub(super) source: &'a MeshSource,
     pub(super) center: DVec3,
     pub(super) scale: f64,
-    /// The largest distance from the origin of any point where light begins or leaves a surface.
+    /// The largest distance from the origin at which light starts or leaves a surface.
     pub(super) reach: f64,
 }
 

@@ -180,7 +180,7 @@ pub struct FieldCovariance {
     pub moments: PowerMoments,
     /// The moments over half of the band of frequencies.
     half: PowerMoments,
-    /// The moments with each of the groups left out in turn, up to a common factor.
+    /// For each group, the moments of all other groups, up to a common factor.
     without: Vec<PowerMoments>,
 }
 

@@ -50,8 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// Returns the ray of the leg that has the coordinates `seen` at the virtual plane, the end
-    /// point of the ray, and dA / dx dy at the plane; `None` if there is no such ray.
+    /// Finds the ray of the leg that has the coordinates `seen` at the virtual plane. Returns this
+    /// ray, its end point, and dA / dx dy at the plane; `None` if there is no such ray.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {
