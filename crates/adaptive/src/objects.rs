@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// objects.
 const SHARED: f64 = 4.0;
 
-/// Sums of `N` numbers for each object and for all.
+/// Sums of `N` numbers for each object and for all objects together.
 #[derive(Debug)]
 pub(crate) struct ObjectSums<const N: usize> {
     count: f64,

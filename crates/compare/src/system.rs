@@ -243,7 +243,7 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
 }
 
-/// Returns the obstacles beside the path against which rays are tested.
+/// Returns the obstacles beside the path. Rays are tested against these obstacles.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()
@@ -278,7 +278,8 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// Returns descriptions of the objects beside the path against which no ray is tested.
+/// Describes the meshes beside the path that have too many triangles. No ray is tested against
+/// these meshes.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

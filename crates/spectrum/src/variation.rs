@@ -43,8 +43,8 @@ impl WindowedMean {
         varying
     }
 
-    /// Returns several slices, such as the slices of several batches. From each of them, the mean
-    /// of its own light field is subtracted.
+    /// Subtracts the mean of the light field from each of several slices, such as the slices of
+    /// several batches. Each of them has its own mean.
     ///
     /// # Panics
     ///

@@ -32,8 +32,8 @@ enum EmissionStrategy {
     /// Light from an environment.
     Sky(FromSky),
     /// Light without extent. Its rays are drawn uniformly within one of several ranges, and all
-    /// ranges have the same probability. Each range is given by bounds on the slopes along x and y,
-    /// or on the positions along x and y for a beam.
+    /// ranges have the same probability. Bounds on the slopes along x and y define each range. For
+    /// a beam, the bounds are on the positions along x and y.
     Even(Vec<AxisBounds>),
     /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),

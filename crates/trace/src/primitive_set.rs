@@ -180,8 +180,8 @@ mod tests {
         )))
     }
 
-    /// Returns squares that share edges, discs and triangles, which are the cases in which
-    /// rounding errors could let rays through.
+    /// Returns discs, triangles, and squares that share edges. With such primitives, rounding
+    /// errors could let rays through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {

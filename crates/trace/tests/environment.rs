@@ -91,8 +91,8 @@ impl Bench<'_> {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 200 tests, at least one exceeds 4.3 standard errors in one run
-                    // of 300.
+                    // In one of 300 runs, at least one of some 200 tests exceeds 4.3 standard
+                    // errors by chance.
                     assert!(z.abs() < 4.3, "{what}: {way} at {name}: {a:?} and {b:?}");
                 }
             }

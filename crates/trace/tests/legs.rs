@@ -96,8 +96,8 @@ fn all_ways_agree_on_every_leg() {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 120 tests, at least one exceeds 4.2 standard errors in one run
-                    // of 300.
+                    // In one of 300 runs, at least one of some 120 tests exceeds 4.2 standard
+                    // errors by chance.
                     assert!(
                         z.abs() < 4.2,
                         "{way} at {name}: {a:?} and {b:?}, {wall}, {blockers}"
@@ -227,7 +227,8 @@ fn both_ways_agree_behind_smooth_surfaces() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Among some 60 tests, at least one exceeds 4 standard errors in one run of 250.
+                // In one of 250 runs, at least one of some 60 tests exceeds 4 standard errors by
+                // chance.
                 assert!(z.abs() < 4.0, "{what}: {name}: {a:?} and {b:?}");
             }
             for [mean, error] in [a[0], b[0]] {
@@ -289,7 +290,7 @@ fn light_that_goes_back_along_a_leg_arrives() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Among 24 tests, at least one exceeds 4 standard errors in one run of 600.
+                // In one of 600 runs, at least one of 24 tests exceeds 4 standard errors by chance.
                 assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}, {wall}, {blockers}");
             }
             let [mean, error] = b[0];

@@ -60,7 +60,8 @@ fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
         }
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Among some 250 tests, at least one exceeds 4.5 standard errors in one run of 600.
+            // In one of 600 runs, at least one of some 250 tests exceeds 4.5 standard errors by
+            // chance.
             assert!(z.abs() < 4.5, "{what}: {a:?} and {b:?}");
         }
     }

@@ -64,8 +64,8 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Hash sets hold the names of all elements, and of the properties of the last element, so
-        // the time to read a header is proportional to its length.
+        // Hash sets hold the names of all elements and the names of the last element's properties.
+        // Therefore the time to read a header is proportional to its length.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
