@@ -399,8 +399,8 @@ fn shifted(mut slices: Slices, shift: f64) -> Slices {
     slices
 }
 
-/// A tracer that modifies crossings before they are recorded. The function also receives the index
-/// of the crossing in its block.
+/// A tracer that modifies crossings before they are recorded. The function that modifies a crossing
+/// also receives the index of this crossing in its block.
 struct TamperedBlock<'a, F> {
     tracer: &'a Tracer,
     crossing: F,

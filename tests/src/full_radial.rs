@@ -247,7 +247,7 @@ fn calibrated(
     }
 }
 
-/// Compares predictions with a planted fault with photons without a fault.
+/// Compares predictions that have a planted fault with photons that have no fault.
 fn faults(photons: u64) -> ReportSection {
     const LEVEL: f64 = 0.002;
     let case = &CASES[0];

@@ -39,7 +39,7 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
-    // The largest of ten normal numbers exceeds 3.29 in magnitude with a probability of 1 %
+    // With a probability of 1 %, at least one of ten normal numbers exceeds 3.29 in magnitude
     // (Šidák: 0.1 % for each number).
     let bound = 3.29;
     for plane in &reports {

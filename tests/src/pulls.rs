@@ -56,8 +56,8 @@ const MAX_NOISE: f64 = 0.25;
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the table of single pulls and in the table of single scenes.
 const LISTED: usize = 12;
-/// Maximum CPU seconds of a prediction that takes more time than tracing the photons of its
-/// scene.
+/// A prediction may take more time than tracing the photons of its scene only if it takes at most
+/// this number of CPU seconds.
 const MAX_SECONDS: f64 = 10.0;
 
 /// The pull of one measured number.
@@ -343,8 +343,8 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// Returns a section of the report with a table of the largest pulls and of the scenes, planes and
-/// parameters to which they belong.
+/// Returns a section of the report with a table of the largest pulls. For each pull, the table
+/// names the scene, the plane and the parameter.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));

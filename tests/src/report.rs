@@ -22,7 +22,7 @@ pub(crate) struct Check {
     reason: &'static str,
 }
 
-/// The name of the check of p of photons against the exact prediction.
+/// The name of the check of p, where p compares photons with the exact prediction.
 pub(crate) const EXACT: &str = "exact";
 
 impl Check {

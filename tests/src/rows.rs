@@ -103,7 +103,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
 fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
-    // A row of a section with a check of p is a row that photons test.
+    // If a row of a section has a check of p, photons test this row.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
     let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();

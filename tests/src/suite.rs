@@ -345,8 +345,8 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
     }
 }
 
-/// Returns the configuration factor of a rectangle x × y, in units of its distance, for a parallel
-/// element below its corner.
+/// Returns the configuration factor of a rectangle for a parallel element below a corner of the
+/// rectangle. The sides x and y are in units of the distance to the element.
 fn corner(x: f64, y: f64) -> f64 {
     let (p, q) = (x.hypot(1.0), y.hypot(1.0));
     (x / p * (y / p).atan() + y / q * (x / q).atan()) / TAU

@@ -51,8 +51,7 @@ impl AdaptiveRun<'_> {
         self.both(&first, pilot, &then, rest)
     }
 
-    /// Makes the guide, and returns the squared errors that remain at the first samples when the
-    /// guide is used.
+    /// Makes the guide. Returns the squared errors at the first samples that remain with the guide.
     fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let visible = self.visible;
         let samples = values(pilot);
@@ -99,8 +98,8 @@ impl Factors {
         self.0.add(object, squares);
     }
 
-    /// Returns the factor of an object, which is never zero, because the first samples may have
-    /// missed the object's light.
+    /// Returns the factor of an object. The factor is never zero, because the first samples may
+    /// have missed the object's light.
     fn of(&self, object: usize) -> f64 {
         let [error, criterion] = self.0.all();
         if error <= 0.0 || criterion <= 0.0 {

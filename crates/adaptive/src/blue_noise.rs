@@ -1,9 +1,9 @@
-//! Generates blue noise with a given density, which consists of random points that are not close to
-//! each other (Yuksel 2015, *Sample Elimination for Generating Poisson Disk Sample Sets*).
+//! Generates blue noise with a given density. Blue noise consists of random points that are not
+//! close to each other (Yuksel 2015, *Sample Elimination for Generating Poisson Disk Sample Sets*).
 //!
-//! More candidates than needed are drawn from the density. The candidate most crowded by its
-//! neighbours is removed repeatedly until the required number is left. Distances are measured in
-//! the metric for which the density is 1 everywhere.
+//! More candidates than needed are drawn from the density. Again and again, the candidate with the
+//! most crowded neighbourhood is removed, until the required number is left. Distances are measured
+//! in the metric for which the density is 1 everywhere.
 
 use crate::metric::Metric;
 use etendue_sampling::DiscreteDistribution;

@@ -6,10 +6,10 @@
 //! relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth along a
 //! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
 //! sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel. This
-//! formula is Eq. 21 with the factors that are missing in the paper. Without the term in d', it is
-//! Eq. 20. Finite differences on the screen include the angle of view, the distance and both
-//! curvatures, as the paper states. The printed equations use only the larger curvature, and are
-//! isotropic.
+//! formula is Eq. 21 together with the factors that are missing in the paper. Without the term that
+//! contains d', it is Eq. 20. Finite differences on the screen include the angle of view, the
+//! distance and both curvatures, as the paper states. The printed equations use only the larger
+//! curvature, and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -116,8 +116,8 @@ struct PixelStep {
     position: DVec3,
 }
 
-/// Returns the steps to the right and down: the slopes of the plane fitted to the points of a
-/// pixel. The steps are zero unless all points are on this shape.
+/// Fits a plane to the points of a pixel. Returns its slopes, which are the steps to the right and
+/// down. The steps are zero unless all points are on this shape.
 fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {

@@ -1,5 +1,5 @@
-//! Estimates the errors of planes through samples by cross-validation: planes through one half of
-//! the samples are compared with the other half.
+//! Estimates by cross-validation how well planes fit samples: planes through one half of the
+//! samples are compared with the other half.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};

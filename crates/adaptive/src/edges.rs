@@ -1,5 +1,6 @@
-//! Computes pixels that contain edges of objects or textures. Such a pixel is examined at more
-//! points than are stored, and each of these points takes the light of similar stored points.
+//! Computes the radiance of pixels that contain edges of objects or textures. Such a pixel is
+//! examined at additional points, which are not stored. Each additional point takes the light of
+//! similar stored points.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{LightMean, bell, unlike};
@@ -86,8 +87,8 @@ fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
         }
 }
 
-/// Returns the mean light of the stored points in and around a pixel that are on the object of a point,
-/// weighted by their similarity to this point.
+/// Returns the mean light of stored points in and around a pixel. Only points on the same object as
+/// `surface` count. They are weighted by their similarity to the point `point` of `surface`.
 fn like(
     visible: &Visible,
     values: &Values,

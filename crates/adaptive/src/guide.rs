@@ -33,7 +33,7 @@ const SOFT: EdgeFilter = EdgeFilter {
     width: 1.2,
 };
 
-/// The filter that is applied to the result of [`SOFT`], where light changes slowly.
+/// The filter for places where light changes slowly. It is applied to the result of [`SOFT`].
 const SLOW: EdgeFilter = EdgeFilter {
     radius: 2,
     step: 3,
@@ -182,9 +182,9 @@ fn morton([column, row]: [usize; 2]) -> usize {
     })
 }
 
-/// The ratio of two squared errors: the error of planes through all samples, and the error of
-/// planes through one half of the first samples. Unlike these errors, the noise of a guide does not
-/// decrease with the number of samples.
+/// The squared error of planes through all samples, divided by the squared error of planes through
+/// one half of the first samples. Unlike these errors, the noise of a guide does not decrease if
+/// there are more samples.
 const SMALLER: f64 = 1.0 / 6.0;
 
 /// The shares of the guide that objects use, for base and lobe. The shares are computed from sums

@@ -33,8 +33,8 @@ pub enum SampleMethod {
     /// the criteria, and half follow the errors at the first samples. The errors at the first
     /// samples also calibrate the criteria for each object.
     Auto,
-    /// Samples follow only the measured light. The measure is the standard deviation of the first
-    /// quarter of the samples, which is distributed uniformly.
+    /// Samples follow only the measured light. The first quarter of the samples is distributed
+    /// uniformly, and the standard deviation of these samples is the measure.
     Variance,
 }
 
@@ -77,11 +77,10 @@ pub enum Stage {
 /// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
-    /// The bandwidth by the criterion, cycles per pixel, along the direction where the bandwidth is
-    /// larger.
+    /// The largest bandwidth over all directions by the criterion, cycles per pixel.
     pub bandwidth: Vec<f64>,
-    /// The principal curvature of larger magnitude by finite differences on the screen, per unit
-    /// of length, positive if convex.
+    /// The principal curvature of larger magnitude, per unit of length, positive if convex. It is
+    /// computed by finite differences on the screen.
     pub curvature: Vec<f64>,
     /// The mean of 1/distance over the reflected objects, per unit of length.
     pub blockers: Vec<f64>,
@@ -110,13 +109,13 @@ pub struct Rendered {
     pub layers: Layers,
 }
 
-/// The share of samples that a method takes first to determine the density of the other samples.
+/// A method takes this share of the samples first, to determine the density of the other samples.
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
-/// distance, and therefore to 1/n² for a density n of samples. For a fixed number of samples, the
-/// sum of this error over the picture is minimal if n ∝ (c² B⁴)^(1/3), with the contrast c and the
-/// bandwidth B.
+/// distance, and therefore to 1/n² for a density n of samples. Let c be the contrast and B the
+/// bandwidth. For a fixed number of samples, the sum of this error over the picture is minimal if n
+/// ∝ (c² B⁴)^(1/3).
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture. `stage` receives the next stage and its number of steps, and `progress`
@@ -165,8 +164,7 @@ pub(crate) struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// Shades all samples of the method. With each sample, stores the metric of all samples
-    /// together.
+    /// Shades all samples of the method. Each sample stores the common metric of all samples.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let method = self.plan.method;
         let (wanted, power) = match method {
@@ -431,8 +429,8 @@ impl AdaptiveRun<'_> {
 /// Width in pixels of a patch that is far from all samples.
 const PATCH: f64 = 2.0;
 
-/// Number of the most recently added samples whose distance is checked: the samples of the last few
-/// rows.
+/// The distance is checked to this number of the most recently added samples, which lie in the last
+/// few rows.
 const RECENT: usize = 256;
 
 /// Minimum contrast, because the first quarter of the samples may have missed the contrast.

@@ -3,8 +3,9 @@
 /// A symmetric 2 × 2 matrix over the picture, in units of 1/pixel². Columns count to the right, and
 /// rows count downwards.
 ///
-/// The matrix of a criterion gives the squared bandwidth along each direction, in cycles per
-/// pixel. The matrix of samples defines distances in which neighbours are about 1 apart.
+/// The matrix of a criterion gives the squared bandwidth along each direction, in cycles per pixel.
+/// The matrix of samples defines distances. Measured in this way, neighbouring samples are about 1
+/// apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// The diagonal entry for steps along columns.
@@ -62,8 +63,8 @@ impl Metric {
         mean + (off * off + self.xy * self.xy).sqrt()
     }
 
-    /// Returns half of the extents, along columns and rows, of the ellipse of all steps up to the
-    /// length `radius`.
+    /// All steps up to the length `radius` fill an ellipse. Returns half of its extents along
+    /// columns and rows.
     #[must_use]
     pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
         let determinant = self.determinant();

@@ -1,5 +1,5 @@
-//! Computes sums over the first samples of each object. A small share of the sums over all objects
-//! is added to the sums of each object.
+//! Computes sums over the first samples of each object. To each of them, a small share of the sums
+//! over all objects is added.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// objects.
 const SHARED: f64 = 4.0;
 
-/// Sums of `N` numbers for each object and for all.
+/// Sums of `N` numbers for each object and for all objects together.
 #[derive(Debug)]
 pub(crate) struct ObjectSums<const N: usize> {
     count: f64,

@@ -32,16 +32,16 @@ impl ShadedSample {
 /// the samples show.
 const WIDTH: f64 = 0.5;
 
-/// Distances at which the filter ends, in standard deviations. The first distance is for the first
-/// round, and the other distances are for later rounds at points that no sample has reached.
+/// Distances at which the filter ends, in standard deviations. The first round uses the first
+/// distance. Later rounds use the other distances, at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
 /// Standard deviation of the filter over normals. This value separates faces that meet at a right
 /// angle, but not neighbouring samples on a curved surface.
 const NORMALS: f64 = 0.35;
 
-/// Standard deviation of the filter over the elevation angle of a sample above the surface at a
-/// point.
+/// Standard deviation of the filter over elevation angles. A sample has an elevation angle above
+/// the surface at a point.
 const HEIGHTS: f64 = 0.2;
 
 /// Pixel rows per band, the unit of work of a thread.

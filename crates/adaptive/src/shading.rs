@@ -21,9 +21,9 @@ pub(crate) struct Shader<'a> {
 }
 
 impl Shader<'_> {
-    /// Shades points without the texture factors of their surface, and estimates the variance of
-    /// each point with these factors. Points at which nothing is visible are left out. Point i uses
-    /// random numbers of index `first` + i.
+    /// Shades points. The values do not include the texture factors of the surface, but the
+    /// estimated variance of each point does. Points at which nothing is visible are left out.
+    /// Point i uses random numbers of index `first` + i.
     pub(crate) fn shade(
         &self,
         points: &[PicturePoint],

@@ -1,4 +1,4 @@
-//! Smoothing of noisy values at all visible points of a picture.
+//! Smooths noisy values at all visible points of a picture.
 
 use crate::criterion::shaded;
 use crate::reconstruct::{LightMean, bell, unlike};

@@ -35,7 +35,7 @@ pub(crate) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 pub(crate) struct Visible {
     /// Width and height in pixels.
     pub(crate) size: [usize; 2],
-    /// The points, grouped by pixel, pixels in rows from the top.
+    /// The points, grouped by pixel. The pixels are in rows from the top.
     pub(crate) places: Vec<SeenPlace>,
 }
 
@@ -69,12 +69,12 @@ pub(crate) struct SeenSurface {
     /// The central direction of incident light: the mirror direction, or the normal of a material
     /// without a lobe.
     pub(crate) axis: DVec3,
-    /// Whether the axis is the mirror direction, because the material has a lobe.
+    /// Whether the material has a lobe. If it has a lobe, the axis is the mirror direction.
     pub(crate) has_lobe: bool,
-    /// The highest frequency around the axis that the material preserves, cycles per radian; 0 if
-    /// the material is black.
+    /// The material preserves frequencies around the axis up to this frequency, cycles per radian;
+    /// 0 if the material is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe, by which shading samples are divided.
+    /// The texture factors of base and lobe. Shading samples are divided by these factors.
     pub(crate) factors: [f64; 2],
 }
 
@@ -159,7 +159,7 @@ impl Visible {
         row * self.size[0] + column
     }
 
-    /// Returns the pixels up to `radius` to each side of a pixel, in rows from the top.
+    /// Returns the pixels that are at most `radius` to each side of a pixel, in rows from the top.
     pub(crate) fn around(
         &self,
         pixel: [usize; 2],

@@ -1,5 +1,5 @@
-//! Tests pictures of few shading samples whose radiance is known, and properties that all methods
-//! have.
+//! Tests pictures that are made from few shading samples and whose radiance is known. Also tests
+//! properties that all methods have.
 
 use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
 use etendue_paths::Paths;
@@ -63,7 +63,8 @@ fn picture(world: &World, method: SampleMethod, samples: usize, seed: u64) -> Re
 
 /// Returns the share of a pixel that the disc of the ball covers, from 64 × 64 points.
 fn covered([column, row]: [usize; 2]) -> f64 {
-    // The radius of a unit ball's disc at a distance of 4, where 48 pixels have the slope 0.4.
+    // The ball of radius 1 is at a distance of 4, and 48 pixels have the slope 0.4. This is the
+    // radius of its disc in pixels.
     let radius = 48.0 / 0.4 / 15.0_f64.sqrt();
     let inside = |i: &usize| {
         let x = column as f64 + (*i % 64) as f64 / 64.0 + 1.0 / 128.0 - 48.0;
@@ -73,8 +74,8 @@ fn covered([column, row]: [usize; 2]) -> f64 {
     (0..64 * 64).filter(inside).count() as f64 / 4096.0
 }
 
-/// A convex diffuse ball in uniform light reflects half of this light everywhere, and a pixel at
-/// its edge mixes ball and background by their areas.
+/// A convex diffuse ball in uniform light reflects half of this light everywhere. A pixel at its
+/// edge shows the mean of ball and background, weighted by area.
 #[test]
 fn even_light_stays_even() {
     for method in ALL {

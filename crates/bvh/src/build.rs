@@ -31,7 +31,8 @@ const PART: usize = 1 << 15;
 /// more boxes, reinsertion takes seconds and makes rays a few per cent faster.
 const MAX_REINSERTED: usize = 1 << 13;
 
-/// Cost of opening a node, in units of a triangle test; a leaf tests several triangles at a time.
+/// Cost of opening a node, in units of the cost of a triangle test. A leaf tests several triangles
+/// at a time.
 const OPENING: f32 = 3.0;
 
 /// Builds the binary tree over indexed boxes, given by their lowest and highest corners.

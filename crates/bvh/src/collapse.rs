@@ -8,7 +8,8 @@ use obvhs::bvh2::Bvh2;
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// A binary tree with the [`costs`] that decide which nodes become boxes of an eight-wide node.
+/// A binary tree with the [`costs`] of its nodes. The costs decide which nodes become boxes of an
+/// eight-wide node.
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,

@@ -73,10 +73,9 @@ impl Space {
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns the distance along a ray at which the traversal begins. The traversal begins at the
-    /// distance `from`, unless the point at this distance is far from all boxes. If this point is
-    /// far from all boxes, the traversal begins where the ray comes near the boxes, because f32
-    /// would lose precision over a longer distance.
+    /// Returns the distance along a ray at which the traversal begins. This is usually the distance
+    /// `from`. If the point at `from` is far from all boxes, the traversal begins where the ray
+    /// comes near the boxes, because f32 would lose precision over a longer distance.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
@@ -92,8 +91,8 @@ impl Space {
         near.fold(from, f64::max)
     }
 
-    /// Returns the distance in f32, counted from `begin`, up to which boxes must be opened so that
-    /// no box up to `at` is missed. The caller computes intersections in f64.
+    /// Returns a distance in f32, counted from `begin`. If all boxes up to this distance are
+    /// opened, no box up to `at` is missed. The caller computes intersections in f64.
     #[inline]
     pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
         single((at - begin) * (1.0 + PADDING) + self.padding)

@@ -14,7 +14,7 @@ pub(crate) struct Wide {
 /// Number of boxes in a node.
 pub(crate) const WIDTH: usize = 8;
 
-/// Stack size without allocation, enough for the depth of any tree with a million triangles.
+/// Stack size without allocation. It is enough for the depth of any tree with a million triangles.
 const STACK: usize = 96;
 
 #[derive(Clone)]

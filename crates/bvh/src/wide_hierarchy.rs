@@ -112,8 +112,7 @@ impl WideHierarchy {
     }
 }
 
-/// The leaves of a tree of boxes. Each visit passes the boxes of a leaf to the caller, one after
-/// the other.
+/// The leaves of a tree of boxes. Each visit passes all boxes of a leaf to the caller in sequence.
 struct Boxes<'a, M> {
     leaves: &'a [[u32; 2]],
     meet: M,

@@ -1,5 +1,5 @@
-//! Measures how far a measurement and its prediction are apart, and states what the difference
-//! means.
+//! Measures the difference between a measurement and its prediction, and decides what the
+//! difference means.
 
 use crate::prediction::Prediction;
 use crate::residuals::Residuals;
@@ -47,8 +47,7 @@ impl Agreement {
         }
     }
 
-    /// Returns the root of a squared quantity with the sign of this quantity, relative to the norm
-    /// of the prediction.
+    /// Returns √|q| with the sign of the squared quantity q, divided by the norm of the prediction.
     fn relative(&self, squared: f64) -> Option<f64> {
         (self.predicted > 0.0).then(|| (squared.abs() / self.predicted).sqrt().copysign(squared))
     }
@@ -70,8 +69,8 @@ impl Agreement {
         (self.noise / self.predicted.max(self.measured)).sqrt()
     }
 
-    /// Checks whether the error of a prediction without replicates may explain the whole
-    /// disagreement with the photons.
+    /// Checks whether the systematic error of a prediction may explain the whole disagreement with
+    /// the photons.
     pub(crate) fn is_explained(&self, prediction: &Prediction) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
@@ -81,8 +80,8 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Returns the number of photons with which the noise would equal the resolution. Returns
-    /// `None` if the error of the prediction exceeds the resolution by itself, or if the noise is low
+    /// Returns the number of photons at which the noise would equal the resolution. Returns `None`
+    /// if the error of the prediction exceeds the resolution by itself, or if the noise is low
     /// enough for a verdict.
     pub(crate) fn photons_needed(
         &self,

@@ -16,23 +16,23 @@ use etendue_theory::{rays, reflections, scattering};
 pub struct Applicability {
     /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// Descriptions of the objects on the way of the light that no theory covers. The list is empty
-    /// where a theory applies.
+    /// Descriptions of objects that stand in the way of the light and that no theory covers. The
+    /// list is empty where a theory applies.
     pub reasons: Vec<String>,
     /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces. The list
     /// is empty where it does not.
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
-    /// The difference between rays that smooth meshes deflect and the same rays deflected by
-    /// osculating patches; `None` without a smooth mesh.
+    /// The difference that arises if osculating patches deflect the rays instead of smooth meshes;
+    /// `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
 }
 
 impl Theory {
-    /// Describes in words which parts of a scene violate the assumptions of the theory. If light
-    /// meets blockers beside the central ray on a leg, adds these blockers to the obstacles of the
-    /// theory.
+    /// Describes in words which parts of a scene violate the assumptions of the theory. Light may
+    /// meet blockers on a leg where the central ray does not meet them. The function adds these
+    /// blockers to the obstacles of the theory.
     fn obstacles(
         &mut self,
         scene: &Scene,
@@ -66,8 +66,8 @@ impl Theory {
     }
 }
 
-/// The offset that separates a plane from an object at the same distance, as a share of that
-/// distance. The offset exceeds rounding errors but is too small to change phases visibly.
+/// A plane and an object at the same distance are separated by this offset. It is given as a share
+/// of the distance. The offset exceeds rounding errors but is too small to change phases visibly.
 const AT_PLANE: f64 = 1e-12;
 
 impl Applicability {
@@ -85,7 +85,8 @@ impl Applicability {
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
-        // On the first leg, rays are tested against objects that do not lie across the leg.
+        // On the first leg, the theory of rays may apply instead, because it tests rays against
+        // objects that do not lie across the leg.
         let Some(mut view) = system(scene, plane) else {
             return found;
         };

@@ -12,12 +12,12 @@ use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
 use etendue_theory::{Model, scattering};
 
-/// Returns the criterion for a plane that lies across the ray from a surface with a BRDF, and
-/// `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a lobe's energy lies below its
-/// cutoff.
+/// Returns the criterion for a plane behind a surface with a BRDF, perpendicular to the ray that
+/// leaves this surface. Returns `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a
+/// lobe's energy lies below its cutoff.
 ///
-/// The edge that limits the light is the edge of the last blockers. Without blockers, the limiting
-/// edge is the edge of the light itself, unless the light is far away.
+/// The edge that limits the light is the edge of the last blockers. Without blockers, the edge of
+/// the light itself limits the light. Distant light has no such edge.
 #[must_use]
 pub fn criterion(
     scene: &Scene,
@@ -68,8 +68,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// Returns the bandwidth along ν of the exact prediction of a plane that has a [`criterion`]. The
-/// estimator is the same as for photons.
+/// Returns the bandwidth along ν that the exact prediction has at a plane with a [`criterion`]. The
+/// bandwidth of photons is computed by the same estimator.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,

@@ -9,15 +9,15 @@ const MAX_ERROR: f64 = 3e-3;
 /// The accepted relative error of a prediction, times √photons. The noise of the photons is about
 /// 25/√photons.
 const OF_NOISE: f64 = 12.0;
-/// The number of rays of a prediction, as a share of the number of photons. The prediction then
-/// takes less time than tracing the photons.
+/// The number of rays of a prediction, as a share of the number of photons. This share is small
+/// enough that the prediction takes less time than tracing the photons.
 const SHARE: f64 = 0.25;
 /// The smallest number of rays, for runs with few photons.
 const FEWEST: f64 = 1.1e6;
 
 /// Returns the ray budget of a prediction. The prediction ends when its error is half of the
-/// photons' noise, or when it has taken about as long as tracing the photons. An error of half the
-/// noise raises the smallest detectable change by 12 %.
+/// photons' noise. It also ends when it has taken about as long as the photons take. An error of
+/// half the noise raises the smallest detectable change by 12 %.
 pub(crate) fn budget(scene: &Scene) -> RayBudget {
     let photons = scene.run.photons as f64;
     RayBudget {

@@ -18,9 +18,9 @@ pub struct Convergence {
     /// The shares e of the scene's widths, in descending order, and ‖first order − exact‖/‖exact‖
     /// for each share.
     pub steps: Vec<[f64; 2]>,
-    /// The order n in error ∝ eⁿ, by least squares over the last three steps. The order is `None`
-    /// where the error is not clearly above the error of the quadrature. This condition is not
-    /// checked where several surfaces scatter.
+    /// The order n. The error is proportional to eⁿ, and n is fitted by least squares to the last
+    /// three steps. The order is `None` where the error is not clearly above the error of the
+    /// quadrature. This condition is not checked where several surfaces scatter.
     pub order: Option<f64>,
 }
 
@@ -31,8 +31,8 @@ const BUDGET: RayBudget = RayBudget {
 };
 /// The shares e.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
-/// If the error of the chain is less than this multiple of the quadrature error, it is too small
-/// for a judgement of the chain.
+/// If the error of the chain is less than this multiple of the quadrature error, it does not show
+/// whether the chain is right.
 const CLEAR: f64 = 5.0;
 
 /// Shrinks the light and the window of a plane behind specular surfaces. Where several surfaces
@@ -76,8 +76,8 @@ pub fn converge(
     })
 }
 
-/// Returns the error of a first-order chain behind specular surfaces at the scale e. Also returns
-/// the error of the sums over rays from which the first error is computed.
+/// Returns the error of a first-order chain behind specular surfaces at the scale e. The first
+/// error is computed from sums over rays. Also returns the error of these sums.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,

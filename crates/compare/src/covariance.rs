@@ -45,7 +45,8 @@ pub struct CovarianceReport {
     pub measured: Option<Matrix<4>>,
     /// Standard errors of `measured`, by the jackknife over groups of batches.
     pub error: Option<Matrix<4>>,
-    /// The growth of each measured variance from half of the band to the whole band.
+    /// The growth of each measured variance: its value over the whole band divided by its value
+    /// over half of the band.
     pub growth: Option<[f64; 4]>,
     /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
     /// mean of the two variances. The second number is the error of `measured`, divided by the same
@@ -211,12 +212,12 @@ const NOISE: f64 = 3.0;
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 
-/// If a variance grows by more than this factor from half of the band to the whole band, the band
-/// limits the variance. The variance of a Gaussian grows by 10 % if the band ends at five of its
-/// standard deviations, and by 3 % if the band ends at six.
+/// If a variance over the whole band is larger than the variance over half of the band by more than
+/// this factor, the band limits the variance. The variance of a Gaussian grows by 10 % if the band
+/// ends at five of its standard deviations, and by 3 % if the band ends at six.
 const ENDLESS: f64 = 1.15;
 
-/// Divides each entry by the geometric mean of two variances in a matrix, the variances of the
+/// Divides each entry by the geometric mean of two variances, which are the variances along the
 /// entry's two axes. Returns the largest result.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));

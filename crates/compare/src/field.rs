@@ -11,8 +11,8 @@ use etendue_theory::{Chain, Harmonics, Model, RayNets};
 use ndarray::{Array2, Array4};
 use rayon::prelude::*;
 
-/// The predicted spectrum of a windowed light field on a 4D grid, gridded in the same way as a
-/// measurement.
+/// The predicted spectrum of a windowed light field on a 4D grid. The field is put on the grid in
+/// the same way as a measurement.
 #[derive(Clone, Debug)]
 pub enum PredictedField {
     /// The expectation of the measurement, aliasing included.
@@ -93,9 +93,9 @@ impl PredictedField {
     }
 }
 
-/// The largest number of products of a closed form, which take some ten seconds on one core. If a
-/// closed form has more products, nets of rays replace it. An example is a disc, which consists of
-/// many rectangles.
+/// The largest number of products in a closed form. This number of products takes some ten seconds
+/// on one core. If a closed form has more products, nets of rays replace it. An example is a disc,
+/// which consists of many rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
 /// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
@@ -225,7 +225,7 @@ mod tests {
             report.p_value.unwrap()
         };
         let closed = closed_form(&chain, plane, over).unwrap();
-        assert!(p(&closed) > 0.01); // one test, of fixed nets
+        assert!(p(&closed) > 0.01); // a single test with fixed nets
         // The injected fault is the spectrum without the effects of the grid.
         let fault = PredictedField::Exact {
             spectrum: Box::new(alias_free(&chain, plane, over).unwrap()),

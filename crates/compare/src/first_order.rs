@@ -39,14 +39,14 @@ pub struct FirstOrderChain {
     /// the part of the defect that is due to the constant factor of the chain.
     #[serde(default)]
     pub radiance_defect: f64,
-    /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
-    /// formulas.
+    /// The matrix A in z' = A z, which takes rays from the light to the plane. It follows the
+    /// corrected formulas.
     pub matrix: Matrix<4>,
     /// The covariance of the windowed light field as computed from rays, and as propagated by the
     /// chain (see [`Covariance`](crate::Covariance)).
     pub covariance: [Option<Matrix<4>>; 2],
-    /// The distances, in metres, from the last surface to the points where rays meet that leave the
-    /// light in parallel.
+    /// The distances, in metres, from the last surface to the foci. A focus is a point where rays
+    /// that leave the light in parallel meet.
     pub foci: Vec<f64>,
     /// Whether `slices` come from the paper's printed formulas.
     pub as_printed: bool,
@@ -72,9 +72,9 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain whose defect exceeds this limit has a wrong map. Finite differences alone cause a defect
-/// of 10⁻⁹. If a first-order operator is missing or wrong by a thousandth, the defect exceeds this
-/// limit.
+/// If the defect exceeds this limit, a map of the chain is wrong. Finite differences alone cause a
+/// defect of 10⁻⁹. If a first-order operator is missing or wrong by a thousandth, the defect
+/// exceeds this limit.
 const DEFECT: f64 = 1e-5;
 /// If its error exceeds this limit, a first-order chain is useless as a prediction of the light
 /// field.
@@ -136,10 +136,10 @@ impl FirstOrder {
         })
     }
 
-    /// Returns the chain for light that surfaces scatter, with its defect and with the matrix of
-    /// its rays along the mirror directions. The noise of the chain is the noise of the exact
-    /// prediction, because the difference between the chain and the exact prediction has little
-    /// noise.
+    /// Returns the chain for light that surfaces scatter. `defect` is the defect of the chain, and
+    /// `matrix` is its matrix for rays along the mirror directions. The noise of the chain is the
+    /// noise of the exact prediction, because the difference between the chain and the exact
+    /// prediction has little noise.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -163,7 +163,7 @@ impl FirstOrder {
         })
     }
 
-    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction, with the
+    /// Compares a measurement with the chain. `exact` holds the exact ray-space prediction and the
     /// differences between the photons and this prediction.
     pub(crate) fn report(
         &self,
@@ -193,9 +193,9 @@ impl FirstOrder {
     }
 }
 
-/// Returns the covariance after the chain and the window, for a Gaussian as wide as the light.
-/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹.
-/// Returns `None` for an environment, which has no width.
+/// Returns the covariance of a Gaussian that starts as wide as the light, after it has passed the
+/// chain and the window. Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹
+/// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;

@@ -51,8 +51,8 @@ pub struct FullRadialComparison {
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
-/// If the prediction is true, each D_r is as likely as its negative, for all values of the other D
-/// and of the S (docs/theory.md (45)).
+/// If the prediction is true, D_r and −D_r are equally likely, whatever the values of the other D
+/// and of the S are (docs/theory.md (45)).
 struct BinDifference {
     /// The linear terms 2 Σ_(s≠r) D_r·S_s/(1 − Σa²), for each group r.
     linear: Vec<f64>,
@@ -244,8 +244,8 @@ mod tests {
         each.collect()
     }
 
-    /// Returns the products of groups of a measurement and of a prediction, for two frequencies in
-    /// one bin.
+    /// Returns the products of the spectra in one bin of two frequencies. The spectra belong to the
+    /// groups of a measurement and to a prediction.
     fn products(exact: bool) -> (Array2<f64>, Vec<f64>, f64) {
         let shares = vec![0.25, 0.25, 0.3, 0.2];
         let truth = [1.5, -0.4];

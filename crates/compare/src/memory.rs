@@ -27,12 +27,12 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program needs for any scene: for its code, for buffers of photons, for pictures,
-/// and for memory that one stage does not free before the next stage.
+/// Bytes that the program needs for any scene. They hold its code, buffers of photons, pictures,
+/// and data that one stage does not free before the next stage.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle and of its part of the hierarchy during construction. The measured value is
-/// 130.
+/// Bytes that a triangle and its part of the hierarchy need during construction. The measured value
+/// is 130.
 const TRIANGLE: f64 = 150.0;
 /// Bytes of the normals at the corners of a triangle.
 const NORMALS: f64 = 72.0;
@@ -60,7 +60,8 @@ impl Memory {
         };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
-        // For a reference, its measurement is kept, and the copies that its prediction holds.
+        // For a reference, the program keeps the measurement, and the prediction holds copies of
+        // it.
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),

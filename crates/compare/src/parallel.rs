@@ -1,11 +1,12 @@
-//! Finds what rules out the theory of light between parallel planes.
+//! Finds the reasons why the theory of light between parallel planes does not apply.
 
 use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
-/// Describes in words what rules out the theory for a plane: oblique incidence, other objects in
-/// the way, or light that the theory does not cover. The list is empty where the theory applies.
+/// Returns the reasons why the theory does not apply to a plane, in words: oblique incidence, other
+/// objects in the way, or light that the theory does not cover. The list is empty where the theory
+/// applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
@@ -95,7 +96,8 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
 /// Returns the corners of rectangles. Together, they contain every part of a layer that light may
 /// meet on its way to a plane.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
-    // A half-plane or grating is cut off at a thousand times the extent of the light.
+    // A half-plane or a grating is infinite. Here it ends at a thousand times the extent of the
+    // light.
     let lengths = tube(scene, plane).into_iter().flatten();
     let far = 1e3 * lengths.fold(layer.distance, f64::max).min(1e30);
     let corners = |[[x0, x1], [y0, y1]]: [[f64; 2]; 2]| {

@@ -44,7 +44,7 @@ pub struct PlaneComparison {
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
-    /// The full radial spectrum, where the light field was put on a 4D grid and has a prediction.
+    /// The full radial spectrum, if the light field was put on a 4D grid and has a prediction.
     pub full_radial: Option<FullRadialComparison>,
 }
 
@@ -56,7 +56,7 @@ const DARK: f64 = 1e-12;
 /// The p-value assumes symmetric residuals. If the noise exceeds this limit, the residuals come
 /// from few photons and are not symmetric.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
-/// The number of photons per batch at which one in 3,000 batches is empty.
+/// The smallest number of photons per batch. With this number, one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
@@ -274,7 +274,7 @@ impl ComparedSides<'_> {
             None
         } else if self.has_dark_batch() || self.has_dark_replicate() {
             let batches = self.measurement.batches().len() as f64;
-            // Of n replicates with m rays each on average, n e⁻ᵐ are empty.
+            // If each of n replicates has m rays on average, n e⁻ᵐ replicates are empty.
             let all = self.prediction.replicates.len() as f64;
             let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
             let each = libm::log(all / empty.count() as f64);
@@ -379,7 +379,7 @@ impl ComparedSides<'_> {
             .collect()
     }
 
-    /// Returns ‖error‖, over the independent frequencies, of a prediction by quadrature.
+    /// Returns ‖error‖ of a prediction by quadrature, over the independent frequencies.
     fn numerical_error(&self) -> f64 {
         let half = &self.predicted.half;
         let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();
@@ -519,9 +519,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 }
 
 impl PlaneComparison {
-    /// Adds the full radial spectrum. If its p-value is below the level of the test, a plane that
-    /// would otherwise pass fails. However, the plane does not fail if the prediction has a
-    /// systematic error that its replicates do not show and that may be visible above the noise.
+    /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value of
+    /// this spectrum is below the level of the test. However, it does not fail if a systematic
+    /// error, which replicates do not show, may exceed the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

@@ -48,8 +48,8 @@ pub struct Prediction {
     /// its light. The value is `None` if there are no occluders, or if light is reflected between
     /// the occluders and the plane.
     pub depth: Option<[f64; 2]>,
-    /// The cuts, in cycles per metre, for a plane that light leaves diffusely. Energy above a cut
-    /// counts as high-frequency.
+    /// The cuts, in cycles per metre, for a plane where light leaves a diffuse surface. Energy
+    /// above a cut counts as high-frequency.
     pub cuts: Vec<f64>,
 }
 
@@ -185,8 +185,8 @@ impl Prediction {
         }
     }
 
-    /// Returns the prediction from another, independent measurement of plane `index`. It is used
-    /// where no theory applies.
+    /// Returns a prediction that consists of another, independent measurement of plane `index`.
+    /// Such a prediction is used where no theory applies.
     ///
     /// # Errors
     /// Returns an error if that measurement has too few batches.
@@ -207,7 +207,8 @@ impl Prediction {
         })
     }
 
-    /// Returns a plane of a measurement, with which another, independent measurement is compared.
+    /// Returns a plane of a measurement in the form of a prediction. Another, independent
+    /// measurement is compared with it.
     ///
     /// # Errors
     /// Returns an error if the measurement has too few batches.

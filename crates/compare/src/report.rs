@@ -64,11 +64,11 @@ pub struct Covariance {
     pub measured: Matrix<4>,
     /// Standard errors of `measured`, by the jackknife.
     pub error: Matrix<4>,
-    /// The moments of rays that are traced through the real geometry, if the prediction consists of
+    /// If the prediction consists of rays that are traced through the real geometry, the moments of
     /// these rays.
     pub predicted: Option<Matrix<4>>,
-    /// The moments A S Aᵀ that the first-order chain propagates from a Gaussian as wide as the
-    /// light through a Gaussian window. Masks are left out.
+    /// The moments A S Aᵀ of a Gaussian that starts as wide as the light. The first-order chain
+    /// propagates them through a Gaussian window. Masks are left out.
     pub propagated: Option<Matrix<4>>,
 }
 
@@ -88,8 +88,8 @@ pub struct WedgeShare {
     pub nearest: f64,
     /// Longest distance, metres.
     pub farthest: f64,
-    /// The share of the power of the radial spectrum, excluding the main lobe of the window about
-    /// zero.
+    /// The share of the power of the radial spectrum. The main lobe of the window about zero is
+    /// left out.
     pub share: Pair,
 }
 
@@ -128,7 +128,7 @@ pub struct PlaneReport {
     /// The effective number of independent real numbers in the noise of the measured slices, for a
     /// test of two results ([`crate::noise_dof`]); `None` without noise.
     pub noise_dof: Option<f64>,
-    /// Mean of |S − F|²/σ², corrected for σ² being an estimate.
+    /// Mean of |S − F|²/σ². It is corrected for the bias that arises because σ² is an estimate.
     pub chi2_per_dof: Option<f64>,
     /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
@@ -147,7 +147,8 @@ pub struct PlaneReport {
     /// Second central moments of the windowed light field over the coordinates of the plane. The
     /// moments are `None` where no light arrived.
     pub covariance: Option<Covariance>,
-    /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
+    /// The share H at two cuts, for a plane where light leaves a diffuse surface. The list is empty
+    /// for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
     /// The shares of power in two wedges, if blockers stand on the way to a plane of the first leg.
     /// The first wedge lies between the nearest and the farthest blocker. The second wedge reaches
@@ -156,8 +157,8 @@ pub struct PlaneReport {
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_radial: Option<FullRadialReport>,
-    /// The comparison of the photons with the first-order chain, on a plane that has such a chain.
-    /// All numbers above compare the photons with the exact ray-space prediction.
+    /// The comparison of the photons with the first-order chain, if the plane has such a chain. All
+    /// numbers above compare the photons with the exact ray-space prediction.
     pub first_order: Option<FirstOrderReport>,
     /// The verdict.
     pub verdict: Verdict,

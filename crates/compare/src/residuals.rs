@@ -26,7 +26,7 @@ const LANES: usize = 8;
 /// Error of the fast transform of photons, as a share of the largest value
 /// (`etendue_transform`).
 const TRANSFORM: f64 = 2e-7;
-/// Rounding error of shares that add up to one.
+/// Rounding error in the sum of shares that should add up to one.
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
@@ -51,8 +51,8 @@ impl Residuals {
     /// The slices are exact if there are no replicates.
     ///
     /// There are n = min(B, R) groups. Each group g holds a share of the B batches and of the R
-    /// replicates, and r_g = n/B Σ_b (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups
-    /// hold the same number of batches and the same number of replicates.
+    /// replicates, and r_g = n/B Σ_b (S_b − F) − n/R Σ_j (F_j − F). If all groups hold the same
+    /// number of batches and the same number of replicates, r_g does not depend on F.
     ///
     /// # Panics
     /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
@@ -225,8 +225,8 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Returns products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R,
-    /// R], with s = 1 or s = Σ_b |r_b|² at each frequency.
+    /// Returns the [R, R] matrix H_bc = Σ Re(r_b conj r_c) / s, where the sum runs over the
+    /// frequencies. At each frequency, s is 1, or Σ_b |r_b|² if `normalised` is set.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
@@ -273,8 +273,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Returns the standard error of [`Self::squared`] if every residual has mean zero. In this
-    /// case the terms of the sum are uncorrelated, and each pair occurs twice.
+    /// Returns the standard error of [`Self::squared`] if every residual has mean zero. If every
+    /// mean is zero, the terms of the sum are uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -304,11 +304,12 @@ impl Residuals {
 
     /// Returns the p-value of the hypothesis that every residual has mean zero.
     ///
-    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
-    /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution. The random signs also account for correlations between neighbouring
-    /// frequencies. The p-value is the share of rounds that reach the observed value; the observed
-    /// signs count as one round.
+    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis, a
+    /// residual and its negative are equally likely. Therefore the statistic with random signs has
+    /// the same distribution as the observed statistic. The random signs also account for
+    /// correlations between neighbouring frequencies. The p-value is the share of rounds in which
+    /// the statistic is at least as large as the observed value. The observed signs count as one
+    /// round.
     ///
     /// Returns `None` when all residuals are zero, for example when no light is measured or
     /// predicted.

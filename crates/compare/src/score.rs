@@ -15,7 +15,8 @@ pub struct ParameterReport {
     pub unit: String,
     /// Value in the scene.
     pub scene: f64,
-    /// Measured value, with all other parameters held at their values in the scene.
+    /// Measured value. The estimate assumes that all other parameters have their values in the
+    /// scene.
     pub measured: f64,
     /// Standard error of the measured value, including the error of the prediction.
     pub error: f64,
@@ -24,8 +25,8 @@ pub struct ParameterReport {
     pub detectable: f64,
 }
 
-/// The size of a change, in standard errors, that a two-sided test at level 1 % detects with power
-/// 90 %. It is the sum of the normal quantiles 2.576 and 1.282.
+/// A two-sided test at level 1 % detects a change of this many standard errors with power 90 %. It
+/// is the sum of the normal quantiles 2.576 and 1.282.
 const DETECTABLE: f64 = 3.858;
 
 /// Returns the score test of one parameter (docs/theory.md, section 6). The test projects S − F on

@@ -52,8 +52,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// Returns the event of a surface in the form that it has if the front of the surface faces the
-/// light. `back` states whether the back of the surface faces the light.
+/// Returns the event of a surface, rewritten as if the front of the surface faced the light. `back`
+/// states whether the back of the surface faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -102,8 +102,8 @@ pub fn scattered(
 }
 
 /// Returns the light, all masks and all surfaces of the path, and a plane behind some of these
-/// surfaces. Returns `None` if light comes from a ray file, if it has met a mesh, if no surface has
-/// scattered it, or if too many surfaces have scattered it.
+/// surfaces. Returns `None` if light comes from a ray file or has met a mesh. Also returns `None`
+/// if no surface has scattered the light, or if too many surfaces have.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -243,7 +243,7 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
 }
 
-/// Returns the obstacles beside the path against which rays are tested.
+/// Returns the obstacles beside the path. Rays are tested against these obstacles.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()
@@ -278,7 +278,8 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// Returns descriptions of the objects beside the path against which no ray is tested.
+/// Describes the meshes beside the path that have too many triangles. No ray is tested against
+/// these meshes.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

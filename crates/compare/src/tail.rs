@@ -66,11 +66,12 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// Returns the probability that Student's t with `dof` degrees of freedom is at least as far from
-/// zero as `t`.
+/// Returns the probability that the absolute value of Student's t with `dof` degrees of freedom is
+/// at least |`t`|.
 ///
-/// Uses the normal deviate with about the same tail (Wallace 1959). With at least 30 degrees of
-/// freedom, the error is below 1 % of the probability, for probabilities down to 10⁻⁶.
+/// The function uses the normal deviate that has about the same tail (Wallace 1959). With at least
+/// 30 degrees of freedom, the relative error of the probability is below 1 %. This limit was
+/// checked for probabilities down to 10⁻⁶.
 pub(crate) fn student_beyond(t: f64, dof: f64) -> f64 {
     let shrink = (8.0 * dof + 1.0) / (8.0 * dof + 3.0);
     let normal = shrink * (dof * libm::log1p(t * t / dof)).sqrt();

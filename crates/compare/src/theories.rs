@@ -27,8 +27,8 @@ pub enum Theory {
 }
 
 impl Theory {
-    /// Returns the theory that covers what the central ray meets on its way to a plane, whether or
-    /// not its assumptions hold.
+    /// Returns the theory that covers the objects that the central ray meets on its way to a plane.
+    /// The assumptions of the theory are not checked here.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
         if let Some(view) = followed(scene, plane) {
@@ -41,7 +41,7 @@ impl Theory {
     }
 
     /// Checks whether the theory assumes that all light meets the blockers of a layer before it
-    /// comes to a surface.
+    /// meets a surface.
     pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
         let layers = match self {
             Self::Specular(view) => &view.system.layers,
@@ -92,8 +92,9 @@ impl Theory {
     }
 }
 
-/// Returns the system of specular surfaces that leads to a plane behind one of them or on one of
-/// them. Light that passes through a picture and meets no surface also has such a system.
+/// Returns the system of specular surfaces that leads to a plane. The plane lies behind one of
+/// these surfaces or on one of them. Light that passes through a picture and meets no surface also
+/// has such a system.
 fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {

@@ -21,13 +21,14 @@ pub struct Sample {
 /// The result of a test of two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoSamples {
-    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated. The expected value is 1 if
-    /// A and B differ by noise only.
+    /// Mean of |A − B|²/(σ_A² + σ_B²). It is corrected for the bias that arises because σ is an
+    /// estimate. The expected value is 1 if A and B differ by noise only.
     pub chi2_per_dof: Option<f64>,
     /// Probability of differences at least as large if both samples have the same true slices.
     pub p_value: Option<f64>,
-    /// Probability of differences as small, or smaller, if the noise of both samples is independent.
-    /// A value near 0 means that the samples share photons, or that σ is overstated.
+    /// Probability that the differences are at most as large as observed if the noise of both
+    /// samples is independent. A value near 0 means that the samples share photons, or that σ is
+    /// overstated.
     pub p_shared: Option<f64>,
     /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
     /// are dark.
@@ -37,7 +38,8 @@ pub struct TwoSamples {
     pub noise: f64,
 }
 
-/// The rounding difference of sums in two programs, as a share of the largest value.
+/// The largest difference that rounding causes between sums of two programs, as a share of the
+/// largest value.
 const ROUNDING: f64 = 1e-12;
 
 impl TwoSamples {
@@ -47,8 +49,9 @@ impl TwoSamples {
     /// = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w_A and w_B are the mean shares of the samples in
     /// the variance. The number ν is exact if the noise of both samples has the same correlations;
     /// otherwise it is conservative (Cauchy–Schwarz for tr C_A C_B). The estimate of σ has only n =
-    /// 1/Σ w²/(R − 1) degrees of freedom. Therefore χ² is larger by n/(n − 1) and its relative
-    /// variance by n/(n − 2), as for an F distribution (docs/theory.md, section 6).
+    /// 1/Σ w²/(R − 1) degrees of freedom. Therefore χ² is larger by the factor n/(n − 1), and its
+    /// relative variance is larger by the factor n/(n − 2), as for an F distribution
+    /// (docs/theory.md, section 6).
     ///
     /// # Panics
     /// Panics if the shapes of the arrays differ from the shape of the grid.
@@ -163,7 +166,8 @@ pub struct Estimate {
 }
 
 /// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²). Also returns the
-/// probability of a pull at least as far from zero, if both estimates have the same true value.
+/// probability that the absolute value of the pull is at least this large if both estimates have
+/// the same true value.
 ///
 /// The test follows Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. Returns `None` where neither estimate has an error.

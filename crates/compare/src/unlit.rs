@@ -22,8 +22,8 @@ const MOST_PARTS: usize = 4096;
 /// plane.
 ///
 /// The rays of a section are points (position at the light, slope). Half-planes cut the set of
-/// these rays to a convex polygon, which is empty if no ray passes. All rays are also stopped if a
-/// layer covers every place where they cross its plane.
+/// these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a layer
+/// covers every place where rays cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
@@ -74,8 +74,7 @@ impl RaySection {
         let most = scene.light.steepest(axis).min(MAX_SLOPE);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
-        // The coordinates of a plane on a surface differ from the coordinates of a plane across the
-        // leg.
+        // A plane on a surface has other coordinates than a plane across the leg.
         if plane.leg == 0 && plane.orientation == Orientation::Orthogonal {
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);

@@ -14,7 +14,8 @@ const MOST_STEPS: f64 = 6e11;
 /// The largest number of bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
 
-/// A scene whose predictions exceed the allowed work, and the plane responsible.
+/// The error for a scene whose predictions exceed the allowed work. It names the plane that is
+/// responsible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TooMuchWork {
     plane: String,

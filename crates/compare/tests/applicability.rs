@@ -151,8 +151,8 @@ fn a_surface_that_the_path_does_not_visit() {
     assert_eq!(obstacles(found.theory), ["beside"]);
 }
 
-/// A wall that leans away from the first leg is not in the way although its bounding box is. A wall
-/// that leans over the leg is in the way.
+/// A wall that leans away from the first leg is not in the way, although its bounding box reaches
+/// into the light. A wall that leans over the leg is in the way.
 #[test]
 fn a_wall_that_leans_away() {
     for (facing, reasons) in [
@@ -303,8 +303,8 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     assert_eq!(of(3.0, 10), Class::Reference);
 }
 
-/// An object directly at a plane is in the way only if the plane is after the object. In the light
-/// of a picture, an object before a flat surface is in the way.
+/// An object directly at a plane is in the way only if the plane is after the object. If the light
+/// projects a picture, an object before a flat surface is in the way.
 #[test]
 fn what_stands_at_a_plane_or_before_a_flat_surface() {
     let sheet = r#"Mesh(name: "sheet", center: (0, 0, 0.5), mesh: Paraboloid(curvatures: (0, 0), half: 0.1, cells: 1))"#;

@@ -176,9 +176,9 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     }
 }
 
-/// The numbers of replicates and batches differ: fewer replicates, more replicates, and numbers
-/// that do not divide each other. The p-value is uniform if both sides agree, and a spectrum 5 %
-/// too wide is detected.
+/// The numbers of replicates and batches differ. The test has cases with fewer replicates, with
+/// more replicates, and with numbers that do not divide each other. The p-value is uniform if both
+/// sides agree, and a spectrum 5 % too wide is detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -409,7 +409,7 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert!(stated.unwrap() > 2e-4, "{stated:?}");
     assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
     assert_eq!(compared(1e-4, stated).verdict, Verdict::Pass);
-    // The fast transform of photons is no more accurate than this tolerance.
+    // The error of the photons' fast transform may be as large as this tolerance.
     assert_eq!(compared(1e-7, None).verdict, Verdict::Pass);
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
@@ -470,7 +470,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
 
-/// A batch without a photon shows that there are too few photons for a decision, for every p-value.
+/// If a batch has no photon, there are too few photons for a decision, whatever the p-value is.
 #[test]
 fn a_batch_without_photons_decides_nothing() {
     let [truth, _] = spectrum(1.02);
@@ -534,7 +534,7 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
 }
 
 /// Noise is compared with the larger of both spectra. A prediction ten times too dim fails where a
-/// correct one passes. Agreement within noise above the resolution does not count.
+/// correct one passes. Agreement does not count if the noise exceeds the resolution.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);
@@ -567,8 +567,8 @@ fn sidak_keeps_the_level_of_the_run() {
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
 }
 
-/// No theory describes light that leaves a mesh. A smooth surface that stands in the light is
-/// handled by tracing rays past it.
+/// No theory describes light that leaves a mesh. If a smooth surface stands in the light, theory
+/// traces rays past it.
 #[test]
 fn what_has_no_theory_is_a_reference() {
     let class = |surfaces: &str, visits: &str| {

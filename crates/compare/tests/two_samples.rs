@@ -23,8 +23,9 @@ fn truth() -> Array3<Complex> {
     })
 }
 
-/// Returns slices of one batch: the truth plus noise. As with a Hann window, the noise has the
-/// shares 1/2, 1, 1/2 in three neighbours along ν, and it falls with ρ.
+/// Returns slices of one batch: the truth plus noise. Each noise number spreads over three
+/// neighbours along ν with the weights 1/2, 1, 1/2, as with a Hann window. The noise decreases with
+/// ρ.
 fn batch(seed: u64, index: usize, size: f64) -> Slices {
     let grid = plane().grid;
     let [azimuths, rho, nu] = grid.half_shape();
@@ -138,9 +139,9 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
 
 #[test]
 fn noise_amounts_to_as_many_numbers_as_its_correlation_leaves() {
-    // Neighbours along ν have the correlation 2/3, and second neighbours have 1/6. Therefore a line
-    // of n cells has tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that for complex
-    // numbers.
+    // Direct neighbours along ν have the correlation 2/3, and second neighbours have the
+    // correlation 1/6. Therefore a line of n cells has tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36,
+    // and half of that for complex numbers.
     let squares = |n: f64| n + (n - 1.0) * 8.0 / 9.0 + (n - 2.0) / 18.0;
     let found: Vec<f64> = (0..50)
         .map(|seed| sample(seed, BATCHES, SIZE).noise_dof.unwrap())

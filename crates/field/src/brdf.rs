@@ -17,9 +17,10 @@ use std::sync::Arc;
 /// | Beckmann, GGX | albedo · D(h) G₁(ωi) G₁(ωo) F(h·ωi) / (4 cos θi cos θo) (Walter et al. 2007, Eq. 20) |
 ///
 /// D and Smith's G₁ are given by Walter et al. 2007, Eqs. 25–27 and 33–34. For Beckmann, G₁ is the
-/// exact function. The BRDF is zero unless both cosines are positive. If the BRDF has the factors f
-/// or h, they multiply the lobe by f(θi) or h(θo) (Durand et al. 2005, section 4.3). A BRDF is
-/// reciprocal unless its Fresnel factor depends on θi, or f and h differ.
+/// exact function. The BRDF is zero if one of the two cosines is zero or negative. If the BRDF has
+/// the factors f or h, they multiply the lobe by f(θi) or h(θo) (Durand et al. 2005, section 4.3).
+/// A BRDF is not reciprocal if its Fresnel factor depends on θi, or if f and h differ. All other
+/// BRDFs are reciprocal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Brdf {
     /// The lobe.
@@ -63,7 +64,7 @@ fn listed<S: Serializer>(values: &Arc<[f64]>, serializer: S) -> Result<S::Ok, S:
 }
 
 impl AngleTable {
-    /// Returns the factor at the angle whose cosine is given, from 0 to 1.
+    /// Returns the factor at an angle. The cosine of this angle is given, and is from 0 to 1.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,

@@ -81,7 +81,8 @@ impl PlaneTally {
     }
 }
 
-/// A source of photons that cross the virtual planes of a scene, batch by batch.
+/// A source of photons that cross the virtual planes of a scene. Photons are emitted batch by
+/// batch.
 ///
 /// A batch depends on its number alone, not on the thread or the order of requests.
 pub trait PhotonSource: Sync {

@@ -44,8 +44,8 @@ pub struct SphericalGaussian {
 }
 
 /// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹. Radiance is bilinear between the
-/// centres of pixels and periodic in longitude. Between the centres of the first or the last row
-/// and the poles, radiance is constant along the meridian.
+/// centres of pixels and periodic in longitude. From the centre of the first or the last row to the
+/// nearest pole, radiance is constant along the meridian.
 ///
 /// The axes are the same as in `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude
 /// π/2. The middle of the map is at longitude 0, which is the front (Z). Longitude grows to the

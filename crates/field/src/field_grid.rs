@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A 4D grid over the support of a window. Its axes are in the order x, y, u, v.
 ///
 /// Along an axis of half-width h and n cells, the grid is periodic with the period 2h, and cell i
-/// is centred at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2, and half
-/// of cell 0 lies at either edge. The frequencies of its transform are the multiples of 1/(2h) up
-/// to the Nyquist frequency n/(4h).
+/// is centred at (i − n/2) · 2h/n. The plane's origin is therefore the centre of cell n/2. One half
+/// of cell 0 lies at the lower end of the period, and the other half at the upper end. The
+/// frequencies of its transform are the multiples of 1/(2h) up to the Nyquist frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.
@@ -18,8 +18,8 @@ pub struct FieldGrid {
 }
 
 impl FieldGrid {
-    /// Returns the smallest grid over the support of `window` whose Nyquist frequencies are at
-    /// least the largest frequencies of `slices`.
+    /// Returns the smallest grid over the support of `window` that is fine enough for `slices`. Its
+    /// Nyquist frequencies are at least the largest frequencies of `slices`.
     #[must_use]
     pub fn new(window: &Window, slices: &SliceGrid) -> Self {
         let half_widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
@@ -36,7 +36,8 @@ impl FieldGrid {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let [nx, ny, nu, nv] = self.cells.map(|n| n as u64);
-        // The transform of a row of n reals is n/2 + 1 complex numbers, stored in its place.
+        // The transform of a row of n reals has n/2 + 1 complex numbers, which are stored in place
+        // of the row.
         [nx, ny, nu, nv.saturating_add(2)]
             .into_iter()
             .fold(8, u64::saturating_mul)
@@ -83,8 +84,8 @@ impl FieldGrid {
         self.cells[axis] as f64 / 2.0 * self.spacing(axis)
     }
 
-    /// Returns the multiple of the spacing for index `i` of the transform along `axis`: 0, 1, … n/2
-    /// − 1, −n/2, … −1.
+    /// Returns the frequency at index `i` of the transform along `axis`, as a multiple of the
+    /// spacing. The multiples are 0, 1, … n/2 − 1, −n/2, … −1.
     #[inline]
     #[must_use]
     #[expect(
@@ -139,8 +140,8 @@ impl Assignment {
     reason = "the number is not negative; a number too large for usize becomes usize::MAX"
 )]
 fn even_cells(spacings: f64) -> usize {
-    // Because of rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that
-    // it equals.
+    // Because of rounding, a product that equals a whole number may be slightly above this number.
+    // An example is 0.7 · 2 · (5/1.4).
     let whole = (spacings * (1.0 - 1e-12)).ceil();
     (whole as usize).saturating_mul(2).max(8)
 }

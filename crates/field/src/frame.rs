@@ -20,8 +20,8 @@ pub struct TwoPlane {
 impl TwoPlane {
     /// Returns 1 + u² + v² = 1/cos²θ, where θ is the angle to the central ray.
     ///
-    /// The square of this factor turns flux density in (x, y, u, v) into radiance, since cos θ dω =
-    /// du dv / (1 + u² + v²)².
+    /// If flux density in (x, y, u, v) is multiplied by the square of this factor, the result is
+    /// radiance, because cos θ dω = du dv / (1 + u² + v²)².
     #[inline]
     #[must_use]
     pub fn secant_squared(&self) -> f64 {
@@ -67,7 +67,8 @@ impl Frame {
         d: DVec3::Z,
     };
 
-    /// Returns the frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
+    /// Returns the frame at `origin` with D along `d`. X is along the part of `x` that is
+    /// perpendicular to `d`.
     ///
     /// Returns `None` if `d` or `x` has zero length, or if they are parallel to within a
     /// millionth.

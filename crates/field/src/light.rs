@@ -26,8 +26,8 @@ pub enum Light {
         /// Intensity, W sr⁻¹.
         intensity: f64,
     },
-    /// A slide projector: a point on the central ray whose intensity varies over the slopes (u, v)
-    /// like a picture.
+    /// A slide projector, which is a point on the central ray. Its intensity varies over the slopes
+    /// (u, v) like a picture.
     Projector {
         /// Intensity, in W sr⁻¹, where the picture has the value 1.
         intensity: f64,

@@ -9,7 +9,7 @@ use serde::Serialize;
 ///
 /// In coordinates (s, t, h) along X, Y and D of the patch's frame, where D is the normal at the
 /// vertex, the points of the patch satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a
-/// plane through D is positive if the surface is convex as seen from D, as in docs/theory.md. A
+/// plane through D is positive if the surface is convex on the side of D, as in docs/theory.md. A
 /// sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y has k = (1/R, 0,
 /// 1/R), a paraboloid has k = (k₁, k₂, 0), and a plane has k = (0, 0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -4,7 +4,8 @@ use crate::{Frame, SliceGrid, TwoPlane, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The side on which a plane observes light, relative to the mask or surface at the same distance.
+/// The side on which a plane observes light. It is relative to the mask or surface at the same
+/// distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -86,8 +87,7 @@ pub struct VirtualPlane {
 }
 
 impl VirtualPlane {
-    /// Returns the factor by which the radiance of a ray is multiplied to obtain the plane's
-    /// quantity.
+    /// Returns the factor that converts the radiance of a ray to the plane's quantity.
     #[inline]
     #[must_use]
     pub fn factor(&self, ray: &TwoPlane) -> f64 {

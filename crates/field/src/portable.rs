@@ -1,5 +1,5 @@
 //! Functions whose results do not depend on the machine's C library, not even in the last bit. The
-//! functions replace those that `libm` lacks or computes slowly.
+//! functions replace functions that `libm` does not have or computes slowly.
 
 /// A complex number of a spectrum.
 pub type Complex = num_complex::Complex<f64>;

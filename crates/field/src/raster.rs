@@ -12,7 +12,8 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Returns `None` unless there is at least one pixel and there are as many values as pixels.
+    /// Returns the raster, or `None` if there is no pixel or if the number of values differs from
+    /// the number of pixels.
     #[must_use]
     pub fn new(width: usize, height: usize, values: Vec<f64>) -> Option<Self> {
         let fits = !values.is_empty() && width.checked_mul(height) == Some(values.len());
@@ -41,8 +42,8 @@ impl Raster {
         &self.values
     }
 
-    /// Returns the four pixels whose centres surround a position, and their weights in bilinear
-    /// interpolation.
+    /// Returns the four pixels whose centres surround a position. Also returns the weights of these
+    /// pixels in bilinear interpolation.
     ///
     /// Positions are in pixels from the left and from the top edge: the centre of the first pixel
     /// is at (½, ½). Beyond the outermost centres, the nearest pixel is used. If the raster
@@ -71,8 +72,8 @@ impl Raster {
     }
 }
 
-/// Returns the two of `count` pixels in a row whose centres surround a position, and the weight of
-/// the second.
+/// Returns the two pixels, in a row of `count` pixels, whose centres surround a position. Also
+/// returns the weight of the second pixel.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -20,7 +20,7 @@ pub struct FluxRay {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLight {
     rays: Vec<FluxRay>,
-    /// For each ray, the total flux, in watts, of all rays up to and including this one.
+    /// For each ray, the sum of the fluxes of this ray and of all rays before it, in watts.
     upto: Vec<f64>,
     /// Flux of rays that do not go forward, W; these rays are left out.
     behind: f64,
@@ -32,7 +32,7 @@ pub struct RayLight {
 
 impl RayLight {
     /// Builds the light from rays, and from the flux of the rays that are left out. Returns `None`
-    /// if the rays carry no flux, or if a number is not finite or a flux is negative.
+    /// if the rays carry no flux, if a flux is negative, or if a number is not finite.
     #[must_use]
     pub fn new(rays: Vec<FluxRay>, behind: f64) -> Option<Self> {
         let mut flux = 0.0;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// A rectangle in a plane orthogonal to the central ray, with edges along X and Y and coordinates
-/// relative to the ray.
+/// A rectangle in a plane orthogonal to the central ray. Its edges are along X and Y, and its
+/// coordinates are relative to the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rectangle {
     /// Centre (x, y), in metres.

@@ -8,7 +8,7 @@ use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 /// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν), and only ρ ≥ 0 is stored. The array
 /// `half` is [azimuth, ρ ≥ 0, ν], and ν ascends from −max to +max.
 ///
-/// The unit is that of ∫ L W dx dy du dv, W m⁻² sr⁻¹ · m².
+/// The unit is the unit of ∫ L W dx dy du dv, which is W m⁻² sr⁻¹ · m².
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
     /// The frequencies.

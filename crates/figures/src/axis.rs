@@ -118,7 +118,7 @@ impl Axis {
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
-    /// Returns the edges of the axis, moved apart if they coincide or are reversed.
+    /// Returns the edges of the axis. If the edges coincide or are reversed, they are moved apart.
     pub(crate) fn range(&self) -> [f64; 2] {
         if self.max > self.min && (self.max - self.min).is_finite() {
             [self.min, self.max]
@@ -215,19 +215,20 @@ impl Axis {
     }
 }
 
-/// Minimum length of an axis whose tick texts may be close to the tick texts of the next panel.
+/// If an axis has at least this length, its tick texts may be close to the tick texts of the next
+/// panel.
 pub(crate) const COMFORTABLE: f64 = 64.0;
-/// The length by which tick texts may extend beyond an axis that is shorter than [`COMFORTABLE`].
+/// Tick texts may extend beyond an axis by this length if the axis is shorter than [`COMFORTABLE`].
 const OVERHANG: f64 = 7.0;
 
 /// The usual first digits of the distance between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// The first digits of the distance between ticks if the usual first digits give fewer than three
-/// ticks.
+/// If the usual first digits give fewer than three ticks, the distance between ticks may have these
+/// first digits.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// Returns the maximum number of ticks whose texts do not overlap along `length`, and the font
-/// size of these texts. If fewer than three ticks fit, smaller texts or less usual steps are
+/// Returns as many ticks as fit along `length` without overlaps of their texts. Also returns the
+/// font size of these texts. If fewer than three ticks fit, smaller texts or less usual steps are
 /// tried.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];

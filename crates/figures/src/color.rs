@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub enum Scale {
     /// A linear scale from 0 to the largest value shown; negative values are drawn as 0.
     Linear,
-    /// 10 log₁₀ of a power divided by the largest reference value, from `floor` to 0 dB; powers ≤
-    /// 0 are below the floor.
+    /// A scale from `floor` to 0 dB, which shows 10 log₁₀ of a power divided by the largest
+    /// reference value. Powers of 0 or less are below the floor.
     Decibel {
         /// Lower end of the color scale in decibels, a number below 0.
         floor: f64,
@@ -123,8 +123,7 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether any values are below the range of the colors, and whether any values are above this
-    /// range.
+    /// Whether any values are below the range of the colors, and whether any are above it.
     pub(crate) beyond: [bool; 2],
 }
 
@@ -163,7 +162,7 @@ impl Shading {
         }
     }
 
-    /// Returns the same shading, with marks at its ends if any of `values` are beyond its range.
+    /// Returns the same shading. If any of `values` are beyond its range, its ends are marked.
     pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
         let [low, high] = self.axis.range();
         for value in values {

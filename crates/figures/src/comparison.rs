@@ -46,12 +46,12 @@ const PANEL: f64 = 240.0;
 /// bar.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
 const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
-/// The length by which the label of a color bar may exceed the bar.
+/// The label of a color bar may be longer than the bar by this length.
 const OVERHANG: f64 = 12.0;
 const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
 
-/// Draws a comparison: measured and predicted values on one color scale, and their difference on
-/// ±4 σ.
+/// Draws a comparison. Measured and predicted values share a color scale, and their difference has
+/// a scale of ±4 σ.
 ///
 /// In decibels, the reference is the largest predicted value. The CSV has a row for each cell.
 ///

@@ -59,8 +59,8 @@ pub struct CurvePanel {
     pub is_log: [bool; 2],
 }
 
-/// Panels of curves that show one quantity. Each panel has its own scales, which include y = 0
-/// unless y is logarithmic or all values are far from 0.
+/// Panels of curves that show one quantity. Each panel has its own scales. They include y = 0,
+/// except if y is logarithmic or all values are far from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Title, markup.
@@ -69,7 +69,7 @@ pub struct Curves {
     pub note: String,
     /// The quantity along y.
     pub y: AxisQuantity,
-    /// The panels, from left to right in rows from top to bottom.
+    /// The panels, row by row from the top; each row runs from left to right.
     pub panels: Vec<CurvePanel>,
 }
 

@@ -15,7 +15,7 @@ const BODY: &str = "#b9b9b9";
 
 /// Width of the space to the left and to the right of the ends of the central ray.
 const MARGIN: f64 = 36.0;
-/// Height of the lines from planes to the planes' numbers.
+/// Height of the lines that lead from planes to their numbers.
 const FEET: f64 = 10.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
@@ -47,7 +47,8 @@ const SMALL_NAME: f64 = 10.0;
 pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
-    /// The area for the range of x, between the names above and the plane numbers below.
+    /// The area that shows the range of x. Names are above this area, and plane numbers are below
+    /// it.
     plot: Area,
     z: Axis,
     x: Axis,
@@ -167,7 +168,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Draws a plane's number, name and distance, centred below a point.
+    /// Draws the number, the name and the distance of a plane, centred below a point.
     pub(crate) fn heading(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2], room: f64) {
         let Some(mark) = self.section.planes.get(plane) else {
             return;

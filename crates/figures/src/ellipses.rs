@@ -32,8 +32,9 @@ pub struct Ellipses<'a> {
     pub quantity: AxisQuantity,
     /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,
-    /// The ellipses at two standard deviations, in the order of the key. Each position has its own
-    /// color and dashes, which are not used if the ellipse at the position is missing.
+    /// The ellipses at two standard deviations, in the order of the key. Each position in this list
+    /// has its own color and dashes. If an ellipse is missing, no other ellipse takes its color and
+    /// dashes.
     pub ellipses: [Option<Ellipse>; 3],
 }
 

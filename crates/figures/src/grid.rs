@@ -107,8 +107,8 @@ pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
 }
 
-/// The length of the strokes at the two ends of a line over a spectrum, as a fraction of the
-/// picture's side. The predicted ridge stays visible between the two strokes.
+/// A line over a spectrum is drawn as two strokes at its ends. This is the length of a stroke, as a
+/// fraction of the picture's side. The predicted ridge stays visible between the two strokes.
 const GUIDE_END: f64 = 0.1;
 /// Minimum distance between the texts below two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
@@ -140,8 +140,8 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures. If a width between `least` and `largest` fits, the
-    /// pictures have this width. All pictures have the shape of the first picture.
+    /// Lays out rows of `columns` pictures. The width of the pictures is between `least` and
+    /// `largest`, if such a width fits. All pictures have the shape of the first picture.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.

@@ -9,10 +9,9 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 use ndarray::ArrayView2;
 
-/// The length by which an axis label may exceed its panel, along x and y.
+/// An axis label may be longer than its panel by these lengths, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 13.0];
-/// The length by which an axis label may exceed its panel along x if the next panel is at a small
-/// distance.
+/// If the next panel is near, an axis label may be longer than its panel along x by this length.
 const CLOSE_OVERHANG: f64 = 10.0;
 
 /// The position of a heat map, and the texts around it.
@@ -25,8 +24,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
     /// The lengths along which the x label and the y label are centred, measured from the left and
-    /// from the top of the panel. The lengths for the labels may include the panels to the right
-    /// and below. The length is `None` for a label that is not written.
+    /// from the top of the panel. These lengths may include panels to the right and below. A label
+    /// whose length is `None` is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 

@@ -63,7 +63,7 @@ pub struct Bars {
     pub predicted: Vec<Option<f64>>,
 }
 
-/// Label of a color bar whose colors are relative to the largest value of each picture.
+/// Label of a color bar if the colors of each picture are relative to its largest value.
 pub(crate) const OWN_PEAK: &str = "relative to its peak";
 
 /// Height of the bar panel, and width of each bar.

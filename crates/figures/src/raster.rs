@@ -2,8 +2,8 @@
 
 use etendue_field::whole;
 
-/// Encodes rows of pixels, from the top, one byte per channel, as a PNG. If a resolution in
-/// pixels per inch is given, the PNG states it.
+/// Encodes rows of pixels as a PNG. The rows begin at the top, and each channel has one byte. If a
+/// resolution in pixels per inch is given, the PNG states it.
 pub(crate) fn encoded(
     [width, height]: [u32; 2],
     color: png::ColorType,

@@ -39,12 +39,13 @@ pub struct PlaneMark {
     pub name: String,
     /// Distance from the light along the central ray, metres.
     pub distance: f64,
-    /// The side on which the plane lies if an object is at the same distance; the plane is drawn
-    /// slightly towards this side.
+    /// The side of an object on which the plane lies, if the object is at the same distance. The
+    /// plane is drawn slightly towards this side.
     pub side: Side,
 }
 
-/// A cut of the scene in z, the distance along the central ray, and in x or y, all in metres.
+/// A cut of the scene. One coordinate is z, the distance along the central ray, and the other
+/// coordinate is x or y. All coordinates are in metres.
 ///
 /// The cut is not drawn to scale, because z fills the width of the drawing. Parts outside the
 /// range of z and x are not drawn.

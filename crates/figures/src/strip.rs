@@ -33,13 +33,13 @@ pub struct StripColumn<'a> {
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The two rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
-    /// The difference between the measured spectrum and a first-order chain, in percent of the
-    /// largest modulus of the measured spectrum. The row of differences is drawn if each column has
-    /// such a difference.
+    /// The difference between the measured spectrum and a first-order chain. It is given in percent
+    /// of the largest modulus of the measured spectrum. The row of differences is drawn if each
+    /// column has such a difference.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", as markup; may be empty.
     pub verdict: Vec<String>,
-    /// Predicted lines, drawn at the edges of the spectrum.
+    /// Predicted lines. Only their ends are drawn, at the edges of the spectrum.
     pub guides: Vec<Guide>,
 }
 
@@ -67,13 +67,14 @@ pub struct Strip<'a> {
     pub section: &'a Section,
     /// A column for each plane.
     pub columns: Vec<StripColumn<'a>>,
-    /// The quantity of the light fields, shown linearly and relative to the largest value of each
-    /// light field.
+    /// The quantity of the light fields. It is shown linearly, relative to the largest value of
+    /// each light field.
     pub light_field: AxisQuantity,
-    /// The quantity of the spectra, shown in decibels below the largest value of each spectrum.
-    pub spectrum: AxisQuantity,
-    /// The quantity of the full radial spectra, shown in decibels below the largest value of each
+    /// The quantity of the spectra. It is shown in decibels below the largest value of each
     /// spectrum.
+    pub spectrum: AxisQuantity,
+    /// The quantity of the full radial spectra. It is shown in decibels below the largest value of
+    /// each spectrum.
     pub full_radial: AxisQuantity,
     /// Lower end of the color scale in decibels, a number below 0.
     pub floor: f64,

@@ -1,4 +1,4 @@
-//! Writes the few kinds of SVG elements of which figures consist.
+//! Writes SVG elements. Figures consist of only a few kinds of these elements.
 
 use crate::sizes::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
 use crate::text::{escape, fit, lines, plain, spans};

@@ -91,7 +91,8 @@ pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     (format!("{}…", kept.trim_end()), smallest)
 }
 
-/// Breaks markup at spaces into lines no wider than `room`, unless a single word is wider.
+/// Breaks markup at spaces into lines that are at most `room` wide. A line is wider only if a
+/// single word is wider.
 pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split(' ').filter(|word| !word.is_empty()) {

@@ -1,5 +1,5 @@
-//! Draws the scene to scale, seen along Y at the light, with the bends of the central ray and the
-//! positions of objects.
+//! Draws the scene to scale, as it looks along Y at the light. The drawing shows the bends of the
+//! central ray and the positions of objects.
 
 use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
 use crate::section::{DrawnObject, DrawnWorld, SegmentKind};

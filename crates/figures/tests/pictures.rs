@@ -17,8 +17,7 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// In the PNG, one color also fills the part of the panel that belongs to the cell, without
-/// smoothing.
+/// In the PNG, each cell is a rectangle of one color too, without smoothing at its edges.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();
@@ -32,8 +31,8 @@ fn the_raster_shows_cells_as_sharp_rectangles() {
     let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| 2 * number(name));
     let bright = raster.at(x + w - w / 10, y + h / 6);
     assert!(bright[0] > 240 && bright[1] > 240, "{bright:?}");
-    // Three pixels inside the edges of the cell, away from the frame, the picture has the color of
-    // the cell.
+    // The first tested point is three pixels inside the edges of the cell and away from the frame.
+    // The picture has the color of the cell there.
     assert_eq!(raster.at(x + w - w / 5 + 3, y + h / 3 - 3), bright);
     // Three pixels outside the cell, the picture has the color of the value 0.
     let dark = raster.at(x + 10, y + h - 10);

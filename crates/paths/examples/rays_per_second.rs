@@ -3,11 +3,11 @@
 //!     cargo build --release -p etendue-paths --example rays_per_second
 //!     rays_per_second MESH.ply < QUESTIONS
 //!
-//! Each input line is a command: `build` prints the processor seconds and bytes of memory it
-//! takes. `first RAYS` finds the first hits, and `free RAYS` tests whether rays hit anything
-//! before their end. `first` and `free` print the processor seconds of this thread, and write
-//! distances (infinite for no hit, zero for `free` with a hit) to `RAYS.met` as f64. Rays are
-//! seven f32 each: origin, direction, end.
+//! Each input line is a command: `build` builds the hierarchy, and prints the processor seconds and
+//! the bytes of memory that this takes. `first RAYS` finds the first hits, and `free RAYS` tests
+//! whether rays hit anything before their end. `first` and `free` print the processor seconds of
+//! this thread, and write distances (infinite for no hit, zero for `free` with a hit) to `RAYS.met`
+//! as f64. Rays are seven f32 each: origin, direction, end.
 
 #![allow(clippy::print_stdout, reason = "the example prints its results")]
 

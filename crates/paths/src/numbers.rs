@@ -11,8 +11,8 @@ pub(crate) struct PathNumbers<'a> {
     block: u32,
     left: [u32; 4],
     used: usize,
-    /// The net that gives the first numbers, and the index of the point that is used; `None` if no
-    /// net is used.
+    /// The net that gives the first numbers, and the index of its point that this path uses; `None`
+    /// if no net is used.
     net: Option<(&'a Net, u32)>,
 }
 

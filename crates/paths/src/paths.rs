@@ -9,9 +9,9 @@ use glam::DVec3;
 
 /// Paths of light through a world. They are traced back from the place where they are seen.
 ///
-/// At each surface, direct light is sampled in two ways, from the lights and from the BSDF,
-/// weighted by multiple importance sampling (Veach and Guibas 1995, *Optimally combining sampling
-/// techniques*, the balance heuristic).
+/// At each surface, direct light is sampled in two ways: from the lights and from the BSDF. The
+/// balance heuristic of multiple importance sampling weights the two results (Veach and Guibas
+/// 1995, *Optimally combining sampling techniques*).
 #[derive(Debug)]
 pub struct Paths {
     pub(crate) geometry: SceneGeometry,
@@ -31,8 +31,8 @@ pub(crate) enum LightSearch {
     Bsdf,
 }
 
-/// At the surface with this number and at later surfaces, a path continues only with a probability
-/// that depends on its throughput (Russian roulette).
+/// Number of the surface at which Russian roulette begins. From this surface on, a path continues
+/// only with a probability that depends on its throughput.
 pub(crate) const ROULETTE: u32 = 6;
 
 /// Maximum path length. It ends paths between mirrors; at this length, their throughput is below
@@ -54,9 +54,9 @@ impl Paths {
         }
     }
 
-    /// Returns an unbiased estimate, by one path, of the radiance that arrives at the origin of a
-    /// ray from distances within the visible range. `before` is the number of surfaces between the
-    /// origin and the camera.
+    /// Estimates the radiance that arrives at the origin of a ray from distances within the visible
+    /// range. The estimate follows one path and is unbiased. `before` is the number of surfaces
+    /// between the origin and the camera.
     pub(crate) fn radiance(
         &self,
         ray: Ray,
@@ -158,8 +158,8 @@ impl Paths {
         }
     }
 
-    /// Returns the light that light sampling finds, and its incident direction in the frame of the
-    /// hit.
+    /// Samples a light. Returns the light that this finds, and its incident direction in the frame
+    /// of the hit.
     fn looked_for(
         &self,
         hit: &Hit,

@@ -7,7 +7,7 @@ use etendue_sampling::disc;
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// The picture of a camera, W m⁻² sr⁻¹: rows from the top, each from the left.
+/// The picture of a camera, W m⁻² sr⁻¹. The rows begin at the top, and each row begins at the left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -31,7 +31,8 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // If `progress` unwinds to stop the work, this call ends each further row.
+            // If `progress` unwinds to stop the work, it also unwinds in this call, so no further
+            // row is computed.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();

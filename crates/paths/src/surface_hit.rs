@@ -1,5 +1,5 @@
-//! Describes the surface points that a camera sees: their light, and the distances of the objects
-//! that they reflect. Renderers with adaptive sampling use these points.
+//! Describes the surface points that a camera sees. It computes their light, and the distances of
+//! the objects that they reflect. Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::{LightSearch, Paths};

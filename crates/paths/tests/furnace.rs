@@ -307,7 +307,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");
-                let bound = 5.0 * error + 1e-9; // 2,300 means, and rounding where all paths find the same.
+                let bound = 5.0 * error + 1e-9; // 2,300 means are tested; all paths may find the same value up to rounding
                 assert!(mean < expected + bound, "brighter than the sky: {place}");
                 let is_kept = !is_lossless || mean > expected - bound;
                 assert!(is_kept, "light is lost: {place}");

@@ -192,8 +192,8 @@ fn surfaces_shine_by_their_area() {
         DVec3::ZERO,
         0.5 * 6.0 * 0.25 / 4.0,
     );
-    // A square is given once as a rectangle and once as two triangles, and emits only on its
-    // front.
+    // The light is a square that emits only on its front. The square is given once as a rectangle
+    // and once as two triangles.
     let square = Triangles::new(
         vec![
             DVec3::new(-1.0, -1.0, 0.0),
@@ -206,8 +206,8 @@ fn surfaces_shine_by_their_area() {
         None,
     );
     let mesh = Geometry::Mesh(Arc::new(square.unwrap()));
-    // The form factor of a square of side 1 at height 2 above a point below its centre: four
-    // corners of ½ by ½ (Howell, factor B-3).
+    // This is the form factor of a square of side 1 at height 2, for a point below its centre. It
+    // is the sum over four squares of ½ by ½ with a corner above the point (Howell, factor B-3).
     let x = 0.25_f64;
     let factor =
         4.0 / (2.0 * PI) * 2.0 * x / (1.0 + x * x).sqrt() * (x / (1.0 + x * x).sqrt()).atan();

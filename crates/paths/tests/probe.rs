@@ -1,4 +1,4 @@
-//! Tests light fields behind a pixel that are known.
+//! Tests light fields behind a pixel in scenes where these light fields are known.
 
 use etendue_field::{Crossing, PhotonSource};
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};

@@ -19,7 +19,8 @@ const MIN_EXPECTED: f64 = 20.0;
 pub struct ChiSquare {
     chi2: f64,
     cells: f64,
-    /// The integral of the density minus the share of random numbers that yield a sample.
+    /// The excess is the integral of the density, minus the share of random numbers that yield a
+    /// sample.
     excess: f64,
 }
 

@@ -19,8 +19,8 @@ impl Cone {
         fall: 2.0,
     };
 
-    /// Returns the cone of the directions whose angle to an axis has at least the given cosine. The
-    /// axis has unit length.
+    /// Returns a cone around an axis. It contains the directions whose angle to the axis has at
+    /// least the given cosine. The axis has unit length.
     #[must_use]
     pub fn new(axis: DVec3, cosine: f64) -> Self {
         Self {
@@ -29,8 +29,8 @@ impl Cone {
         }
     }
 
-    /// Returns the cone of directions from an observer to a sphere. `way` leads from the observer
-    /// to the centre of the sphere. Returns `None` if the observer is inside the sphere.
+    /// Returns the cone of directions from an observer to a sphere. `way` is the vector from the
+    /// observer to the centre of the sphere. Returns `None` if the observer is inside the sphere.
     #[must_use]
     pub fn around_sphere(way: DVec3, radius: f64) -> Option<Self> {
         let squared = way.length_squared();

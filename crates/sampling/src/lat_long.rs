@@ -29,7 +29,8 @@ impl LatLongSampler {
         let raster = map.raster();
         let [top, bottom] = map.poles();
         let height = bottom - top;
-        // A row at a pole has half a tent, whose centroid is a third of a row away.
+        // A row at a pole has only half of a tent. The centroid of this half is a third of a row
+        // away from the pole.
         let steepest = 0.5 - 1.0 / (3.0 * height);
         let sines: Vec<f64> = (0..raster.height())
             .map(|row| {

@@ -65,8 +65,8 @@ fn cones() -> [(DVec3, Cone); 4] {
     ]
 }
 
-/// Returns pictures that are bright at an edge, where longitude wraps, and at a pole; some have few
-/// rows, and one has a single row.
+/// Returns pictures that are bright at a pole and at an edge, where longitude wraps. Some pictures
+/// have few rows, and one has a single row.
 fn pictures() -> Vec<Arc<LatLong>> {
     let raster = |width, height| {
         let value = |i: usize| match (i % width, i / width) {

@@ -1,5 +1,5 @@
 //! Defines smooth and rough transmitting interfaces between two media. wo is in front of the
-//! interface; `index` is the refractive index of the far side divided by the refractive index of
+//! interface. `index` is the refractive index of the far side, divided by the refractive index of
 //! the side of wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.
@@ -63,8 +63,8 @@ struct Facet {
 }
 
 impl RoughDielectric {
-    /// Returns the facet at which wo is mirrored or refracted to wi; `None` if no such facet faces
-    /// the front (Walter et al., Eqs. 13 and 16).
+    /// Returns the facet at which wo is mirrored or refracted to wi (Walter et al., Eqs. 13 and
+    /// 16). Returns `None` if this facet does not face the front.
     #[inline]
     fn facet(&self, wi: DVec3, wo: DVec3) -> Option<Facet> {
         let eta = if wi.z > 0.0 { 1.0 } else { self.index };

@@ -57,8 +57,8 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
-    /// Builds an interface for an angle of incidence whose cosine, above 0, is given. The index
-    /// of the far side is `index` times the index of the near side.
+    /// Builds an interface for an angle of incidence. The cosine of this angle is given, and must
+    /// be above 0. The index of the far side is `index` times the index of the near side.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);

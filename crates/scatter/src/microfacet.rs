@@ -16,7 +16,8 @@ pub struct Microfacets {
     pub alpha: [f64; 2],
 }
 
-/// The smallest z of a visible normal before stretching, which keeps normals above the horizon.
+/// The smallest z of a visible normal before stretching. This minimum keeps normals above the
+/// horizon.
 const MIN_HEIGHT: f64 = 1e-12;
 
 impl Microfacets {
@@ -138,8 +139,8 @@ impl Microfacets {
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
         let across = across.unwrap_or(DVec3::X);
         let up = view.cross(across);
-        // A point of the projected hemisphere: half of a disc, and the visible part of the other
-        // half.
+        // A point of the projected hemisphere is sampled. The projection consists of half of a
+        // disc, and of the visible part of the other half.
         let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();
         let t1 = radius * cos;

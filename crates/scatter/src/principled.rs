@@ -29,7 +29,7 @@ pub struct Principled {
     pub tint: f64,
     /// The share of flat subsurface scattering in the base.
     pub flatness: f64,
-    /// The strength of the reflection at grazing angles, as of cloth.
+    /// The strength of an additional reflection at grazing angles, like the reflection by cloth.
     pub sheen: f64,
     /// The strength of the clear coat.
     pub clearcoat: f64,
@@ -38,10 +38,10 @@ pub struct Principled {
 }
 
 impl Principled {
-    /// Returns the contribution of the base to the BRDF. The base reflects more light back to where
-    /// it comes from if it is rough, and less light at grazing angles if it is smooth (Burley 2012,
-    /// section 5.3; Burley 2015, *Extending the Disney BRDF to a BSDF with integrated subsurface
-    /// scattering*, section 3).
+    /// Returns the contribution of the base to the BRDF. A rough base reflects more light back to
+    /// where the light comes from, and a smooth base reflects less light at grazing angles (Burley
+    /// 2012, section 5.3; Burley 2015, *Extending the Disney BRDF to a BSDF with integrated
+    /// subsurface scattering*, section 3).
     #[must_use]
     pub fn base_value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let [i, o] = [wi, wo].map(|w| schlick(w.z));

@@ -4,8 +4,8 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// The radius around a hit within which vertices are used, in units of the longest edge of the
-/// triangle that was hit.
+/// Vertices are used if they lie within this radius around a hit. The unit is the longest edge of
+/// the triangle that was hit.
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
@@ -64,8 +64,8 @@ impl MeshObject {
     }
 }
 
-/// Returns h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the
-/// least-squares quadratic in (s, t) through points (s, t, h).
+/// Fits a quadratic h(s, t) to points (s, t, h) by least squares. Returns h, ∂h/∂s, ∂h/∂t, ∂²h/∂s²,
+/// ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame.
 fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     let rows = points.iter().map(|point| {
         let DVec3 { x, y, z } = frame.to_local(*point) / unit;

@@ -107,8 +107,8 @@ fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String,
     }
 }
 
-/// Warns if the largest frequency of a plane is below the first frequency step that the window
-/// resolves.
+/// Warns if the largest frequency of a plane is smaller than the smallest frequency step that the
+/// window resolves.
 fn coarse(
     i: usize,
     file: &PlaneFile,
@@ -178,13 +178,13 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// Returns the largest distance from the central ray, at a given distance along the first leg, of
-/// the light that a plane sees.
+/// Returns how far the light that a plane sees extends from the central ray, at a given distance
+/// along the first leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
-    // The distance of the plane if the plane is on the first leg, or else the distance at which
-    // light leaves the first leg.
+    // If the plane is on the first leg, this is the distance of the plane. Otherwise it is the
+    // distance at which light leaves the first leg.
     let end = match plane.leg {
         0 => plane.distance,
         1 if scene.path.legs[1].frame.d.z < -0.999 => scene.path.first_hit(),

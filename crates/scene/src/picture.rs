@@ -30,8 +30,8 @@ pub struct Channels {
     pub values: Vec<f64>,
     /// Values per pixel, 1 or 3.
     pub count: usize,
-    /// Whether the values are levels from 0 to 1 to which the file's transfer curve was applied;
-    /// otherwise the values are proportional to light.
+    /// Whether the values are levels from 0 to 1, as encoded by the file's transfer curve. If they
+    /// are not levels, the values are proportional to light.
     pub are_levels: bool,
 }
 

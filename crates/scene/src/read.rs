@@ -1,5 +1,5 @@
-//! Reads files as bytes, within limits on their kind, length and folder. Only regular files of a
-//! bounded length are read. A file that a scene names must also be below the scene's folder.
+//! Reads files as bytes. Only regular files are read, and only if their length is within a limit. A
+//! file that a scene names must also be below the scene's folder.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -30,7 +30,7 @@ pub enum ReadError {
 /// Returns the bytes of a regular file that has at most `most` bytes.
 ///
 /// # Errors
-/// [`ReadError`], but never because of the file's folder.
+/// [`ReadError`], except [`ReadError::Outside`].
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     // The kind of file is checked before opening, because opening a pipe would wait for the other
     // end.

@@ -37,8 +37,8 @@ use std::path::Path;
 /// `folder`. `memory` is the memory of this machine, in bytes.
 ///
 /// # Errors
-/// [`SceneError::Values`] with every fault found; if the scene exceeds the counts of
-/// [`crate::limits`], only these faults are reported.
+/// [`SceneError::Values`] with every fault found. If the scene has more objects than
+/// [`crate::limits`] allow, only these faults are reported.
 pub fn resolve(
     name: &str,
     file: SceneFile,
@@ -206,7 +206,7 @@ impl Resolver<'_> {
     }
 }
 
-/// An object before or after which planes can be placed.
+/// An object of the scene. A plane can be placed before or after this object.
 struct PathStop<'a> {
     name: &'a str,
     /// The smallest and the largest distance of the object along the first leg; the two are equal

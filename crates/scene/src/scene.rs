@@ -52,8 +52,8 @@ pub struct Leg {
     pub frame: Frame,
     /// Distance along the path at which the leg begins.
     pub start: f64,
-    /// Distance from the leg's beginning to the surface that ends the leg; for the last leg, to
-    /// the first obstacle.
+    /// Distance from the leg's beginning to the surface that ends the leg. The last leg ends at the
+    /// first obstacle.
     pub length: f64,
     /// The hit at which the leg leaves a surface; `None` for the first leg.
     pub leaves: Option<Hit>,
@@ -66,8 +66,8 @@ pub struct Hit {
     pub object: Object,
     /// The point of the hit, in the frame at the light.
     pub point: DVec3,
-    /// The unit normal of the surface at the point of the hit, on the side from which the light
-    /// comes, in the frame at the light.
+    /// The unit normal of the surface at the hit, in the frame at the light. It points to the side
+    /// from which the light comes.
     pub normal: DVec3,
 }
 
@@ -167,7 +167,7 @@ pub struct MeshObject {
     pub extent: [f64; 2],
     /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
-    /// The normals and the interaction with light of a mesh that is a smooth surface; otherwise
+    /// If the mesh is a smooth surface, its normals and its interaction with light; otherwise
     /// `None`.
     pub smooth: Option<SmoothMesh>,
 }
@@ -183,7 +183,7 @@ pub struct SmoothMesh {
 }
 
 impl MeshObject {
-    /// Checks whether the mesh is neither Lambertian nor smooth.
+    /// Checks whether the mesh is black, which means that it is not Lambertian and not smooth.
     #[must_use]
     pub fn is_black(&self) -> bool {
         self.albedo.is_none() && self.smooth.is_none()
@@ -238,8 +238,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the distance of the surface and its rectangle, if the surface lies across the
-    /// first leg with its edges along X and Y.
+    /// Returns the distance and the rectangle of a surface that lies across the first leg and has
+    /// its edges along X and Y. Returns `None` for any other surface.
     #[must_use]
     #[expect(
         clippy::float_cmp,
@@ -305,7 +305,7 @@ pub struct Run {
     pub batches: u32,
     /// The probability that the verdict rejects a correct scene, for all planes together.
     pub alpha: f64,
-    /// The largest noise, as a share of the spectrum, with which a plane can pass.
+    /// The largest noise, as a share of the spectrum. A plane with more noise cannot pass.
     pub resolution: f64,
     /// The distribution with which photons leave the light.
     pub emission: Emission,

@@ -7,8 +7,8 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// The triangles of a mesh, in the frame at the light, with one hierarchy over them that all rays
-/// traverse. Clones share both.
+/// The triangles of a mesh, in the frame at the light, with one hierarchy that all rays traverse.
+/// Clones share the triangles and the hierarchy.
 #[derive(Clone)]
 pub struct Triangles(Arc<SharedTriangles>);
 

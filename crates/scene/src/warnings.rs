@@ -6,21 +6,21 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A mesh causes a warning if the relative difference between the spectra of photons and of
-/// backward rays is at least this number.
+/// A mesh causes a warning if the spectrum of photons and the spectrum of backward rays differ by
+/// at least this share.
 const LEVEL: f64 = 0.01;
 /// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
-/// The number of pieces across a window into which triangles are subdivided.
+/// Triangles are subdivided until about this number of pieces fits across a window.
 const PIECES: f64 = 8.0;
 /// The number of azimuths at which waves are tested, and the number of waves at each azimuth. The
 /// frequencies of these waves are multiples of the spacing of a plane's frequencies, up to the
 /// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// The slopes, in units of the window's half-width, at which the ratio of the radiances of photons
-/// and of backward rays is evaluated for each point.
+/// For each point, the ratio of two radiances, of photons and of backward rays, is evaluated at
+/// these slopes. The unit is the window's half-width.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
@@ -28,13 +28,13 @@ impl Scene {
     /// mesh on the path that is too coarse.
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
-    /// to the normal t of the triangle. If photons come along d and leave along e, their radiance
+    /// to the normal t of the triangle. Let photons come along d and leave along e. Their radiance
     /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
     /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
-    /// of two spectra at the measured frequencies along x and y, both computed where the light hits
-    /// the mesh. The first spectrum is the spectrum of the window times f − 1, and the second is
-    /// the spectrum of the window alone. The effects of facets that are finer than the waves of
-    /// these frequencies average out.
+    /// of two spectra at the measured frequencies along x and y. Both spectra are computed at the
+    /// points where the light hits the mesh. The first spectrum is the spectrum of the window times
+    /// f − 1, and the second is the spectrum of the window alone. If facets are finer than the
+    /// waves of these frequencies, their effects average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -107,7 +107,7 @@ struct WindowView<'a> {
     smooth: &'a SmoothMesh,
     /// The frame at the hit; its D points along the light that leaves the mesh.
     frame: Frame,
-    /// A sign, which is 1 if light arrives along the normals of the mesh, and −1 if light arrives
+    /// A sign. It is 1 if light arrives along the normals of the mesh, and −1 if light arrives
     /// against the normals.
     side: f64,
     plane: &'a VirtualPlane,

@@ -1,4 +1,4 @@
-//! Tests the limits on the size and the names of a scene file, and on the parts of it that
+//! Tests three limits: on the size of a scene file, on the names in it, and on the parts of it that
 //! messages show.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]

@@ -1,4 +1,4 @@
-//! Tests meshes: what is read, what is refused and with which message, and generated surfaces.
+//! Tests mesh files and generated surfaces. Refused files have the expected messages.
 
 use etendue_scene::{Fault, Mesh};
 use glam::{DAffine3, DVec3};
@@ -143,9 +143,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The corners of the triangles of an OBJ file agree with those that tobj reads. The test omits
-/// three statements that tobj does not read correctly. Of these, tobj takes the `l` line for a
-/// triangle, refuses a colour that only some vertices have, and refuses the continued line.
+/// This project and tobj read the same triangles from an OBJ file. The test omits three statements
+/// that tobj does not read correctly. Of these, tobj takes the `l` line for a triangle, refuses a
+/// colour that only some vertices have, and refuses the continued line.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();

@@ -174,7 +174,7 @@ fn a_header_of_any_length_is_read_in_proportion() {
 }
 
 /// The relative difference between photons and backward rays is 3 % with two cells. With eight
-/// cells, the difference is below the difference that 4e7 photons detect.
+/// cells, the difference is so small that 4e7 photons do not detect it.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

@@ -107,13 +107,13 @@ fn lobes_are_where_the_axes_put_them() {
     // In this environment, `up` is used exactly, and `front` is adjusted.
     let up = DVec3::new(0.0, 1.0, 0.2).normalize();
     assert!((found.frame.y - up).length() < 1e-15 && found.frame.d.z < -0.9); // rounding
-    assert!((found.frame.x.cross(found.frame.y) - found.frame.d).length() < 1e-15); // likewise
+    assert!((found.frame.x.cross(found.frame.y) - found.frame.d).length() < 1e-15); // rounding
     // In the direction of `up`, the radiance is three times the radiance of a lobe with peak 1,
     // plus the tail of the other lobe.
     let other = ((0.1 / 1.05_f64.sqrt() - 1.0) / 0.09).exp();
     let expected = 3.0 + 6.0 * other;
     assert!((found.radiance(-up) - expected).abs() < 1e-13); // rounding
-    assert!((texture(&scene).values()[1] - 0.2).abs() < 1e-15); // a quotient
+    assert!((texture(&scene).values()[1] - 0.2).abs() < 1e-15); // rounding of a quotient
 }
 
 #[test]

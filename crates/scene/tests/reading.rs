@@ -1,5 +1,5 @@
-//! Tests that a file named by a scene is read only if it is regular and, with links followed,
-//! below the scene's folder.
+//! Tests when a file that a scene names is read. The file must be regular. It must lie below the
+//! scene's folder after all links are followed.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -62,7 +62,7 @@ fn jitter_keeps_squares_apart_and_follows_its_seed() {
     }
 }
 
-/// The same scene moved and rotated in the world is the same experiment.
+/// If a scene is moved and rotated in the world, the experiment does not change.
 #[test]
 fn rotation_of_the_world_changes_nothing() {
     let turned = FIG9B

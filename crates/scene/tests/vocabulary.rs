@@ -66,7 +66,7 @@ fn everything_resolves_to_what_it_says() {
     assert!((grating.transmittance(0.25, 7.0) - 0.5 * (1.0 + 0.5 * 0.1_f64.cos())).abs() < 1e-14); // rounding
     let star = &scene.meshes[0];
     assert_eq!(star.triangles.len(), 4 * 10 * 9);
-    assert!((star.extent[0] - 0.4).abs() < 1e-12 && (star.extent[1] - 0.6).abs() < 1e-12); // rounding of the poles
+    assert!((star.extent[0] - 0.4).abs() < 1e-12 && (star.extent[1] - 0.6).abs() < 1e-12); // rounding at the poles
     let places: Vec<_> = scene
         .planes
         .iter()

@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Display, Write};
 
-/// Returns `value` as formatted text, in at most `most` characters that are safe for a terminal.
+/// Returns `value` as formatted text. The text has at most `most` characters, and all of them are
+/// safe for a terminal.
 ///
 /// Control and format characters (including those that change the direction of text), line
 /// separators, private-use characters and non-characters are escaped as `\u{..}`. A text that is

@@ -73,9 +73,9 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Returns the error in words, with one line for each fault and its position. The position of
-    /// a fault is a line and a column of the scene file. If an argument such as `--set
-    /// run.photons=3` has set the field, the position is this argument.
+    /// Returns the error in words, with one line for each fault and its position. The position of a
+    /// fault is a line and a column of the scene file. If an argument such as `--set run.photons=3`
+    /// has set the field, the argument is shown as the position.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {

@@ -20,8 +20,8 @@ fn field(path: &str) -> [&'static str; 2] {
     }
 }
 
-/// Returns the node of the schema to which the steps of a path lead, including steps through
-/// variants.
+/// Follows the steps of a path in the schema, also through variants, and returns the node at the
+/// end.
 fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     let [step, rest @ ..] = steps else {
         return Some(node);

@@ -1,5 +1,4 @@
-//! Reads and checks scene files as they are written: in RON or JSON, described by a schema, and
-//! checked field by field.
+//! Reads scene files in RON or JSON, and checks them field by field. A schema describes the fields.
 //!
 //! The types of [`SceneFile`] are the only place that states the description, the notation and the
 //! range of each field. The schema, the hints in messages and the checks of all numbers are derived

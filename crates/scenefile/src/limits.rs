@@ -1,4 +1,5 @@
-//! Defines the limits on the size of a scene file, and on the text that messages show from it.
+//! Defines two kinds of limits: on the size of a scene file, and on the text of the file that
+//! messages show.
 //!
 //! Limits are checked before work begins, so anything beyond a limit is not processed.
 
@@ -32,21 +33,22 @@ pub const LOBES: usize = 10_000;
 /// are visible, predictions take many minutes.
 pub const SHAPES: usize = 100_000;
 
-/// Maximum of the product of the numbers of shapes of the light and of several layers; a
-/// prediction may have to evaluate all combinations of these shapes.
+/// Maximum of a product: the number of shapes of the light times the numbers of shapes of several
+/// layers. A prediction may have to evaluate all combinations of these shapes.
 pub const PRODUCTS: f64 = 1e6;
 
 /// Maximum number of cells along a side, or of rings, of a generated mesh.
 pub const CELLS: u32 = 2048;
 
-/// Maximum number of triangles of all generated meshes together; it slightly exceeds the number
-/// of triangles of the finest generated mesh. Meshes that are read from files do not count
+/// Maximum number of triangles of all generated meshes together. This limit is slightly above the
+/// number of triangles of the finest generated mesh. Meshes that are read from files do not count
 /// towards this number. Each triangle takes 72 bytes, and about 72 more bytes while the hierarchy
 /// over the triangles is built.
 pub const MADE_TRIANGLES: u64 = 20_000_000;
 
-/// The largest number in a scene file, and the reciprocal of the smallest size. Products of six
-/// numbers of this size, which occur in a power spectrum, stay far within the range of f64.
+/// The largest allowed number in a scene file. Its reciprocal is the smallest allowed size.
+/// Products of six numbers of this size, which occur in a power spectrum, stay far within the range
+/// of f64.
 pub const MAX_NUMBER: f64 = 1e9;
 
 /// Maximum number of characters of the name of a scene, a plane, blockers or a surface; the name

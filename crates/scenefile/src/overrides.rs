@@ -90,7 +90,7 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Returns the message that a node has no field `name`; the message lists the fields that the
+/// Returns the message for a node that has no field `name`. The message lists the fields that the
 /// node has.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {

@@ -94,8 +94,8 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     }
 }
 
-/// Describes an error that concerns the name of a variant or a field, and returns whether it
-/// concerns the entire value. Returns `None` for other errors.
+/// Describes an error in the name of a variant or a field. Also returns whether the error concerns
+/// the entire value. Returns `None` for other errors.
 fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     Some(match code {
         Error::NoSuchEnumVariant {
@@ -154,7 +154,7 @@ fn is_shape(code: &Error, path: &str) -> bool {
     !is_cut && !has_fields(path)
 }
 
-/// Returns the text found at a position between fields, and the text that is allowed there.
+/// Returns the text at a position between fields, and the text that is allowed at this position.
 fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let rest = text.lines().nth(line - 1).unwrap_or_default();
     let at = rest.char_indices().nth(column - 1);

@@ -14,8 +14,8 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) value: &'a str,
 }
 
-/// Returns the names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, up to
-/// the first invalid name, and without names of variants.
+/// Splits a path such as `blockers[0].fill` or `blockers.0.fill` into names and indices. Names of
+/// variants are left out, and the result ends before the first invalid name.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let in_path = |c: char| c.is_alphanumeric() || "_.[]".contains(c);
     let end = path.find(|c| !in_path(c)).unwrap_or(path.len());
@@ -112,7 +112,7 @@ struct OpenBracket<'a> {
     named: bool,
     index: usize,
     key: Option<&'a str>,
-    /// The number of steps of the path that lead to the value that began after the last comma.
+    /// The number of steps of the path to the value that began after the last comma.
     value: Option<Option<usize>>,
 }
 

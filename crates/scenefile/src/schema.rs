@@ -5,7 +5,7 @@ use crate::file::positive;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-/// Returns the JSON schema of a scene file in JSON, in which a variant is an object with one
+/// Returns the JSON schema of scene files in JSON. In these files, a variant is an object with one
 /// field. `title` describes a field, `x-ron` is an example in the notation of a scene file, and
 /// `x-range` gives the allowed numbers of the field.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Suggests the known name that was probably meant by an unknown name.
+//! Suggests a known name in place of an unknown name that is similar to it.
 
 use crate::limits;
 use strsim::osa_distance;

@@ -61,10 +61,10 @@ pub(crate) fn widest_slice(
 /// Returns the smallest frequency B such that the power at |frequency| ≤ B is at least `fraction`
 /// times the total power.
 ///
-/// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency
-/// is spread uniformly over a cell that extends half a step to either side of the frequency, so
-/// within a cell the enclosed power grows linearly with B. B has the unit of the axis. Returns
-/// `None` if the total power is not positive.
+/// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency is
+/// spread uniformly over a cell, which extends half a step to either side of the frequency.
+/// Therefore the enclosed power grows linearly with B within a cell. B has the unit of the axis.
+/// Returns `None` if the total power is not positive.
 #[must_use]
 pub fn bandwidth(
     marginal: ArrayView1<'_, f64>,

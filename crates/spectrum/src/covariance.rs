@@ -1,4 +1,4 @@
-//! Estimates the covariance of a light field over its rays, with standard errors.
+//! Estimates the covariance of the coordinates of a light field's rays, with standard errors.
 
 use crate::estimate::TooFewBatches;
 use crate::jackknife::Jackknife;

@@ -1,10 +1,10 @@
 //! Computes bandwidths of a picture along each direction in the plane of its two slopes.
 //!
 //! A picture is a windowed function of two slopes. The 2D spectrum of a picture is measured by
-//! slices that contain only ρ = 0, which are lines through zero, one for each azimuth. For each
-//! direction e, [`DirectionalBandwidth`] has the smallest B such that the power at |ν · e| > B is
-//! at most a twentieth of the total power. Each frequency represents its polar cell, whose power is
-//! spread uniformly over the range of ν · e within the cell.
+//! slices that contain only ρ = 0. Such a slice is a line through zero, and there is one line for
+//! each azimuth. For each direction e, [`DirectionalBandwidth`] has the smallest B such that the
+//! power at |ν · e| > B is at most a twentieth of the total power. Each frequency represents its
+//! polar cell, whose power is spread uniformly over the range of ν · e within the cell.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
 use crate::estimate::TooFewBatches;
@@ -175,7 +175,8 @@ impl PolarCell {
     }
 }
 
-/// The power at |ν · e| below each of many limits.
+/// A cumulative sum of power. For each of many limits, it gives the power at |ν · e| below the
+/// limit.
 struct Cumulative {
     step: f64,
     /// The power between each limit and the next limit.
@@ -203,7 +204,7 @@ impl Cumulative {
         let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
         let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
         let per_bin = cell.power / (high - low);
-        // The part of the cell's range below zero is reflected to positive frequencies.
+        // The part of the cell's range that lies below zero is reflected to positive frequencies.
         for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
             if high <= low {
                 continue;

@@ -1,4 +1,5 @@
-//! Measures the windowed light field on a 4D grid, its transform, and the full radial spectrum.
+//! Measures the windowed light field on a 4D grid, and computes its transform and its full radial
+//! spectrum.
 //!
 //! The slices need no grid and have no aliasing. Two results need all four dimensions together and
 //! use a grid: the field that is written to a file, and the power over (|Ωxy|, |Ωuv|), averaged

@@ -11,8 +11,8 @@ pub struct Uncertain {
     pub error: f64,
 }
 
-/// The delete-one jackknife, which computes the variance of an estimate as (R−1)/R Σ (θ_r − θ̄)²,
-/// where θ_r is the estimate with batch r left out (Efron and Stein 1981).
+/// The delete-one jackknife. Let θ_r be the estimate without batch r. The variance of the estimate
+/// from all R batches is (R−1)/R Σ (θ_r − θ̄)² (Efron and Stein 1981).
 ///
 /// The jackknife receives the values one after another and keeps running sums (Welford 1962).
 pub(crate) struct Jackknife<D: Dimension> {
@@ -31,7 +31,7 @@ impl<D: Dimension> Jackknife<D> {
         }
     }
 
-    /// Adds the value of the estimate with the next batch left out.
+    /// Adds the next value, which is the estimate with one batch left out.
     pub(crate) fn add(&mut self, value: &Array<f64, D>) {
         self.count += 1;
         let count = self.count as f64;

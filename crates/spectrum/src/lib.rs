@@ -1,10 +1,10 @@
 //! Converts photons that cross virtual planes to spectra with statistical errors.
 //!
 //! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. The
-//! function [`measure`] runs batches of photons. For each batch and plane, the function records
-//! three results: the [`Slices`](etendue_field::Slices) of the windowed light field, the projection
-//! of this field on (x, u), and the numbers of photons inside and outside the window. The output is
-//! a complete or partial [`Measurement`]. The independent batches of a measurement give estimates.
+//! function [`measure`] runs batches of photons. For each batch and plane, the function records the
+//! [`Slices`](etendue_field::Slices) of the windowed light field and the projection of this field
+//! on (x, u). It also records the numbers of photons inside and outside the window. The output is a
+//! complete or partial [`Measurement`]. The independent batches of a measurement give estimates.
 //! [`estimate::slices`] returns the mean slices with their variance, and [`CrossPower`] computes
 //! the radial power without the photons' noise. Slopes ([`moments`]) and bandwidths
 //! ([`bandwidth`](mod@bandwidth)) have jackknife errors. The module [`field`] measures the light

@@ -45,7 +45,7 @@ pub trait Watch: Sync {
         true
     }
 
-    /// Receives an unfinished batch each time further parts of the batch are finished.
+    /// Receives an unfinished batch whenever more of its parts are finished.
     fn begun(&self, _batch: &PartialBatch) {}
 
     /// Receives a finished batch.
@@ -61,8 +61,9 @@ impl Watch for Told<'_> {
     }
 }
 
-/// Runs [`measure`] on distinct batches in any order; each batch continues after its finished
-/// parts. Returns the finished batches, and the unfinished batches that `watch` has stopped.
+/// Runs [`measure`] on distinct batches in any order. If some parts of a batch are already
+/// finished, the batch continues after these parts. Returns the finished batches, and the
+/// unfinished batches that `watch` has stopped.
 ///
 /// Threads take the parts of batches in order, which keeps the number of unfinished batches small.
 /// A part is added to the sum only after all earlier parts.

@@ -40,12 +40,13 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// Returns H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0), the share of the energy at frequencies above a
-/// cut in the spectrum at ν = 0.
+/// Returns H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0). In the spectrum at ν = 0, H is the share of the
+/// energy at frequencies above a cut.
 ///
-/// On a plane that light leaves diffusely, the field is constant in slope, and the spectrum at ν =
-/// 0 is the spectrum of the windowed irradiance. On such a plane, H distinguishes a sharp shadow
-/// from a smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
+/// On a plane where light leaves a diffuse surface, the field is constant in slope, and the
+/// spectrum at ν = 0 is the spectrum of the windowed irradiance. On such a plane, H distinguishes a
+/// sharp shadow from a smooth shadow (Durand et al. 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is
+/// not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -142,8 +143,8 @@ mod tests {
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
     }
 
-    /// The lines of blockers 0.5 and 1 m away have equal power, and the line of a blocker 5 m
-    /// away has as much power as these two lines together.
+    /// Two blockers are 0.5 m and 1 m away, and their lines have equal power. A third blocker is 5
+    /// m away, and its line has as much power as the other two lines together.
     #[test]
     fn lines_of_a_wedge_are_inside() {
         let grid = grid();
@@ -175,7 +176,7 @@ mod tests {
 
     #[test]
     fn share_above_a_cut_counts_the_row_without_slope() {
-        // Of the 21 frequencies i · 0.3, eleven have |i| ≤ 5; only the column at ν = 0 counts.
+        // Eleven of the 21 frequencies i · 0.3 have |i| ≤ 5. Only the column at ν = 0 counts.
         let mut power = Array2::zeros((21, 81));
         power.index_axis_mut(Axis(1), 40).fill(2.0);
         power.index_axis_mut(Axis(1), 41).fill(100.0);

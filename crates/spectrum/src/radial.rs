@@ -213,10 +213,10 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths and its standard error. The error is that of
-    /// the bandwidth at the azimuth found. If the bandwidths of several azimuths are nearly equal,
-    /// noise decides which of them is the largest, and the result exceeds the true value by about
-    /// the error.
+    /// Returns the largest bandwidth over the azimuths and its standard error. The error belongs to
+    /// the bandwidth at this azimuth. If the bandwidths of several azimuths are nearly equal, noise
+    /// decides which of them is the largest, and the result exceeds the true value by about the
+    /// error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);

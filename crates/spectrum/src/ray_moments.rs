@@ -1,10 +1,10 @@
-//! Computes moments of a light field over its rays.
+//! Computes moments of the coordinates of a light field's rays.
 
 use etendue_field::TwoPlane;
 use ndarray::Array2;
 
-/// Integrals of the windowed light field over rays, up to second order: ∫ ℓW, ∫ ℓW zᵢ and ∫ ℓW zᵢ
-/// zⱼ for i ≤ j with z = (x, y, u, v), in this order.
+/// Integrals of the windowed light field over rays, up to second order. With z = (x, y, u, v), they
+/// are ∫ ℓW, ∫ ℓW zᵢ, and ∫ ℓW zᵢ zⱼ for i ≤ j, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayMoments(pub [f64; Self::COUNT]);
 

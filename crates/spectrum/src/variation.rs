@@ -24,8 +24,8 @@ impl WindowedMean {
         }
     }
 
-    /// Returns the slices of a windowed light field minus its mean, which are F − F(0) Ŵ / Ŵ(0),
-    /// where F is the spectrum of the light field times the window W.
+    /// Subtracts the mean from the slices of a windowed light field. Let F be the spectrum of the
+    /// light field times the window W. The result is F − F(0) Ŵ / Ŵ(0).
     ///
     /// The result is the spectrum of a product: the window times the deviation of the light field
     /// from its mean. The mean is weighted by the window.
@@ -43,8 +43,8 @@ impl WindowedMean {
         varying
     }
 
-    /// Returns several slices, such as the slices of several batches. From each of them, the mean
-    /// of its own light field is subtracted.
+    /// Subtracts the mean of the light field from each of several slices, such as the slices of
+    /// several batches. Each of them has its own mean.
     ///
     /// # Panics
     ///

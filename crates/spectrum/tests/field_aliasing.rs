@@ -111,8 +111,8 @@ fn wrong_compensations_are_beyond_it() {
         if f == 0.0 { 1.0 } else { t.sin() / t }
     };
     for assignment in ALL {
-        // Returns the largest ratio over the sets of rays, with each spectrum multiplied by
-        // `factor`, a function of the cycles per cell.
+        // Multiplies each spectrum by `factor`, a function of the frequency in cycles per cell, and
+        // returns the largest ratio over the sets of rays.
         let with = |factor: &dyn Fn([f64; 4]) -> Complex| {
             let sets = sets(&window).into_iter();
             sets.map(|crossings| {
@@ -212,8 +212,8 @@ fn the_slices_tell_the_aliasing() {
                 assert!(aliasing.difference < aliasing.bound);
                 assert!(ratio < 1.5, "{ratio}");
             } else {
-                // Most of the difference comes from a few of 286 frequencies, and the power
-                // beyond Nyquist is estimated from 150 frequencies.
+                // A few of the 286 frequencies cause most of the difference, and only 150
+                // frequencies serve to estimate the power beyond Nyquist.
                 assert!((0.6..1.5).contains(&ratio), "{assignment:?}: {ratio}");
             }
             assert!(aliasing.difference < last, "{assignment:?}"); // a smoother spline aliases less

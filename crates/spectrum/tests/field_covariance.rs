@@ -78,8 +78,8 @@ impl PhotonSource for Gaussian {
     }
 }
 
-/// Returns 1/8π² S⁻¹ of the windowed field over (x, u) or (y, v): the entries of position and
-/// position, position and slope, and slope and slope.
+/// Returns three entries of 1/8π² S⁻¹ for the windowed field over (x, u) or (y, v): position and
+/// position, position and slope, slope and slope.
 fn expected(axis: usize) -> [f64; 3] {
     let window = window();
     let width = |profile: Profile| match profile {
@@ -136,8 +136,8 @@ fn photons_have_the_covariance_of_their_field() {
     // Student's t with 15 degrees of freedom. The largest of ten such differences exceeds 4.1
     // once in a hundred times.
     assert!(most < 4.1, "{most}");
-    // A shear of the wrong sign, A in place of A⁻ᵀ, and a factor of 2 would each cause
-    // differences far above the errors.
+    // Each of three faults would cause differences far above the errors: a shear of the wrong sign,
+    // A in place of A⁻ᵀ, or a factor of 2.
     assert!(signal > 20.0, "{signal}");
     let wrong = (found.value[0][2] + expected(0)[1]) / found.error[0][2];
     assert!(wrong.abs() > 20.0, "{wrong}");

@@ -228,8 +228,8 @@ fn shot_noise_is_removed() {
         variance += (&radial.sigma * &counts).mapv(|s| s * s).sum();
         frequencies += counts.sum();
     }
-    // For each complex number, the sum over the bins of a trial has the variance noise² ·
-    // R/(R−1), and there are effectively half as many complex numbers as frequencies.
+    // Each complex number adds the variance noise² · R/(R−1) to the sum over the bins of a trial.
+    // There are effectively half as many complex numbers as frequencies.
     let noise = left_in / frequencies;
     assert!(noise > 1.0 / 3.0 / 2000.0); // E w² = 1/3 over 2000 photons; aliases come on top
     let sd = noise * (2.0 / frequencies * 20.0 / 19.0).sqrt();
@@ -259,7 +259,7 @@ impl PhotonSource for Lone {
     ) -> Ledger {
         let (ray, weight) = (self.0, 2.0);
         record(0, &[Crossing { ray, weight }]);
-        record(1, &[Crossing { ray, weight: 1e9 }]); // another plane's
+        record(1, &[Crossing { ray, weight: 1e9 }]); // a crossing of another plane
         progress(4);
         Ledger::default()
     }

@@ -132,8 +132,8 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
 }
 
-/// Tests the field of a box on a frequency grid three times finer than the box's period requires.
-/// The power of this field is known and is not zero.
+/// Tests the field of a box. The frequency grid is three times finer than the box's period
+/// requires. The power of this field is known and is not zero.
 #[test]
 fn jackknife_intervals_cover_the_truth() {
     let (trials, batches) = (300, 16);
@@ -148,7 +148,7 @@ fn jackknife_intervals_cover_the_truth() {
         let truth = (t.sin() / t).powi(2);
         let radial = cross.radial();
         let off = (radial.power[[i, j]] - truth).abs();
-        let interval = 2.131 * radial.sigma[[i, j]]; // Student's t, 15 degrees, 97.5 %
+        let interval = 2.131 * radial.sigma[[i, j]]; // 97.5 % quantile of Student's t with 15 degrees of freedom
         covered += u32::from(off < interval);
         halved += u32::from(off < 0.5 * interval);
 
@@ -162,7 +162,7 @@ fn jackknife_intervals_cover_the_truth() {
     // times this error, plus 1 % for the error of the jackknife.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
-    assert!(share(halved) < 0.80); // half of the error covers only 70 %
+    assert!(share(halved) < 0.80); // an interval of half the width covers only 70 %
 }
 
 #[test]

@@ -6,8 +6,8 @@ use etendue_field::{Light, Patch, Shape};
 /// an element of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The size of a light: the side along X of a rectangle, whose aspect ratio is constant, or the
-    /// radius of a disc.
+    /// The size of a light. For a rectangle, it is the side along X, and the aspect ratio is
+    /// constant. For a disc, it is the radius.
     SourceSize,
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
@@ -17,8 +17,9 @@ pub enum Parameter {
     /// ray. The leg starts at an element, or at the light (0), and ends at the next element or at
     /// the plane. If the length changes, all elements after the leg and the plane move along D.
     Travel(usize),
-    /// The size of the first shape of an opaque mask: the side along X of a rectangle, or the
-    /// radius of a disc. All shapes of the mask scale by the same factor about their centres.
+    /// The size of the first shape of an opaque mask. For a rectangle, it is the side along X; for
+    /// a disc, it is the radius. All shapes of the mask scale by the same factor about their
+    /// centres.
     BlockerSide(usize),
     /// The edge of the first half-plane of an opaque mask; the mask's other edges do not move.
     HalfPlaneEdge(usize),

@@ -9,8 +9,8 @@ pub struct Predicted {
     /// The slices of the windowed spectrum. The unit is W m⁻² sr⁻¹ · m²; on a surface, the unit is
     /// W m⁻² sr⁻¹ · m² rad².
     pub slices: Slices,
-    /// Independent unbiased predictions whose mean is `slices`; empty for closed forms and
-    /// quadrature rules.
+    /// Independent unbiased predictions. Their mean is `slices`. The list is empty for closed forms
+    /// and quadrature rules.
     pub replicates: Vec<Slices>,
     /// The relative error ‖error‖/‖F‖. For replicates, the error is the standard error of their
     /// mean. For quadrature rules, the error is the change under finer rules. The error is `None`

@@ -36,8 +36,8 @@ pub(crate) struct Pixels<'a> {
     cells: Vec<Vec<f64>>,
 }
 
-/// The density over a map weights light by the cosine at the surface, but by no less than this
-/// value.
+/// The density over a map weights light by the cosine at the surface. If the cosine is below this
+/// value, this value is the weight.
 const GRAZING: f64 = 0.05;
 
 impl<'a> SkyDensity<'a> {
@@ -100,7 +100,7 @@ impl<'a> Pixels<'a> {
         let raster = map.raster();
         let [w, h] = [raster.width(), raster.height()];
         let pixel = |i: usize, j: usize| raster.value(i as f64 + 0.5, j as f64 + 0.5, true);
-        // Between pixel centres the radiance is interpolated from the pixels, and so is the weight.
+        // Between pixel centres, the radiance and the weight are interpolated from the pixels.
         let weight = |i: usize, j: usize| {
             let columns = [i + w - 1, i, i + 1].map(|i| i % w);
             let rows = [j.saturating_sub(1), j, (j + 1).min(h - 1)];
@@ -110,8 +110,8 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // An environment emits light only forward, so only part of a cell across the border of
-            // the forward half emits light.
+            // An environment emits light only forward. If a cell lies across the border of the
+            // forward half, only a part of the cell emits light.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {

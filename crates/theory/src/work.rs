@@ -14,7 +14,7 @@ pub struct PredictionWork {
 }
 
 impl PredictionWork {
-    /// The work if no prediction is needed.
+    /// Returns the work if no prediction is needed.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -25,7 +25,8 @@ impl PredictionWork {
         }
     }
 
-    /// The work of a prediction that would take far too long. The exact amount was not counted.
+    /// Returns the work of a prediction that would take far too long. The exact amount is not
+    /// counted.
     pub(crate) fn endless(drivers: String) -> Self {
         Self {
             steps: f64::INFINITY,

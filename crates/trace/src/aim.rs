@@ -8,8 +8,9 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// A mixture, with equal weights, of several strategies to draw rays of light from an environment.
-/// The density of this mixture is over (x, y, u, v) at the beginning of the first leg.
+/// A mixture of several strategies to draw rays of light from an environment. All strategies have
+/// equal weights. The density of the mixture is over (x, y, u, v) at the beginning of the first
+/// leg.
 ///
 /// Emission, aimed or plain, covers only rays that reach the window of some virtual plane,
 /// because the flux of an environment through all space is infinite.
@@ -62,8 +63,8 @@ impl Facing {
         }
     }
 
-    /// Returns a ray drawn in the window, given in the plane at the beginning of the leg, or
-    /// `None` if the drawn coordinates belong to no ray.
+    /// Draws coordinates in the window and returns their ray, in the plane at the beginning of the
+    /// leg. Returns `None` if the drawn coordinates belong to no ray.
     fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
         let seen = TwoPlane {
             x: self.position[0].quantile(r[0]),
@@ -90,15 +91,14 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has two strategies for the window of each virtual plane on the first leg:
-    /// one draws rays by the window's profiles, and the other draws directions by the
-    /// environment. For each virtual plane on a later leg, aimed emission has a strategy for the
-    /// part of the first surface that this plane sees. If a virtual plane lies on the first
-    /// surface, aimed emission also has a strategy that draws rays by the profiles of that
-    /// plane's window. Plain emission draws positions uniformly over the windows of the virtual
-    /// planes on the first leg, over the first surface, and over the windows of virtual planes on
-    /// that surface. Plain emission always draws directions in proportion to the environment's
-    /// radiance.
+    /// Aimed emission has two strategies for the window of each virtual plane on the first leg: one
+    /// draws rays by the window's profiles, and the other draws directions by the environment. For
+    /// each virtual plane on a later leg, aimed emission has a strategy for the part of the first
+    /// surface that this plane sees. If a virtual plane lies on the first surface, aimed emission
+    /// also has a strategy that draws rays by the profiles of that plane's window. Plain emission
+    /// draws positions uniformly over three regions: the windows of the virtual planes on the first
+    /// leg, the first surface, and the windows of virtual planes on that surface. Plain emission
+    /// always draws directions in proportion to the environment's radiance.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();
@@ -124,7 +124,7 @@ impl FromSky {
         }
     }
 
-    /// Returns a ray drawn with eight random words, or `None` if its direction does not go
+    /// Draws a ray with eight random words. Returns `None` if the direction of the ray does not go
     /// forward.
     pub(crate) fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
         let [r, s] = words.map(|words| words.map(random::unit));

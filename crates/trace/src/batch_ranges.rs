@@ -5,12 +5,12 @@ use std::ops::Range;
 
 /// The number of photons traced between two progress reports.
 pub(crate) const BLOCK: usize = 4096;
-/// A part of a batch holds fewer than twice `PART` photons, about a second of work for one thread.
-/// A run can stop only between parts. Summing up a part takes a few milliseconds.
+/// A part of a batch holds fewer than 2 · `PART` photons, which take one thread about a second. A
+/// run can stop only between parts. Summing up a part takes a few milliseconds.
 const PART: u64 = 1 << 20;
 
-/// The division of the photons of a run into batches of nearly equal size, in the order of the
-/// photons' numbers.
+/// A division of the photons of a run into batches of nearly equal size. Photons stay in the order
+/// of their numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchRanges {
     photons: u64,
@@ -53,8 +53,8 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// Returns the number of photons in each part of a batch except the last part. The length of
-    /// the parts is chosen to make part numbers fit in 32 bits.
+    /// Returns the number of photons in each part of a batch except the last part. The parts are
+    /// long enough that their numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
         let parts = count / PART.max(count >> 31);

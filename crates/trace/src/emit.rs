@@ -15,7 +15,8 @@ use glam::DVec3;
 use plain::Plain;
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it.
-/// For a point light the density is over (u, v) alone, and for a beam over (x, y) alone.
+/// The density of a point light is over (u, v) alone, and the density of a beam is over (x, y)
+/// alone.
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
@@ -30,9 +31,9 @@ enum EmissionStrategy {
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent, drawn uniformly within one of several ranges, each chosen with equal
-    /// probability. Each range is given by bounds on the slopes along x and y, or on the
-    /// positions along x and y for a beam.
+    /// Light without extent. Its rays are drawn uniformly within one of several ranges, and all
+    /// ranges have the same probability. Bounds on the slopes along x and y define each range. For
+    /// a beam, the bounds are on the positions along x and y.
     Even(Vec<AxisBounds>),
     /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
@@ -142,7 +143,7 @@ impl Emitter {
     }
 
     /// Returns the number of the first block of random words that a photon's interactions with
-    /// surfaces use. Of block 1, the emission uses only the last word, which selects the virtual
+    /// surfaces use. The emission uses only the last word of block 1, which selects the virtual
     /// plane at which a ray is aimed. Light from an environment uses all words of block 1.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
@@ -257,8 +258,8 @@ impl Emitter {
     }
 }
 
-/// Returns the density of rays aimed by several proposals, with respect to du dv for a point
-/// light and to dx dy du dv for any other light.
+/// Returns the density of rays that several proposals aim. The density is per du dv for a point
+/// light, and per dx dy du dv for any other light.
 #[inline(always)]
 fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
     let mut sums = [0.0; ABREAST];

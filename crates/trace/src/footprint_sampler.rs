@@ -99,8 +99,8 @@ impl FootprintSampler {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // Along a ray with slopes (u, v), an area dA of the surface is projected onto the
-            // area |n · (u, v, 1)| dA of the plane at the beginning of the leg.
+            // Rays with slopes (u, v) project an area dA of the surface onto the plane at the
+            // beginning of the leg. The projected area is |n · (u, v, 1)| dA.
             sum += density / normal.dot(along).abs();
         });
         sum
@@ -133,9 +133,9 @@ mod tests {
         .unwrap()
     }
 
-    /// Tests two properties. For any direction, the density over (x, y) integrates to 1, even if
-    /// lines meet the surface twice. The test also checks that sampled points follow the density.
-    /// The mean over these points of a function divided by the density must be the integral of the
+    /// Tests two properties. First, for any direction, the density over (x, y) integrates to 1,
+    /// even if lines meet the surface twice. Second, sampled points follow the density: if a
+    /// function is divided by the density, its mean over these points is the integral of the
     /// function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
@@ -203,7 +203,7 @@ mod tests {
             assert!(
                 (mean / covered - 1.0).abs() < 0.03,
                 "{surface}: {mean} and {covered}"
-            ); // three standard errors, and as above
+            ); // three standard errors, and the errors named above
         }
     }
 }

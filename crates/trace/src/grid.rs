@@ -2,7 +2,7 @@
 
 use etendue_field::{Shape, whole};
 
-/// Flat shapes side by side in a plane across the leg, with a grid that finds the shapes that may
+/// Flat shapes that lie side by side in a plane across the leg. A grid finds the shapes that may
 /// contain a point.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
@@ -13,8 +13,8 @@ pub(crate) struct Grid {
     counts: [usize; 2],
     /// Number of cells per metre along x and along y.
     density: [f64; 2],
-    /// The index in `shapes` of the first shape of each cell, [y, x], and the end of the last
-    /// cell.
+    /// For each cell [y, x], the index in `shapes` of its first shape. The last entry is the end of
+    /// the last cell.
     starts: Vec<usize>,
     /// The shapes that overlap each cell, cell by cell.
     shapes: Vec<Shape>,

@@ -41,9 +41,9 @@ impl Heading {
         }
     }
 
-    /// Returns the heading of light that travels in a direction, and the ray through a point in
-    /// this direction, in the frame of the heading. Both arguments are in the frame of the leg.
-    /// Returns `None` if the direction is perpendicular to the leg.
+    /// Returns the heading of light that travels in a direction. Also returns the ray that passes
+    /// through a point in this direction, in the frame of the heading. Both arguments are in the
+    /// frame of the leg. Returns `None` if the direction is perpendicular to the leg.
     #[inline]
     pub(crate) fn of(point: DVec3, direction: DVec3) -> Option<(Self, TwoPlane)> {
         let heading = if direction.z < 0.0 {

@@ -2,8 +2,8 @@
 //!
 //! The triangles stay in the frame at the light, with one hierarchy over all triangles, and rays
 //! are transformed to that frame. Each hit is decided in the frame of the leg, in which a direction
-//! is (u, v, 1). In this frame, two triangles that share an edge use the same arithmetic for the
-//! edge.
+//! is (u, v, 1). For two triangles that share an edge, the computation in this frame uses the same
+//! arithmetic for the edge.
 
 use crate::line::{direction, start};
 use etendue_field::triangle_distance;
@@ -69,8 +69,8 @@ impl BlockerMesh {
         last.map(|(at, Reverse(i))| (at, i))
     }
 
-    /// Checks whether a ray meets a triangle at a distance between `from` and `distance` for
-    /// which `does` returns true. The search goes backwards from `distance`.
+    /// Checks whether a ray meets a triangle between `from` and `distance`. Only distances for
+    /// which `does` returns true count. The search goes backwards from `distance`.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,

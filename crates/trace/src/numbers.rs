@@ -40,9 +40,9 @@ impl PhotonNumbers {
         }
     }
 
-    /// Returns the random numbers for the photons from `start` on, in the batch whose first
-    /// photon has the number `first`. Each batch has its own net, or several nets if it has more
-    /// than 2³² photons.
+    /// Returns the random numbers for the photons with the numbers `start` and above. The first
+    /// photon of their batch has the number `first`. Each batch has its own net, or several nets if
+    /// it has more than 2³² photons.
     pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
         let Self { seed, blocks, .. } = *self;
         let [random, net] = self.streams;

@@ -270,7 +270,7 @@ impl Obstacles {
 /// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
-/// A primitive that represents every half-plane that a ray hits.
+/// If a ray hits a half-plane, this primitive takes the place of the half-plane.
 static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     primitive: Primitive::Flat {
         distance: 0.0,

@@ -1,4 +1,5 @@
-//! Computes where rays of a leg cross virtual planes, and with which coordinates.
+//! Computes the points at which rays of a leg cross virtual planes, and the coordinates of the rays
+//! there.
 
 use crate::heading::Heading;
 use crate::line::{direction, ray_through, start};
@@ -7,8 +8,8 @@ use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The position of a virtual plane on its leg, with the conversion of rays of the leg to
-/// coordinates of the plane.
+/// The position of a virtual plane on its leg. It converts rays of the leg to coordinates of the
+/// plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneOnLeg {
     pub(crate) plane: usize,
@@ -36,12 +37,13 @@ pub(crate) struct SurfaceCoordinates {
     patch: Option<Patch>,
 }
 
-/// The number of angles, along each side of a window, at which slopes are evaluated.
+/// Slopes are evaluated at this number of angles along each side of a window.
 const SIDE: u32 = 9;
-/// The factor by which the largest evaluated angle is increased, to cover directions between the
+/// The largest evaluated angle is multiplied by this factor, to cover directions between the
 /// evaluated directions.
 const MARGIN: f64 = 1.1;
-/// The largest angle to the central ray, in radians, at which light is aimed by its slopes.
+/// The largest angle to the central ray, in radians. At larger angles, light is not aimed by its
+/// slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
 
 /// Returns the points at which a line meets a patch.
@@ -70,8 +72,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// Returns the point of the virtual plane with given coordinates, in the frame of the leg,
-    /// and the normal and dA / dx dy at this point; `None` if the surface has no such point.
+    /// Finds the point of the virtual plane with given coordinates. Returns this point, the normal
+    /// and dA / dx dy, in the frame of the leg; `None` if the surface has no such point.
     pub(crate) fn point(&self, at: [f64; 2]) -> Option<(DVec3, DVec3, f64)> {
         let Some(view) = &self.surface else {
             return Some((DVec3::new(at[0], at[1], self.distance), DVec3::Z, 1.0));
@@ -202,10 +204,10 @@ impl PlaneOnLeg {
 }
 
 impl SurfaceCoordinates {
-    /// Returns the frame of the local normal at a point, on the side of the normal at the central
-    /// hit; `None` if these two normals differ by a right angle or more. A line may meet a curved
-    /// surface once from each side, so only one of two points with the same coordinates has a
-    /// frame of the local normal.
+    /// Returns the frame of the local normal at a point. The local normal points to the same side
+    /// as the normal at the central hit. Returns `None` if the two normals differ by a right angle
+    /// or more. A line may meet a curved surface once from each side, so only one of two points
+    /// with the same coordinates has a frame of the local normal.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);
@@ -288,7 +290,7 @@ impl SurfaceCoordinates {
 
     fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-        // An upper bound of the angle by which the normals of the patch turn within the window.
+        // Within the window, the normals of the patch turn by at most this angle.
         let turns = self.patch.map_or(0.0, |patch| {
             patch.curvature.map(f64::abs).iter().sum::<f64>() * libm::hypot(x, y)
         });

@@ -45,9 +45,9 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. This function
-    /// is not inlined. The machine code of loops over primitives therefore stays small, and most of
-    /// these primitives are flat.
+    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. Most primitives
+    /// are flat, so this function is not inlined, and the machine code of loops over primitives
+    /// stays small.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
@@ -83,8 +83,8 @@ impl Primitive {
         }
     }
 
-    /// Checks whether a ray meets the primitive at a distance between `from` and `until` for
-    /// which `does` returns true.
+    /// Checks whether a ray meets the primitive at a distance between `from` and `until`. Only
+    /// distances for which `does` returns true count.
     #[inline]
     pub(crate) fn is_occluded(
         &self,

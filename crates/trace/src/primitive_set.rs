@@ -13,7 +13,7 @@ pub(crate) struct TaggedPrimitive<T> {
     pub(crate) tag: T,
 }
 
-/// A primitive that a ray meets, and the number of the part of the primitive at the hit.
+/// A primitive that a ray meets, and the number of the part that the ray meets.
 #[derive(Debug)]
 pub(crate) struct PrimitiveHit<'a, T> {
     primitive: &'a Primitive,
@@ -29,8 +29,8 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The largest number of primitives that are tested one after another without a hierarchy, because
-/// these tests are as fast as the start of a traversal.
+/// Up to this number, primitives are tested one after another without a hierarchy, because these
+/// tests are as fast as the start of a traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
 impl<T> TaggedPrimitive<T> {
@@ -180,8 +180,8 @@ mod tests {
         )))
     }
 
-    /// Returns squares that share edges, discs and triangles, which are the cases in which
-    /// rounding errors could let rays through.
+    /// Returns discs, triangles, and squares that share edges. With such primitives, rounding
+    /// errors could let rays through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {

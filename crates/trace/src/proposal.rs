@@ -2,7 +2,8 @@
 
 use etendue_field::Profile;
 
-/// A density on |t| < half that follows a window's profile and can be sampled on any interval.
+/// A density over t for |t| < half. It follows a window's profile and can be sampled on any
+/// interval.
 ///
 /// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of a Hann profile to the tent
 /// stays between 0 and 1.14 and falls to zero at the edge, so the weights of rays are bounded.
@@ -38,8 +39,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// Returns the density for slopes, up to `half`, of light that a surface receives. The density
-    /// is weighted by the cosine as in 2D (docs/theory.md (6)).
+    /// Returns the density for slopes of light that a surface receives. The slopes are at most
+    /// `half`. The density is weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -128,9 +129,9 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Slopes along one axis of rays that leave a point of a surface and cross a window at some
-/// distance. The slopes follow the window's profile over the range of slopes that cross the
-/// window.
+/// A sampler of slopes along one axis. The slopes belong to rays that leave a point of a surface
+/// and cross a window at some distance. The slopes follow the window's profile over the range of
+/// slopes that cross the window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -147,8 +148,8 @@ impl Aim {
         }
     }
 
-    /// Returns the cumulative densities at the two ends of the range of slopes that lead from
-    /// `x`, at the distance `from`, through the window; `None` if this range is empty.
+    /// A range of slopes leads from `x`, at the distance `from`, through the window. Returns the
+    /// cumulative densities at both ends of this range; `None` if the range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -186,10 +187,10 @@ impl Aim {
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
 /// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
-/// light and cross the window. The position x is drawn second: the window's profile is applied to
-/// the positions in the window that light with the drawn slope reaches. All samples start on the
-/// light and cross the window. For a point light, x is fixed, and the density is the density of u
-/// alone.
+/// light and cross the window. The position x is drawn second. Light with the drawn slope reaches a
+/// range of positions in the window, and the position is drawn from this range by the window's
+/// profile. All samples start on the light and cross the window. For a point light, x is fixed, and
+/// the density is the density of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
@@ -239,8 +240,8 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// Returns, for slopes `u`, the cumulative densities of the window's position at the points
-    /// where rays from the two ends of the light cross the window.
+    /// Rays with the slopes `u` from the two ends of the light cross the window at two points.
+    /// Returns the cumulative densities of the window's position at these points.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {

@@ -3,10 +3,10 @@
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
-/// Returns the radiance along a ray that is given in the plane of the light. For a point light
-/// the value is per du dv, for a beam per dx dy, and for rays of a file per share of flux. The
-/// value follows from dω = du dv / (1 + u² + v²)^(3/2), and from the contribution Φ (1 + u² +
-/// v²)² of a ray of flux Φ to radiance space.
+/// Returns the radiance along a ray that is given in the plane of the light. The value is per du dv
+/// for a point light, per dx dy for a beam, and per share of flux for rays of a file. The value
+/// follows from two relations: dω = du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ contributes Φ
+/// (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     match light {
@@ -29,8 +29,8 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
-        // The value is divided by the ray's share of the total flux, because the ray is drawn
-        // with this share as probability.
+        // The value is divided by the ray's share of the total flux, because this share is the
+        // probability with which the ray is drawn.
         Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
     }
 }

@@ -164,8 +164,8 @@ pub(crate) fn looks_at_surface(plane: &VirtualPlane) -> bool {
     plane.orientation != Orientation::Orthogonal && plane.side == Side::Before
 }
 
-/// Returns the corners of a box around the part of a patch that the window of a virtual plane
-/// sees, in the frame at the light; `None` if the window may see the entire patch.
+/// The window of a virtual plane sees a part of a patch. Returns the corners of a box around this
+/// part, in the frame at the light; `None` if the window may see the entire patch.
 fn seen_of_patch(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -213,10 +213,10 @@ fn seen_of_patch(
     }
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
-    // A point of the patch at the distance r from the normal at the hit lies at most |k| r² from
-    // the tangent plane. Within the slab of points at most |k| r² from the tangent plane, lines
-    // through the window stay inside a box. The box is computed repeatedly; the first computation
-    // uses the box of the entire patch.
+    // If a point of the patch is at the distance r from the normal line at the hit, it lies at most
+    // |k| r² from the tangent plane. Within the slab of points at most |k| r² from the tangent
+    // plane, lines through the window stay inside a box. The box is computed repeatedly; the first
+    // computation uses the box of the entire patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);
@@ -238,8 +238,8 @@ fn seen_of_patch(
     })
 }
 
-/// Returns the rays through the corners of a window that have the window's extreme slopes, each
-/// ray given by two points in the frame at the light.
+/// Returns the rays that pass through the corners of a window with the window's extreme slopes.
+/// Each ray is given by two points in the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
     let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
@@ -267,8 +267,8 @@ fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     (side * leaves > MIN_COSINE).then(|| a - (a.z / leaves) * (b - a))
 }
 
-/// The cosine of the angle to a normal, and the share of a leg's length, below which light counts
-/// as parallel to a surface.
+/// If the cosine of the angle between light and a normal is below this limit, the light counts as
+/// parallel to the surface. The same limit holds for a distance, as a share of a leg's length.
 const MIN_COSINE: f64 = 1e-3;
-/// The margin by which the aimed region exceeds the visible region, to allow for rounding errors.
+/// The aimed region exceeds the visible region by this margin, to allow for rounding errors.
 const MARGIN: f64 = 1e-9;

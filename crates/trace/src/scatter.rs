@@ -44,8 +44,8 @@ struct Angles {
 pub(crate) enum Spread<'a> {
     /// Scattering by the cosine of the angle to the normal.
     Cosine,
-    /// Scattering by a sum of BRDFs, in a frame with D along the normal, for light from a direction
-    /// in that frame.
+    /// Scattering by a sum of BRDFs, for light from one direction. The direction is given in a
+    /// frame whose D is the normal.
     Lobe {
         brdf: Mixture<'a>,
         frame: Frame,
@@ -53,8 +53,8 @@ pub(crate) enum Spread<'a> {
     },
 }
 
-/// A slope so large that it sets no bound; only the size of a surface then limits the slopes
-/// towards it.
+/// A slope so large that it sets no bound. If it is used, only the size of a surface limits the
+/// slopes towards that surface.
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {

@@ -12,9 +12,9 @@ use glam::DVec3;
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn in proportion to the cosine instead of the
-    /// environment's radiance. If most light of the environment goes backwards, forward
-    /// directions would be drawn too rarely without the strategy by the cosine.
+    /// The share of slopes that are drawn in proportion to the cosine instead of the environment's
+    /// radiance. If most light of the environment goes backwards, a strategy that follows the
+    /// radiance alone would draw forward directions too rarely.
     by_cosine: f64,
 }
 
@@ -28,8 +28,8 @@ enum Choice {
 
 /// The number of directions that are drawn to estimate the share of directions that go forward.
 const TRIED: u64 = 1000;
-/// The largest allowed share of slopes drawn by the cosine, so that some directions are still
-/// drawn by the environment.
+/// The largest allowed share of slopes that are drawn by the cosine. The limit ensures that some
+/// directions are drawn by the environment.
 const MOST_BY_COSINE: f64 = 0.9;
 const LEAST_BY_COSINE: f64 = 0.1;
 
@@ -61,7 +61,7 @@ impl Sky {
             Choice::Lobes(lobes, flux) => {
                 let lobe = &lobes[flux.sample(r[0])];
                 let squared = lobe.width * lobe.width;
-                // The value 1 − cos γ, where γ is the angle to the axis of the lobe.
+                // This value is 1 − cos γ, where γ is the angle to the axis of the lobe.
                 let fall = -squared * libm::log1p(r[1] * libm::expm1(-2.0 / squared));
                 about(lobe.from, polar(fall.clamp(0.0, 2.0), r[2]))
             }
@@ -106,9 +106,9 @@ impl Sky {
         radiance(&self.environment, ray)
     }
 
-    /// Returns the irradiance at a point with a given normal, estimated from one direction that
-    /// is drawn with equal probability by the cosine or by the environment. `incident` returns
-    /// the radiance that arrives along a ray at a given distance on the first leg.
+    /// Estimates the irradiance at a point with a given normal from one direction. The direction is
+    /// drawn by the cosine or by the environment, with equal probability. `incident` returns the
+    /// radiance that arrives along a ray at a given distance on the first leg.
     pub(crate) fn irradiance(
         &self,
         point: DVec3,

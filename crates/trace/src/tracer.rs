@@ -17,10 +17,10 @@ use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light and crosses the virtual planes in front of the first obstacle that it
-/// meets. Gratings before the obstacle attenuate the photon. A blocker absorbs the photon, and a
-/// Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the end
-/// of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
+/// A photon leaves the light and meets a first obstacle. It crosses the virtual planes in front of
+/// this obstacle. Gratings before the obstacle attenuate the photon. A blocker absorbs the photon,
+/// and a Lambertian surface absorbs the share 1 − albedo of its flux. Light that the surface at the
+/// end of a leg scatters, reflects or refracts crosses the virtual planes on the next leg, and
 /// continues from leg to leg. If a photon meets an obstacle other than the surface at the end of
 /// its leg, the photon ends.
 ///
@@ -45,8 +45,8 @@ struct FlightLeg {
     /// The objects on which the leg begins and ends.
     leaves: Option<Object>,
     ends: Option<Object>,
-    /// The object on which the leg begins, if light may meet this object again. Light never meets a
-    /// flat surface again.
+    /// The object on which the leg begins, if light that has left the object may meet it again.
+    /// Light that has left a flat surface never meets it again.
     rejoins: Option<Object>,
     /// The distance up to which a hit is attributed to rounding errors.
     rounding: f64,
@@ -100,9 +100,9 @@ impl Tracer {
         }
     }
 
-    /// Builds a second tracer of photons, which checks light without extent that no backward ray
-    /// finds. The tracers of [`Self::new`] and of this function share no random numbers, and aim
-    /// the emission in different ways.
+    /// Builds a second tracer of photons. It serves as a check where backward rays do not find a
+    /// light without extent. The tracers of [`Self::new`] and of this function share no random
+    /// numbers, and aim the emission in different ways.
     ///
     /// This tracer emits light uniformly towards the entire first surface, and towards the windows
     /// of virtual planes before this surface. Photons are traced and scattered light is aimed in
@@ -136,8 +136,8 @@ impl Tracer {
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
-                // A point drawn within the bounding square of a disc but outside the disc counts
-                // as a photon and carries no light.
+                // If a point is drawn inside the bounding square of a disc but outside the disc, it
+                // counts as a photon that carries no light.
                 if weight > 0.0 {
                     ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
@@ -284,8 +284,8 @@ impl FlightLeg {
             ..
         } = course;
         // If light has left an object and would meet the same object again, the light is lost, even
-        // if a blocker stops it first. If the lost light counted, a blocker beyond a virtual plane
-        // would add light at the plane.
+        // if a blocker stops it first. Otherwise a blocker beyond a virtual plane would add light
+        // at the plane.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;

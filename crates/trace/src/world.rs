@@ -5,7 +5,8 @@ use etendue_field::{Crossing, Frame, TwoPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// A converter from crossings of a virtual plane to rays in world coordinates with their power.
+/// A converter from crossings of a virtual plane to rays in world coordinates. It also computes the
+/// power of these rays.
 #[derive(Debug)]
 pub struct PlaneInWorld {
     plane_on_leg: PlaneOnLeg,

@@ -137,8 +137,8 @@ fn all_ways_agree(cases: &[Case]) {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 300 tests, at least one exceeds 4.5 standard errors in one run
-                    // of 500.
+                    // In one of 500 runs, at least one of some 300 tests exceeds 4.5 standard
+                    // errors by chance.
                     assert!(z.abs() < 4.5, "{at}: {a:?} and {b:?}");
                 }
                 let most = if way == "aimed" { 0.04 } else { 0.3 };
@@ -220,7 +220,7 @@ fn both_ways_agree_on_the_sphere_of_table_1() {
         let name = &scene.planes[plane].name;
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Among 21 tests, at least one exceeds 4 standard errors in one run of 700.
+            // In one of 700 runs, at least one of 21 tests exceeds 4 standard errors by chance.
             assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}");
         }
         assert!(b[0][1] < 0.02 * b[0][0], "{name}: {b:?} is too noisy");

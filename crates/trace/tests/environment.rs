@@ -91,8 +91,8 @@ impl Bench<'_> {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 200 tests, at least one exceeds 4.3 standard errors in one run
-                    // of 300.
+                    // In one of 300 runs, at least one of some 200 tests exceeds 4.3 standard
+                    // errors by chance.
                     assert!(z.abs() < 4.3, "{what}: {way} at {name}: {a:?} and {b:?}");
                 }
             }
@@ -147,8 +147,9 @@ fn a_map_is_where_its_axes_put_it() {
         let z = pairs.map(|(a, b)| (a[0] - b[0]).abs() / a[1].hypot(b[1]));
         z.fold(0.0, f64::max)
     };
-    // The tolerances are six standard errors, and four standard errors for differences between
-    // estimates that share their random numbers. The faint pixels around the pole are equal.
+    // Two estimates are different if their difference exceeds six standard errors. They are equal
+    // if it is below four standard errors; the estimates that should be equal share their random
+    // numbers. The faint pixels around the pole are equal.
     assert!(differs(0, 1) > 6.0, "{}: {found:?}", differs(0, 1));
     assert!(differs(0, 2) < 4.0, "{}: {found:?}", differs(0, 2));
 }

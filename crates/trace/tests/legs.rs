@@ -1,5 +1,5 @@
-//! Tests several reflections in a row, oblique surfaces and light that leaves a mesh: compares
-//! aimed photons, plain photons, backward rays and a plain quadrature.
+//! Tests several reflections in a row, oblique surfaces, and light that leaves a mesh. The tests
+//! compare aimed photons, plain photons, backward rays and a plain quadrature.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -96,8 +96,8 @@ fn all_ways_agree_on_every_leg() {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Among some 120 tests, at least one exceeds 4.2 standard errors in one run
-                    // of 300.
+                    // In one of 300 runs, at least one of some 120 tests exceeds 4.2 standard
+                    // errors by chance.
                     assert!(
                         z.abs() < 4.2,
                         "{way} at {name}: {a:?} and {b:?}, {wall}, {blockers}"
@@ -227,7 +227,8 @@ fn both_ways_agree_behind_smooth_surfaces() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Among some 60 tests, at least one exceeds 4 standard errors in one run of 250.
+                // In one of 250 runs, at least one of some 60 tests exceeds 4 standard errors by
+                // chance.
                 assert!(z.abs() < 4.0, "{what}: {name}: {a:?} and {b:?}");
             }
             for [mean, error] in [a[0], b[0]] {
@@ -240,8 +241,8 @@ fn both_ways_agree_behind_smooth_surfaces() {
     }
 }
 
-/// A wall that lights a nearby floor from all around; light therefore travels along and against the
-/// central ray.
+/// A large wall close to a floor. Light from the wall reaches the floor from all sides, so it
+/// travels along the central ray and against it.
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
 const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;
@@ -289,7 +290,7 @@ fn light_that_goes_back_along_a_leg_arrives() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Among 24 tests, at least one exceeds 4 standard errors in one run of 600.
+                // In one of 600 runs, at least one of 24 tests exceeds 4 standard errors by chance.
                 assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}, {wall}, {blockers}");
             }
             let [mean, error] = b[0];

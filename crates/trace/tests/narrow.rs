@@ -60,13 +60,14 @@ fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
         }
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Among some 250 tests, at least one exceeds 4.5 standard errors in one run of 600.
+            // In one of 600 runs, at least one of some 250 tests exceeds 4.5 standard errors by
+            // chance.
             assert!(z.abs() < 4.5, "{what}: {a:?} and {b:?}");
         }
     }
 }
 
-/// The path to a virtual plane, given by the objects of the scene, the objects that the path
+/// The path to a virtual plane. It is given by the objects of the scene, the objects that the path
 /// visits, and the planes.
 type Way<'a> = (String, &'a str, &'a [&'a str]);
 

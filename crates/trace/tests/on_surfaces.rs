@@ -51,7 +51,8 @@ fn agree_in(window: &str, visits: &str, surface: &str, planes: &[&str]) {
         assert!(a[0][1] < 0.02 * b[0][0], "{surface}, {plane}: {a:?}");
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Among some 70 tests, at least one exceeds 4.5 standard errors in one run of 2,000.
+            // In one of 2,000 runs, at least one of some 70 tests exceeds 4.5 standard errors by
+            // chance.
             assert!(z.abs() < 4.5, "{surface}, {plane}: {a:?} and {b:?}");
         }
     }

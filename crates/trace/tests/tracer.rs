@@ -17,8 +17,8 @@ fn scene(overrides: &[(&str, &str)]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns, for each virtual plane, the mean per emitted photon of the weight times the window,
-/// with its standard error, and the ledger of all photons.
+/// Computes the mean of weight times window over all emitted photons. Returns this mean and its
+/// standard error for each virtual plane, and the ledger of all photons.
 fn windowed_integrals(scene: &Scene) -> (Vec<[f64; 2]>, Ledger) {
     let tracer = Tracer::new(scene);
     let mut sums = vec![[0.0; 2]; scene.planes.len()];
@@ -118,11 +118,11 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     assert!(
         (flux / exact - 1.0).abs() < 1e-12,
         "{flux} W, exact {exact} W"
-    ); // every photon carries the same: rounding
+    ); // rounding; all photons have the same flux
 }
 
-/// If blockers fill their plane, no light passes. Without blockers, a virtual plane sees the same
-/// photons on both sides of the blockers' plane.
+/// If blockers fill their plane, no light passes. Without blockers, two virtual planes on the two
+/// sides of the blockers' plane see the same photons.
 #[test]
 fn blockers_block() {
     let count = |overrides: &[(&str, &str)]| {

@@ -72,8 +72,8 @@ fn all_ways_agree() {
                     for (a, b) in a.iter().zip(b) {
                         let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                         tests += 1;
-                        // Among some 400 tests, at least one exceeds 4.5 standard errors by
-                        // chance in one run of 400.
+                        // In one of 400 runs, at least one of some 400 tests exceeds 4.5 standard
+                        // errors by chance.
                         assert!(
                             z.abs() < 4.5,
                             "{of}: {way} at plane {plane}: {a:?} and {b:?}"

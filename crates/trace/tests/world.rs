@@ -10,8 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Returns a scene with a square light away from the world's origin that shines obliquely. If
-/// `visits` names the curved glossy surface, the light shines on that surface.
+/// Returns a scene with a square light that shines obliquely and does not lie at the world's
+/// origin. If `visits` names the curved glossy surface, the light shines on that surface.
 fn scene(visits: &str, planes: &str) -> Scene {
     let text = format!(
         r#"(light: Rectangle(center: (0.3, -0.2, 0.1), size: (0.06, 0.04), radiance: 2),
@@ -103,7 +103,7 @@ fn planes_on_a_surface_have_one_flux() {
         let normal = DVec3::new(0.2, -0.5, -1.0).normalize();
         let center = DVec3::new(0.3, 0.4, 0.9) - 2.0 * normal;
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
-        assert!(d.dot(*p - center) < 0.0); // it arrives from outside
+        assert!(d.dot(*p - center) < 0.0); // the photon arrives from outside
     }
     // The other virtual planes also record each tested photon, on the same line and with the same
     // power.

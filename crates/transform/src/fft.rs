@@ -16,7 +16,7 @@ const BAND: usize = 512;
 /// The plan of a 4D Fourier transform of real numbers, in place and on the threads of the current rayon pool.
 ///
 /// F[a, b, c, d] = Σ f[i, j, k, l] e^(−2πi (a i/n₀ + b j/n₁ + c k/n₂ + d l/n₃)), without a
-/// normalisation factor, for d = 0 … n₃/2; the other values are conjugates of these.
+/// normalisation factor, for d = 0 … n₃/2. All other values are conjugates of these values.
 ///
 /// The array has [n₀, n₁, n₂, [`row`](Self::row)] complex numbers in C order. Before the transform,
 /// a row holds n₃ reals: each complex number stores two of them, the real part first. The rest of

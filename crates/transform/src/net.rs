@@ -141,8 +141,8 @@ impl Net {
 
 /// Applies Owen scrambling by a hash. In Owen scrambling, the change of each bit depends only on
 /// the bits above it, so the hash is applied to the reversed bits (Laine and Karras 2011). The hash
-/// is that of Vegdahl 2021, *Building a better LK hash*, but its multiplier is independent of its
-/// addend, which makes all numbers equally likely.
+/// is from Vegdahl 2021, *Building a better LK hash*, with one change: the multiplier is
+/// independent of the addend, so all numbers are equally likely.
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();
@@ -159,7 +159,8 @@ mod tests {
     use super::*;
     use crate::random::unit;
 
-    /// Total number of coordinates of two blocks that share a net and one block with its own net.
+    /// Total number of coordinates of three blocks. Two of these blocks share a net, and one block
+    /// has its own net.
     const ALL: usize = 3 * WIDTH;
 
     fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {

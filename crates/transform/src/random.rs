@@ -14,8 +14,8 @@ pub enum Stream {
     Flip,
     /// Backward ray `index`.
     Backward,
-    /// The random numbers of photon `index` if emission is not aimed. Such photons are a reference
-    /// for aimed emission.
+    /// The random numbers of photon `index` if emission is not aimed. Photons of this emission are
+    /// a reference for aimed emission.
     Even,
     /// The scrambling of net `index` of photons.
     Net,

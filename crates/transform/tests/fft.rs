@@ -87,8 +87,8 @@ fn arrays_are_padded_by_rows() {
     }
 }
 
-/// Tests a shape that has several bands of the first axis and several blocks of columns, some of
-/// which are incomplete.
+/// Tests a shape that has several bands of the first axis and several blocks of columns. Some of
+/// the bands and blocks are incomplete.
 #[test]
 fn large_shapes_are_put_together_right() {
     let shape = [6, 10, 9, 14];

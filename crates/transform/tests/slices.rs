@@ -111,9 +111,9 @@ fn an_accumulator_is_used_again() {
     assert!((sum.finish(1.0).at_zero()).abs() < f64::MIN_POSITIVE);
 }
 
-/// Tests the discrete Parseval identity, which is exact on a lattice of n positions with the
-/// spacing a: the mean of |S|² over n successive frequencies of spacing 1/(n a) is the sum of the
-/// squared weights.
+/// Tests the discrete Parseval identity: the mean of |S|² over n successive frequencies of spacing
+/// 1/(n a) is the sum of the squared weights. The identity is exact if positions are on a lattice
+/// of n positions with the spacing a.
 #[test]
 fn power_over_all_frequencies_is_the_sum_of_squares() {
     let (half, step) = ([10, 7], [0.05, 0.03]);

@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec3};
 
-/// A camera. In the coordinates that `to_world` maps to the world, the camera looks along Z, Y
-/// points up in the picture, and X to the left.
+/// A camera. `to_world` maps the camera's coordinates to the world. In these coordinates, the
+/// camera looks along Z, Y points up in the picture, and X points to the left.
 #[derive(Clone, Debug)]
 pub struct Camera {
     /// The name of the camera in the file.
     pub name: String,
-    /// The map from camera to world coordinates; without scale, except for orthographic cameras.
+    /// The map from camera to world coordinates. It has no scale, except for orthographic cameras.
     pub to_world: DAffine3,
     /// Width and height in pixels.
     pub size: [usize; 2],
@@ -57,8 +57,9 @@ pub struct Look {
 }
 
 impl Camera {
-    /// Returns the ray through a point of the picture, in pixels to the right and down from its
-    /// top left, and a point of the lens in the unit disc.
+    /// Returns the ray through a point of the picture and a point of the lens. The first is given
+    /// in pixels to the right and down from the picture's top left, and the second by a point of
+    /// the unit disc.
     #[must_use]
     pub fn look(&self, [right, down]: [f64; 2], lens: [f64; 2]) -> Look {
         let [w, h] = self.size.map(|n| n as f64);

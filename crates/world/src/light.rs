@@ -38,8 +38,8 @@ pub enum Light {
         to_world: DAffine3,
         /// Half of the width and height of the picture at distance 1.
         half: DVec2,
-        /// Intensity along Z, W sr⁻¹; it is larger by 1/cos³ θ at an angle θ to Z, so that the picture is
-        /// even on a plane. In the direction (x, y, z) of the light, the value is that at the
+        /// Intensity along Z, W sr⁻¹; it is larger by 1/cos³ θ at an angle θ to Z, so that the
+        /// picture is even on a plane. The direction (x, y, z) of the light has the value at the
         /// texture coordinates ½ − ½ (x, y)/(z `half`).
         picture: Texture,
         /// A factor on the picture.

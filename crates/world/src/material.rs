@@ -22,7 +22,8 @@ pub enum Material {
     Plastic(Plastic),
     /// A mixture of a metal and a diffuse base below a dielectric interface, on the front.
     Principled(Box<Principled>),
-    /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, with α the angle to the mirror direction (Lafortune and Willems 1994).
+    /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, where α is the angle
+    /// to the mirror direction (Lafortune and Willems 1994).
     Phong {
         /// kd.
         diffuse: Texture,
@@ -34,8 +35,8 @@ pub enum Material {
     /// Two opaque materials, one on each side of the surface; each material scatters as on its own
     /// front.
     TwoSided(Box<[Self; 2]>),
-    /// A partly transparent surface: light passes unchanged except for a fraction that hits the
-    /// material.
+    /// A partly transparent surface. A fraction of the light hits the material, and the rest passes
+    /// unchanged.
     Mask {
         /// The fraction of the light that hits the material.
         opacity: Texture,
@@ -115,7 +116,7 @@ pub struct Principled {
     pub sheen: Texture,
     /// The strength of the clear coat, 0 to 1.
     pub clearcoat: Texture,
-    /// The gloss of the clear coat, 0 to 1: its α is 0.1 to 0.001.
+    /// The gloss of the clear coat, 0 to 1. The α of the coat decreases from 0.1 to 0.001.
     pub gloss: Texture,
     /// Index of refraction of the interface relative to the outside, at least 1.
     pub index: f64,

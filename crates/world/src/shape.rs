@@ -56,8 +56,8 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// Returns `None` unless corners refer to vertices and lengths agree. Normals may have any
-    /// length except zero. If there are no normals, triangles are flat.
+    /// Returns `None` if a corner does not refer to a vertex, or if lengths disagree. Normals may
+    /// have any length except zero. If there are no normals, triangles are flat.
     #[must_use]
     pub fn new(
         vertices: Vec<DVec3>,

@@ -4,7 +4,7 @@ use etendue_field::Raster;
 use glam::{DAffine2, DVec2};
 use std::sync::Arc;
 
-/// A number that may vary over a surface, by its texture coordinates (u, v).
+/// A number that may vary over a surface. It is a function of the texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Texture {
     /// A constant.
@@ -21,8 +21,8 @@ pub enum Texture {
     Bitmap(Bitmap),
 }
 
-/// A picture over the unit square of texture coordinates. From the first pixel, at the top left, u
-/// increases to the right and v increases downwards.
+/// A picture over the unit square of texture coordinates. The first pixel is at the top left. From
+/// there, u increases to the right and v increases downwards.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
     /// The map from the (u, v) of the surface to the (u, v) of the picture.

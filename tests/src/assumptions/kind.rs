@@ -1,8 +1,8 @@
-//! The assumptions of the theory that predicts spectra, identified by phrases in the reasons that
-//! `check` gives for violations.
+//! The assumptions of the theory that predicts spectra. They are identified by phrases in the
+//! reasons that `check` gives for violations.
 
-/// Each assumption, with a phrase from the reasons for its violation. A reason is assigned to the
-/// first phrase that it contains.
+/// Each assumption, with a phrase from the reasons that `check` gives for its violation. A reason
+/// is assigned to the first phrase that it contains.
 const PHRASES: [(&str, &str); 15] = [
     ("surfaces are met in their order", "out of order"),
     (

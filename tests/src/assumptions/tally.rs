@@ -14,7 +14,7 @@ const NAMED: usize = 4;
 #[derive(Default)]
 struct AssumptionRow {
     planes: usize,
-    /// Number of planes that violate the assumption of this row and no other.
+    /// Number of planes that violate only the assumption of this row.
     alone: usize,
     speechless: usize,
     skipped: usize,

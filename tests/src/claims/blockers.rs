@@ -283,8 +283,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Two maximum frequencies, per metre. Bounds are compared with spectra up to the first, and the
-/// sum in a bound is computed up to the second.
+/// Two maximum frequencies, per metre. Up to the first frequency, bounds are compared with spectra.
+/// Up to the second frequency, the sum in a bound is computed.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
@@ -400,9 +400,9 @@ fn soft_shadows(photons: u64) -> Claim {
             bench.seen(photons)
         };
         let [plus, minus] = [0.0, PI].map(seen);
-        // The two gratings are shifted against each other by half a period. The light behind one
-        // grating minus the light behind the other is the shadow, and the sum of both lights is
-        // the light without a shadow.
+        // The two gratings are shifted against each other by half a period. The shadow is the light
+        // behind the first grating minus the light behind the second grating. The light without a
+        // shadow is the sum of both.
         let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
             let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
             let all = slices[0].at_zero() + slices[1].at_zero();

@@ -43,7 +43,8 @@ fn shadow(
     })
 }
 
-/// Exponents of the tails of shadows whose profiles have a discontinuous n-th derivative.
+/// Measures the exponents of the tails of spectra of shadows. The profiles of these shadows have a
+/// discontinuous n-th derivative.
 fn tails(photons: u64) -> Claim {
     // The width is 1/√2, because the profile of a unit square along its diagonal is the convolution
     // of two boxes of width 1/√2.

@@ -1,4 +1,4 @@
-//! Small scenes that test the paper's statements, traced and predicted.
+//! Traces and predicts small scenes that test the paper's statements.
 
 use super::number::{Batches, ClaimNumber, jackknife};
 use crate::scenes::{predicted, traced};

@@ -56,8 +56,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
 }
 
 /// Measures the light that a glossy plane reflects from one angle to another, divided by the
-/// irradiance, for two angles in both orders. The returned number is the reflectance for one order
-/// divided by the reflectance for the other order.
+/// irradiance, for two angles in both orders. The returned number is the ratio of the reflectances
+/// for the two orders.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -167,9 +167,9 @@ fn mirror_sphere(photons: u64) -> Claim {
     }
 }
 
-/// Returns two angles, measured from the direction towards the beam's source: the angle to the
-/// normal at the point where a photon leaves a sphere of 0.5 m, and the angle to the direction of
-/// the photon.
+/// Returns two angles of a photon that leaves a sphere of 0.5 m, measured from the direction
+/// towards the beam's source. The first is the angle to the normal at the point where the photon
+/// leaves, and the second is the angle to the direction of the photon.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ray = crossing.ray;
     let (s, t) = (2.0 * ray.x, 2.0 * ray.y);

@@ -80,8 +80,8 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
 }
 
 /// Tries each fault with a size of 1 %, and then repeatedly with half the previous size. Returns
-/// the section on the smallest size such that this size and all larger sizes of the fault are
-/// rejected.
+/// the section on the smallest rejected size. At this size and at all larger tried sizes, the fault
+/// is rejected.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));

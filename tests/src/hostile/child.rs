@@ -102,8 +102,8 @@ pub(crate) fn call_within(
     })
 }
 
-/// Waits until the child process ends, or kills it at a limit; returns the peak memory of the
-/// process, and whether it took too long.
+/// Waits until the child process ends, or kills the process at a limit. Returns the peak memory of
+/// the process, and whether the process took too long.
 fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bool)> {
     let status = format!("/proc/{}/status", child.id());
     let stat = format!("/proc/{}/stat", child.id());

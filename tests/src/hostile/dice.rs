@@ -40,8 +40,8 @@ impl Dice {
         &all[self.below(all.len())]
     }
 
-    /// Returns a random length up to `most`, of which all orders of magnitude are about equally
-    /// likely.
+    /// Returns a random length up to `most`. All orders of magnitude of the length are about
+    /// equally likely.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
         let reach = 1_usize << self.below(doublings as usize + 1).min(62);

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// The text that precedes the hash of an index; the hash covers all bytes before this text.
 pub(crate) const TAIL: &str = ",\n  \"index_hash\": \"";
 
-/// Tokens of JSON in general, and of the indices of results folders.
+/// Tokens of JSON in general, and tokens of the indices of results folders.
 const WORDS: [&str; 16] = [
     "null",
     "true",

@@ -49,8 +49,7 @@ const BLOCKER: &str = r#"(
     frequencies: (azimuths: 2, rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// A mesh as mirror, whose curvatures are fitted to the vertices around the hit of the central
-/// ray.
+/// A mesh as mirror. Its curvatures are fitted to the vertices around the hit of the central ray.
 const MIRROR: &str = r#"(
     light: Projector(center: (-0.644217687, 0, 0.764842187), image: (width: (0.12, 0.12))),
     surfaces: [Mesh(name: "mesh", center: (0, 0, 0), mesh: File("NAME"), event: Mirror)],

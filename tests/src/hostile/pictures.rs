@@ -159,7 +159,7 @@ pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     on_scene(Folder::from(files), dice)
 }
 
-/// Repairs the checksums of all chunks of a PNG file, as far as they can be parsed.
+/// Repairs the checksums of the chunks of a PNG file, up to the first chunk that cannot be parsed.
 fn repair(png: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = png.get(at..at + 4) {

@@ -107,8 +107,8 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // If all hashes match, the summary may differ from the summary of valid folders, unless the
-    // mutation has changed nothing.
+    // If all hashes match although the mutation has changed something, the summary may differ from
+    // the summary of valid folders.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,

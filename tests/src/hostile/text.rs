@@ -1,4 +1,4 @@
-//! Mutations of text by tokens, many of which keep the syntax valid.
+//! Mutations of text by tokens. Many of these mutations keep the syntax valid.
 
 use super::bytes;
 use super::dice::Dice;

@@ -236,7 +236,7 @@ fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     4096 * (there + room) as u64
 }
 
-/// Kills a child process, unless the process has ended.
+/// Kills a child process if the process has not ended yet.
 fn end(child: &mut Child, signal: &str) -> io::Result<()> {
     if signal == "KILL" {
         return child.kill();

@@ -6,7 +6,7 @@
 
 use etendue_transform::random::{self, Stream};
 
-/// The kind of a scene: the elements between its light and its plane.
+/// The kind of a scene. It determines the elements between the light and the plane of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockerKind {
     /// A plane perpendicular to the central ray, behind masks.
@@ -66,7 +66,7 @@ impl BlockerKind {
         }
     }
 
-    /// Checks whether a closed form exists with which the nets' prediction is compared.
+    /// Checks whether a closed form exists; the nets' prediction is then compared with it.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,
@@ -165,8 +165,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
 }
 
 /// Draws up to three masks between the light and z = 0.9. Scenes of the kinds `Picture` and
-/// `PointAcross` have at least one opaque mask. Without such a mask, a quadrature rule would
-/// predict these scenes, and not nets.
+/// `PointAcross` have at least one opaque mask. Without an opaque mask, a quadrature rule would
+/// replace the nets in the prediction of these scenes.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();

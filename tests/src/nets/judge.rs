@@ -14,13 +14,13 @@ const BORNE: f64 = 3.0;
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
-/// The fractions of Student's t with 31 degrees of freedom whose magnitude is above 1, 2 and 3.
+/// The probabilities that |t| exceeds 1, 2 and 3, for Student's t with 31 degrees of freedom.
 const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
 /// Number of scenes with the largest ratios that are listed.
 const WORST: usize = 12;
 
-/// Returns the expected fraction of complex deviations whose magnitude, in stated errors, exceeds
-/// `distance`.
+/// Returns the probability that the magnitude of a complex deviation exceeds `distance` stated
+/// errors.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
@@ -144,9 +144,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// Returns the standard error of the mean, over scenes, of squared deviations. The standard error
-/// of the mean square is estimated from the scatter over pairs of nets, because all scenes use
-/// the same nets.
+/// Returns the standard error of the squared deviation, averaged over scenes. It is estimated from
+/// the scatter over pairs of nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {

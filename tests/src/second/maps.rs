@@ -126,8 +126,8 @@ impl Met {
     }
 }
 
-/// Returns the deviation of an affine map from the derivative, at a ray, of the function that the
-/// map linearises.
+/// Compares an affine map with the function that the map linearises. Returns the deviation of the
+/// map from the derivative of this function at a ray.
 fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {

@@ -164,7 +164,7 @@ fn squares(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// Checks gratings, whose transmittance is ½ (1 + m cos(2π f t + p)), with t measured from the
+/// Checks gratings. Their transmittance is ½ (1 + m cos(2π f t + p)), where t is measured from the
 /// center.
 fn masked_by_grating(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
@@ -197,7 +197,7 @@ fn words(grating: &Grating) -> String {
     format!("axis: {axis}, frequency: {frequency:?}, modulation: {modulation:?}, phase: {phase:?}")
 }
 
-/// Checks slides, whose picture is exp(−π u²/w²) along both axes, times the grating.
+/// Checks slides. Their picture is exp(−π u²/w²) along both axes, times the grating.
 fn slide_of_projector(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let widths = [scale(dice, 0.03, 0.3), scale(dice, 0.03, 0.3)];

@@ -34,8 +34,8 @@ pub(super) enum Turn {
 pub(super) struct Legs {
     pub(super) before: Axes,
     pub(super) after: Axes,
-    /// The axes T, B, N for arriving light and for leaving light, each with the longitude of the
-    /// central ray in these axes.
+    /// The axes T, B, N, and the longitude of the central ray in these axes: first for arriving
+    /// light, then for leaving light.
     pub(super) arriving: (Axes, f64),
     pub(super) leaving: (Axes, f64),
 }
@@ -188,8 +188,9 @@ fn frames(dice: &mut Dice, fault: &str) -> f64 {
     apart.fold(0.0, worse)
 }
 
-/// Checks that one edge of a rectangle is parallel to the component of X orthogonal to the
-/// rectangle's normal, and that the other edge is perpendicular to this component.
+/// Checks the edges of a rectangle. One edge must be parallel to the component of X that is
+/// orthogonal to the rectangle's normal, and the other edge must be perpendicular to this
+/// component.
 fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice);
     let center = world.light.point([0.0, 0.0, 2.0]);

@@ -122,8 +122,8 @@ impl Levels {
             _ => latitude,
         };
         let row = |j: usize| {
-            // The two columns adjacent to the direction, where the last column of the map
-            // precedes the first.
+            // The two columns adjacent to the direction. The last column of the map precedes the
+            // first column.
             let columns = (0..=self.width).map(|i| {
                 let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
                 let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);

@@ -85,7 +85,7 @@ impl Smooth {
 
     /// Returns the point of the surface with the coordinates s and t on its tangent plane.
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
-        // The depth of a circle of radius 1/k below its tangent.
+        // Returns the depth of a circle of radius 1/k below its tangent.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
         let below = match self.form {
             Form::Plane => 0.0,
@@ -154,8 +154,8 @@ impl Smooth {
     }
 }
 
-/// Returns the distances at which a line enters and leaves a ball whose centre is at `to_middle`
-/// from the line's start.
+/// Returns the distances at which a line enters and leaves a ball. The vector `to_middle` leads
+/// from the start of the line to the centre of the ball.
 fn chord(to_middle: Vector, towards: Vector, radius: f64) -> Vec<f64> {
     let nearest = dot(to_middle, towards);
     let off = length(plus(to_middle, -nearest, towards));

@@ -38,7 +38,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     };
     let angle = (1e-12, "rounding of 2π f t, up to 300");
     let exact = (0.0, "a number of two"); // 0 or 1 on both sides
-    let levels = (1e-13, "rounding"); // of shares of levels up to 1
+    let levels = (1e-13, "rounding"); // of interpolated levels up to 1
     vec![
         check("pattern Cosine", COSINE, angle, cosine),
         check("pattern Checkerboard", BOARD, exact, |dice| {

@@ -1,5 +1,5 @@
-//! Vectors and axes in plain numbers, so that the second implementation shares no frame code with
-//! the first.
+//! Vectors and axes in plain numbers. With them, the second implementation shares no frame code
+//! with the first implementation.
 
 use crate::hostile::dice::Dice;
 use etendue_field::Frame;

@@ -188,8 +188,8 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// Returns the intersection, nearest to the central hit, of the line of a ray with the
-    /// plane's surface, and the normal at this intersection.
+    /// Returns the point where the line of a ray meets the plane's surface, and the normal at this
+    /// point. If there are several such points, returns the point nearest to the central hit.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;
         let tangent = || {

@@ -7,8 +7,8 @@ use etendue_field::Frame;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::path::Path;
 
-/// The texts of which a scene file is composed. The light's center, the path's direction and its
-/// X axis are random.
+/// The texts that together form a scene file. The light's center, the path's direction and its X
+/// axis are random.
 #[derive(Clone, Debug)]
 pub(super) struct World {
     /// The frame at the light.

@@ -6,8 +6,9 @@ use etendue_scene::Scene;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// The number of nodes of the midpoint rule along each of x and y, and the number along each of θ
-/// and φ. At the highest frequency, there are more than four nodes per cycle.
+/// Two numbers of nodes of the midpoint rule. The first number is for each of x and y, and the
+/// second number is for each of θ and φ. At the highest frequency, there are more than four nodes
+/// per cycle.
 const NODES: [usize; 2] = [40, 36];
 
 /// A sphere in an unoccluded environment.

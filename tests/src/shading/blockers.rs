@@ -281,7 +281,8 @@ fn average() -> Vec<Statement> {
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
             // The spectrum falls with the pitch like the tail of a Gaussian at f d₁/D − 0.7, in a
-            // window of 0.4 m. This number is 1.5 and 3.7 cycles per metre for the two pitches.
+            // window of 0.4 m. For the two pitches, this difference is 1.5 and 3.7 cycles per
+            // metre.
             expected: [4.0, 100.0],
             holds: "holds, and the ripple falls faster than any power: only the tails of replicas \
                 arrive",
@@ -301,8 +302,8 @@ fn soft_shadow() -> Vec<Statement> {
             lit(u, v) * mask(x + AFTER * v)
         })
     };
-    // The convolution, at x d₁/D, of the blockers with the light's image, which is a box scaled
-    // by d₂/D.
+    // Returns the convolution of the blockers with the light's image at x d₁/D. The image is a box
+    // that is scaled by d₂/D.
     let convolved = |x: f64| {
         let size = AFTER / distance;
         let at = x * BEFORE / distance;

@@ -201,7 +201,8 @@ fn separable() -> Vec<OperatorComparison> {
     ]
 }
 
-/// Compares reflections whose factors f and h are lists of values over |θ|, with kinks.
+/// Compares reflections in which the factors f and h are lists of values over |θ|. These factors
+/// have kinks.
 fn listed() -> [OperatorComparison; 2] {
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),

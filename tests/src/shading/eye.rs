@@ -102,8 +102,8 @@ impl EyeScene {
 
     /// Returns the frequency below which 99 % of the energy of an image lies, divided by the
     /// predicted frequency. The Gaussian lobe is so narrow that angles are linear functions of the
-    /// position within its image. The image shows a distant point. If `edge` is set, it is the
-    /// derivative of the image of an edge.
+    /// position within its image. The image shows a distant point. If `edge` is set, the derivative
+    /// of the image of an edge is used instead.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;

@@ -1,5 +1,5 @@
-//! The light for the tests of shading in 2D, and its first-order reflection by quadrature in the
-//! primal domain.
+//! The light for the tests of shading in 2D, and its first-order reflection. The reflection is
+//! computed by quadrature in the primal domain.
 
 use super::primal::{about, between, wave};
 use etendue_field::Complex;
@@ -83,8 +83,8 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) before: &'a dyn Fn(f64) -> f64,
     /// The lobe ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// The factor h(θ_o') on the half-circle of outgoing directions; `None` means a factor of 1
-    /// on the full circle.
+    /// The factor h(θ_o') on the half-circle of outgoing directions. `None` means a factor of 1 on
+    /// the full circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
     /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],

@@ -5,7 +5,7 @@ use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 
-/// Maximum difference between operator and quadrature, each of which is accurate to about 10⁻¹².
+/// Maximum difference between operator and quadrature. Both are accurate to about 10⁻¹².
 const REQUIRED: f64 = 1e-9;
 /// Minimum difference that a planted fault must cause.
 const SEEN: f64 = 1e-3;

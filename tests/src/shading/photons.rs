@@ -1,5 +1,5 @@
-//! Every plane of the shading scenes: photons, the exact prediction, the first-order chain and
-//! backward rays.
+//! Compares photons at every plane of the shading scenes with the exact prediction, with the
+//! first-order chain and with backward rays.
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
@@ -25,8 +25,8 @@ struct ShadedRun {
     imbalance: f64,
 }
 
-/// Returns the section on all planes. Each scene is traced with `photons` photons; if `photons` is
-/// `None`, with the number of photons in its file.
+/// Returns the section on all planes. Each scene is traced with `photons` photons. If `photons` is
+/// `None`, each scene is traced with the number of photons in its file.
 pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

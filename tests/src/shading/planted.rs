@@ -329,8 +329,8 @@ fn texture(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Returns the bench for light of the environment that arrives at the sphere, times the cosine,
-/// and two faults in which the environment is rotated by a pixel.
+/// Returns a bench and two faults. The bench records the environment's light that arrives at the
+/// sphere, times the cosine. In both faults, the environment is rotated by a pixel.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
     let Light::Environment { environment } = &scene.light else {

@@ -1,5 +1,5 @@
-//! The semi-convolution in 4D: it computes the spectrum after a sum of BRDFs from the spectrum
-//! before it, for photons and for rays.
+//! The semi-convolution in 4D, for photons and for rays. This operator computes the spectrum after
+//! reflection by a sum of BRDFs from the spectrum before the reflection.
 
 use super::bench::reflectance;
 use super::planted::swapped;
@@ -94,9 +94,9 @@ impl Sides {
         }
     }
 
-    /// Returns ‖operator(before) − after‖ after the contribution of noise is subtracted, and the
-    /// noise, both relative to ‖after‖. Both norms are over the slice along x and over all
-    /// frequencies that the operator's shifts keep within the grid.
+    /// Returns two numbers relative to ‖after‖: ‖operator(before) − after‖ without the contribution
+    /// of noise, and the noise. Both norms are over the slice along x and over all frequencies that
+    /// the operator's shifts keep within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());

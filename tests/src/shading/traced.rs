@@ -30,8 +30,8 @@ struct Circle {
     lobe: Option<f64>,
 }
 
-/// Minimum error, at the smallest size, of a chain with a fault, relative to the error of the
-/// correct chain.
+/// At the smallest size, the error of a chain with a fault must be at least this number times the
+/// error of the correct chain.
 const SEEN: f64 = 3.0;
 
 /// A change to the theory's chain.
@@ -262,8 +262,8 @@ impl Circle {
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
             for (theta, dt) in about(0.0, REACH * size, 26) {
-                // The radiance of the light, in the light's frame, along the direction −ω(θ₀ + θ)
-                // through the hit point.
+                // This is the radiance of the light through the hit point along the direction −ω(θ₀
+                // + θ). It is computed in the light's frame.
                 let radiance = bell.value([-self.across(self.theta0, point, theta), theta]);
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;

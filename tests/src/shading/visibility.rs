@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn theory_is_the_transform_of_what_passes() {
         for row in super::all() {
-            assert!(row.off < 1e-9, "{}: {:e}", row.operator, row.off); // both sides are good to 1e-12
+            assert!(row.off < 1e-9, "{}: {:e}", row.operator, row.off); // two errors of about 1e-12
             assert!(row.fault.1 > 1e-3, "{}", row.operator);
         }
     }

@@ -1,4 +1,5 @@
-//! A scene with one mirror whose steps can be changed and compared with its photons.
+//! A scene with one mirror. The steps of the mirror can be changed and compared with the scene's
+//! photons.
 
 use super::TableRun;
 use super::steps::Steps;

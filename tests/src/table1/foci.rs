@@ -16,8 +16,8 @@ const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;
 
-/// Sums of weight, weight · x and weight · x² over the crossings of a plane, and the same three
-/// sums for y.
+/// Sums of weight, weight · x and weight · x² over the crossings of a plane. The second row
+/// contains the same three sums for y.
 type CrossingSums = [[f64; 3]; 2];
 
 /// Returns the section on the distances at which the beam is narrowest, in the plane of incidence

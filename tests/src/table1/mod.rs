@@ -56,8 +56,8 @@ impl TableRun {
     }
 }
 
-/// Returns all sections on Table 1. Each scene is traced with `photons` photons; if `photons` is
-/// `None`, with the number of photons in its file.
+/// Returns all sections on Table 1. Each scene is traced with `photons` photons. If `photons` is
+/// `None`, each scene is traced with the number of photons in its file.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

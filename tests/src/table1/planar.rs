@@ -13,8 +13,8 @@ use etendue_theory::geometry::covariance::gaussian_spectrum;
 use etendue_theory::geometry::{Matrix, Media};
 use std::f64::consts::TAU;
 
-/// Covariance over (x, θ) of the Gaussian light field in these tests, for a neighbourhood of size
-/// 1.
+/// Covariance over (x, θ) of the Gaussian light field in these tests. It is for a neighbourhood of
+/// size 1.
 const FIELD: Matrix<2> = [[1.0, 0.3], [0.3, 0.8]];
 /// Relative sizes of the neighbourhood of the central ray.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];

@@ -10,8 +10,8 @@ const NODES: i32 = 60;
 const FINE: i32 = 200;
 const REACH: f64 = 8.5;
 
-/// Transforms a Gaussian field whose rays have been traced to new coordinates, by the trapezoid
-/// rule over the original rays.
+/// Transforms a Gaussian field after its rays have been traced to new coordinates. The transform is
+/// computed by the trapezoid rule over the original rays.
 pub(super) fn of_rays(
     field: &Matrix<2>,
     to: &dyn Fn([f64; 2]) -> [f64; 2],

@@ -4,8 +4,8 @@
 use etendue_field::{Orientation, Side, VirtualPlane};
 use etendue_theory::geometry::{AffineMap, Matrix, SpectrumMap};
 
-/// The operators of travel to a mirror and of the reflection, with incidence in the plane of X
-/// and D.
+/// The operators of travel to a mirror and of the reflection. The plane of incidence is the plane
+/// of X and D.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
     pub(super) distance: f64,

@@ -182,8 +182,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Checks whether the path contains an ideal lens. An ideal lens preserves the volume of positions
-/// and slopes, unlike real lenses.
+/// Checks whether the path contains an ideal lens. Unlike a real lens, an ideal lens preserves the
+/// volume of positions and slopes.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events
@@ -201,7 +201,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// Returns a ray from a point of the light's plane with direction cosines.
+/// Returns the ray that starts at a point of the light's plane and has the given direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),

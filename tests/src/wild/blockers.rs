@@ -9,12 +9,13 @@ use std::io;
 
 /// The smallest size permitted in a scene file, metres.
 const LEAST: f64 = 1e-9;
-/// Maximum number of products of shapes for which a prediction takes an acceptable time.
+/// Maximum number of products of shapes. Up to this number, a prediction takes an acceptable time.
 const MOST: f64 = 3e4;
 /// The prediction for one disc costs as much as the prediction for this number of rectangles.
 const STRIPS: f64 = 64.0;
 
-/// Draws up to three layers before the first surface, whose distance from the light is given.
+/// Draws up to three layers before the first surface. The distance of this surface from the light
+/// is given.
 pub(super) fn blockers(
     draw: &mut SceneDraw,
     light: &LightFile,

@@ -15,8 +15,8 @@ pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
-    /// The plane of this name fails, with photons or with backward rays, and fails again with
-    /// other seeds.
+    /// The plane of this name fails with photons or with backward rays. It fails again with other
+    /// seeds.
     Wrong {
         plane: String,
         backward: bool,

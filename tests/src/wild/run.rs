@@ -52,8 +52,8 @@ pub(super) struct PlaneSummary {
     pub(super) verdict: String,
     /// The p-values of the exact prediction and, if there is one, of the affine chain.
     pub(super) p: [Option<f64>; 2],
-    /// Relative error of the prediction, limit of this error due to noise, and stated error of
-    /// the prediction.
+    /// Three errors: the relative error of the prediction, the limit of this error due to noise,
+    /// and the stated error of the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
 

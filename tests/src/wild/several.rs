@@ -1,5 +1,5 @@
-//! Random scenes with several surfaces that scatter or redirect light, and masks on any leg.
-//! Photons must not reject any prediction for these scenes.
+//! Tests random scenes with several surfaces that scatter or redirect light, and with masks on any
+//! leg. Photons must not reject any prediction for these scenes.
 
 use super::draw::SceneDraw;
 use super::planted::planted;

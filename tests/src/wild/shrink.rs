@@ -30,7 +30,8 @@ const OPTIONAL: [&str; 11] = [
     "grating",
     "description",
 ];
-/// Replacements of variants by the simplest of their kind.
+/// Names of fields, each with its simplest variant. A reduction replaces the variant of a field by
+/// the simplest variant.
 const PLAIN: [(&str, &str); 6] = [
     ("quantity", "Radiance"),
     ("orientation", "Orthogonal"),

@@ -1,5 +1,5 @@
-//! Puts small objects at random positions in the light of random scenes. The prediction must
-//! include the object, or no theory may apply to the plane.
+//! Puts small objects at random positions in the light of random scenes. If a theory applies to the
+//! plane, the prediction must include the object.
 
 use super::draw::SceneDraw;
 use super::run::text;
@@ -212,8 +212,8 @@ fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f
     (frame.to_world(local), wide)
 }
 
-/// Adds an object in the light, whose radius is relative to the light's width, and returns the
-/// kind of the object.
+/// Adds an object in the light, and returns the kind of the object. The radius of the object is
+/// relative to the light's width.
 pub(super) fn object(
     draw: &mut SceneDraw,
     scene: &Scene,

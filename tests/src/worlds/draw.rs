@@ -193,7 +193,7 @@ impl WorldDraw {
         )
     }
 
-    /// Returns a material; a material at `depth` 1 is part of another.
+    /// Returns a material. A material at `depth` 1 is part of another material.
     fn material(&mut self, depth: u32) -> String {
         let kinds = if depth == 0 { 13 } else { 7 };
         let both = |of: String| bsdf("twosided", &of);

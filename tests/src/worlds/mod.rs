@@ -68,7 +68,7 @@ enum WorldOutcome {
     Nothing,
     /// The verdicts of the planes.
     Planes(Vec<String>),
-    /// The probe failed with every seed; its planes with their p-values.
+    /// The probe failed with every seed. The text contains its planes with their p-values.
     Wrong(String),
     /// The program ended without a verdict, for this reason.
     Broken(String),

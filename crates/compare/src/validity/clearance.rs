@@ -1,4 +1,5 @@
-//! Measures how far a ray's path, as theory assumes it, passes from objects that theory ignores.
+//! Measures the distance between the path that theory assumes for a ray and the objects that theory
+//! ignores.
 
 use super::rays::CheckRay;
 use super::surroundings::{Meets, SurroundingForm, Surroundings};
@@ -20,7 +21,7 @@ pub(super) struct PathPiece {
     pub(super) is_last: bool,
 }
 
-/// An obstacle that a ray may meet on a leg on which theory does not expect this obstacle.
+/// An obstacle that a ray may meet on a leg although theory does not expect it there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Suspect {
     pub(super) leg: usize,
@@ -194,8 +195,8 @@ fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// Returns the distance between a piece of a path and a surface of the path that theory does not
-/// expect on this piece.
+/// Returns the distance between a piece of a path and a surface of the path. Theory does not expect
+/// the surface on this piece.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;

@@ -13,14 +13,15 @@ use ndarray::Array3;
 
 /// The number of rays that are drawn to find rays with light in the window.
 const TRIES: u32 = 300_000;
-/// The smallest and the largest number of rays with light in the window that are followed.
+/// The smallest and the largest number of rays that are followed. All of them bring light into the
+/// window.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
 /// The largest number of triangles that are tested for all rays together. The smallest number of
 /// rays is followed in any case.
 const LOOKED_AT: usize = 30_000_000;
-/// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
-/// point that a ray leaves.
+/// A triangle counts as a neighbour of the point that a ray leaves if it is nearer than this
+/// distance, in edges of the triangle.
 const NEIGHBOURS: f64 = 5.0;
 /// The displacement that is assigned to light that meets a surface again. It is the largest
 /// possible displacement.
@@ -70,7 +71,8 @@ impl Follower<'_> {
         let center = patch.frame.to_local(self.scene.path.ends_at(0)?.point);
         let offset = patch.frame.to_local(point) - center;
         let drawn = [offset.x, offset.y].map(|d| d / (2.0 * patch.aperture));
-        // The apparent area, seen along the ray, of a unit area on the tangent plane at the vertex.
+        // A unit area on the tangent plane at the vertex has this apparent area when it is seen
+        // along the ray.
         let area = ray.direction.dot(normal) / normal.dot(patch.frame.d);
         let on_surface = strength * area.abs() / density(drawn);
         let squared = length * length;
@@ -129,9 +131,9 @@ impl Follower<'_> {
         })
     }
 
-    /// Returns how much the slices change when rays arrive by triangles. The result is the mean of
-    /// the changes from two halves of the rays, plus its standard error, which is half of their
-    /// difference.
+    /// Returns how much the slices change when triangles deflect the rays instead of patches. The
+    /// result is the mean of the changes from two halves of the rays, plus its standard error,
+    /// which is half of their difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();

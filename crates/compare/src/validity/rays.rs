@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// Returns the first `most` rays that carry light into the window, without relatively dark rays.
-/// Only light inside the window determines which rays count as dark, because the strongest part of
-/// the sky may lie outside the window.
+/// Returns the first `most` rays that carry light into the window. Rays that are dark relative to
+/// the others are left out. Only light inside the window determines which rays count as dark,
+/// because the strongest part of the sky may lie outside the window.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -111,7 +111,7 @@ impl CheckRay {
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
-        // The extremum is at −b/a; a line without an extremum has a single root.
+        // The extremum is at −b/a. If a line has no extremum, there is a single root.
         let first = |t: &&f64| a == 0.0 || (**t < -b / a) == (from < -b / a);
         let found = roots.iter().filter(|t| t.is_finite()).find(first);
         let found = found.copied().filter(|t| *t > 0.0);
@@ -129,8 +129,8 @@ impl CheckRay {
     }
 }
 
-/// Returns six numbers in (0, 1) that fill the cube uniformly: multiples of powers of the root of
-/// x⁷ = x + 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
+/// Returns six numbers in (0, 1) that fill the cube uniformly. They are multiples of powers of the
+/// root of x⁷ = x + 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
 pub(super) fn lattice(index: u32) -> [f64; 6] {
     const ROOT: f64 = 1.112_775_684_278_705_6;
     std::array::from_fn(|axis| {

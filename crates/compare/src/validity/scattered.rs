@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Describes objects that theory ignores although light for a plane meets them before or behind a
-/// surface with a BRDF. Also returns the blockers that theory includes.
+/// Describes objects that theory ignores although light on its way to a plane meets them, before or
+/// behind a surface with a BRDF. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,

@@ -12,9 +12,9 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// Describes objects that theory ignores although light for a plane meets them between or at the
-/// surfaces of a system. Also returns the blockers that theory includes. `off` is the displacement
-/// by meshes, see [`off_patches`].
+/// Describes objects that theory ignores although light on its way to a plane meets them, between
+/// or at the surfaces of a system. Also returns the blockers that theory includes. `off` is the
+/// displacement by meshes, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -49,9 +49,9 @@ pub(crate) fn off_patches(
     Follower::new(scene, plane, view, &around).off_patches()
 }
 
-/// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. A displacement of rays by this distance changes a spectrum
-/// by about ten times as much, and the change is reported.
+/// The largest accepted distance between the two arrivals of a ray, in half-widths of the window.
+/// One arrival is by a mesh, and the other by its osculating patch. A displacement of rays by this
+/// distance changes a spectrum by about ten times as much, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -86,7 +86,7 @@ impl Followed for FollowedRays<'_> {
     }
 }
 
-/// A ray at the plane, and the share of its light that masks on the first leg transmit.
+/// A ray at the plane, and the share of its light that passes the masks on the first leg.
 pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
 /// Distances whose relative difference is below this limit count as equal.
@@ -148,9 +148,9 @@ impl Follower<'_> {
     }
 
     /// Returns a ray that theory predicts to arrive in the window. Rays are also drawn in the
-    /// window, because rays drawn at the light may rarely reach a narrow window, or the part of a
-    /// wide window that is close to the light. Light without extent is aimed at points of the
-    /// window if no surface deflects it first.
+    /// window, because rays that are drawn at the light may rarely reach a narrow window. They may
+    /// also rarely reach the part of a wide window that is close to the light. Light without extent
+    /// is aimed at points of the window if no surface deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -226,8 +226,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the point of the plane's surface at which theory counts a ray of the last leg, and
-    /// the unit normal there, if the plane is on a surface. Returns `None` where the ray does not
+    /// If the plane is on a surface, returns the point of the surface at which theory counts a ray
+    /// of the last leg, and the unit normal at this point. Returns `None` where the ray does not
     /// meet the surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
@@ -308,8 +308,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would return to the surface it has left is lost for every position of the
-        // plane, even if something stops the photon earlier.
+        // A photon is lost for every position of the plane if its line returns to the surface that
+        // it has left. This holds even if something stops the photon earlier.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))

@@ -1,4 +1,4 @@
-//! The surroundings of the path, and what a ray of a leg meets in them.
+//! The surroundings of the path. The module finds the objects that a ray of a leg meets there.
 
 use super::rays::CheckRay;
 use crate::chain::stands_before;
@@ -11,7 +11,7 @@ use glam::DVec3;
 pub(super) enum Meets {
     /// Blockers that the ray meets on this leg.
     Layer { index: usize, leg: usize },
-    /// A surface of the path, met out of turn.
+    /// A surface of the path that the ray meets where theory does not expect this surface.
     OutOfTurn(Object),
     /// The surface that the ray has just left, or another part of the surface at which the ray
     /// arrives.
@@ -85,7 +85,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) taken: Vec<TakenLayer>,
 }
 
-/// Blockers that light meets where the central ray does not.
+/// Blockers that light meets at places where the central ray does not meet them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TakenLayer {
     /// Index among the layers of the scene.
@@ -176,8 +176,8 @@ impl<'a> Surroundings<'a> {
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
-    /// Returns two shares of the light on a ray of the first leg: the share that passes the
-    /// blockers before `end`, and the share that passes the blockers that theory places before the
+    /// Returns two shares of the light on a ray of the first leg. The first share passes the
+    /// blockers before `end`. The second share passes the blockers that theory places before the
     /// plane.
     pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];

@@ -7,7 +7,7 @@ use etendue_world::Texture;
 use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
 
-/// A sphere that emits outwards, sampled within the cone that it subtends.
+/// A sphere that emits outwards. Directions to it are sampled within the cone that it subtends.
 #[derive(Debug)]
 pub(super) struct ShiningSphere {
     shape: usize,
@@ -55,8 +55,8 @@ impl ShiningSphere {
         })
     }
 
-    /// Returns a point sampled uniformly by area, its normal, and the radiance at this point
-    /// divided by the density.
+    /// Samples a point uniformly by area. Returns the point, its normal, and the radiance at this
+    /// point divided by the density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;

@@ -42,8 +42,8 @@ struct Draw<'a> {
 }
 
 impl LightSampler {
-    /// Emits a photon that is drawn with seven random numbers. Returns `None` if the photon has no
-    /// flux.
+    /// Emits a photon. Seven random numbers determine the photon. Returns `None` if the photon has
+    /// no flux.
     pub(crate) fn emit(
         &self,
         geometry: &SceneGeometry,
@@ -122,7 +122,7 @@ impl Draw<'_> {
         }
     }
 
-    /// Emits a photon from a point in a direction that is uniform in a cone, or aimed.
+    /// Emits a photon from a point. Its direction is either uniform in a cone or aimed.
     fn away(&self, from: DVec3, cone: &Cone, intensity: &dyn Fn(DVec3) -> f64) -> Emitted {
         let [a, b, _] = self.random;
         let along = match self.target() {

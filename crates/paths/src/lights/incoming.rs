@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 pub(crate) struct Incoming {
     /// The direction towards the light, of unit length.
     pub(crate) toward: DVec3,
-    /// The distance along the direction that must be free of occluders; for distant light, this
-    /// distance is beyond all surfaces.
+    /// Light arrives only if there is no occluder up to this distance along the direction. For
+    /// distant light, this distance is beyond all surfaces.
     pub(crate) distance: f64,
     /// Radiance divided by the density. If there is no density, this is the irradiance of a surface
     /// perpendicular to `toward`.

@@ -46,7 +46,8 @@ impl ShiningShape {
         })
     }
 
-    /// Returns a point sampled uniformly by area, its normal and texture coordinates.
+    /// Samples a point uniformly by area. Returns the point, its normal and its texture
+    /// coordinates.
     fn place(
         &self,
         geometry: &SceneGeometry,

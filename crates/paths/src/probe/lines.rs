@@ -7,14 +7,15 @@ use glam::DVec3;
 /// A leg of the central ray.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceLeg {
-    /// The frame at the end of the leg that is nearer to the camera. D is the direction of light.
+    /// The frame at the end of the leg. This end is nearer to the camera. D is the direction of
+    /// light.
     pub(super) frame: Frame,
     /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
     /// Half-width along x and y of the window at the end of the leg.
     pub(super) position: f64,
-    /// The maximum distance between the plane at the end of the leg and a point where a line hits
-    /// the shape at this end.
+    /// A line may hit the shape at the end of the leg at most at this distance from the plane at
+    /// this end.
     pub(super) reach: f64,
     /// Half-width of the windows in slope.
     pub(super) slope: f64,

@@ -55,7 +55,8 @@ pub struct Probe<'a> {
     pub pixel_slope: f64,
 }
 
-/// Maximum number of mirrors that are followed after the last surface of a question, plus one.
+/// Maximum number of surfaces to which the ray is followed after the last surface of a question.
+/// All of them except the last are mirrors.
 const MIRRORS: usize = 4;
 
 /// Maximum slope of a window.
@@ -64,8 +65,8 @@ const WIDEST: f64 = 1.0;
 /// Half-width along x and y of the window for the spectrum of a picture, as a fraction of the
 /// half-width at the camera's plane.
 const POINT: f64 = 1e-9;
-/// Number of frequencies on either side of zero in the spectrum of a picture, up to 6 cycles per
-/// half-width of the window.
+/// Number of frequencies on either side of zero in the spectrum of a picture. The highest frequency
+/// is 6 cycles per half-width of the window.
 const PICTURE_FREQUENCIES: usize = 24;
 /// Number of azimuths of the spectrum of a picture. At the highest frequency, adjacent azimuths are
 /// half a cycle per half-width apart. This distance is smaller than the width of the main lobe of
@@ -125,8 +126,7 @@ impl<'a> Probe<'a> {
             let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
             let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
             let widths = [wide, spread.min(WIDEST)];
-            // Among all windows, the window at the next surface sees the largest part of this
-            // surface.
+            // No window sees a larger part of this surface than the window at the next surface.
             let seen = all
                 .get(number)
                 .map_or(wide, |next| wide + (half + widths[1]) * next.distance);

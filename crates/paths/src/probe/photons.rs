@@ -180,8 +180,8 @@ impl<'a> PhotonProbe<'a> {
         })
     }
 
-    /// Returns the density per solid angle of the direction of photons that continue from a hit,
-    /// without delta components.
+    /// Returns the density, per solid angle, with which photons continue from a hit in a direction.
+    /// Delta components are left out.
     fn onward_density(&self, hit: &Hit, arriving: DVec3, along: DVec3) -> f64 {
         let [wi, wo] = [-arriving, along].map(|of| hit.frame.transpose() * of);
         let plain = self.probe.paths.scatter(hit).density(hit.uv, wo, wi);
@@ -200,8 +200,8 @@ struct Onward {
     density: Option<f64>,
 }
 
-/// Returns the factor by which the BSDF times the cosine to the shading normal is multiplied to
-/// obtain flux. For flux, both cosines refer to the geometric normal.
+/// Returns a factor. The BSDF times the cosine to the shading normal, multiplied by this factor,
+/// gives flux. For flux, both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

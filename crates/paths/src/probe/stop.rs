@@ -17,7 +17,7 @@ pub struct Stop {
     pub normal: DVec3,
     /// The unit direction in which light leaves towards the camera.
     pub leaving: DVec3,
-    /// The unit direction of arriving light that a mirror at this place would send to the camera.
+    /// The unit direction of light that arrives here and that a mirror would send to the camera.
     pub arriving: DVec3,
     /// The distance to the camera, or to the previous surface.
     pub distance: f64,
@@ -35,8 +35,8 @@ impl Stop {
         self.normal.dot(self.leaving)
     }
 
-    /// Returns the factor by which a mirror reflection spreads the slopes of rays that start at one
-    /// point, at the distance `travelled` before the surface.
+    /// Rays start at one point, at the distance `travelled` before the surface. Returns the factor
+    /// by which the reflection at a mirror spreads their slopes.
     pub(super) fn spreading(&self, travelled: f64) -> f64 {
         let [along, across] = self.curvature;
         let turned = |k: f64, cosine: f64| (1.0 + 2.0 * k * travelled * cosine).abs();
@@ -104,8 +104,8 @@ pub(super) fn visible(last: &Stop, beyond: Vec<Stop>) -> Vec<Stop> {
 /// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 
-/// Returns the curvatures, computed from normals at a distance of one step to either side. The step
-/// is the largest step that stays on the surface.
+/// Computes the curvatures from normals at a distance of one step to either side. The step is the
+/// largest step that stays on the surface.
 fn curvature(
     geometry: &SceneGeometry,
     hit: &Hit,

@@ -7,16 +7,15 @@ use crate::space::{Hit, Ray};
 use etendue_field::{Crossing, Frame, TwoPlane, VirtualPlane};
 use glam::DVec3;
 
-/// Number of lines through a window that are traced to find the objects that are seen through the
-/// window.
+/// Number of lines that are traced through a window, to find the objects that are seen through it.
 const LINES: u64 = 4096;
-/// Factor by which the region of connections exceeds the region of the traced lines, because other
-/// lines may lie slightly outside.
+/// The region of connections is larger than the region of the traced lines by this factor, because
+/// other lines may lie slightly outside.
 const MARGIN: f64 = 1.1;
 /// Maximum slope of a connection.
 const STEEPEST: f64 = 1.0;
 
-/// The region of the lines of a leg that windows see, directly or in smooth surfaces.
+/// Windows see lines of a leg, directly or in smooth surfaces. This is the region of these lines.
 #[derive(Clone, Copy, Debug)]
 struct LineRegion {
     /// The frame at the end of the leg.
@@ -62,8 +61,8 @@ impl LineRegion {
         squared * squared.sqrt() / area
     }
 
-    /// Returns the intervals of u and v of the lines through a point. For a point behind the end of
-    /// the leg, positions do not limit the slopes.
+    /// Returns the intervals in which u and v lie for lines through a point. For a point behind the
+    /// end of the leg, positions do not limit the slopes.
     fn slopes(&self, from: DVec3) -> Option<[[f64; 2]; 2]> {
         let from = self.frame.to_local(from);
         let distance = -from.z;
@@ -333,7 +332,7 @@ impl<'a> WindowConnector<'a> {
     }
 
     /// Returns the point at which a line meets the smooth surface at the end of a leg. Returns
-    /// `None` if the leg does not end at a smooth surface, or if windows cannot see the line at
+    /// `None` if the leg does not end at a smooth surface, or if windows do not see the line at
     /// this point.
     fn smooth_end(&self, number: usize, from: DVec3, along: DVec3) -> Option<Hit> {
         let region = &self.regions[number];
@@ -345,8 +344,8 @@ impl<'a> WindowConnector<'a> {
         (at.x.abs().max(at.y.abs()) <= region.position).then_some(hit)
     }
 
-    /// Checks whether the line through a point, traced back from the end of a leg, hits this point
-    /// before any other.
+    /// Traces the line through a point back from the end of a leg, and checks whether it hits this
+    /// point before any other.
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);

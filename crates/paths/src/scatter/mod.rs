@@ -3,7 +3,7 @@
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
 //! are BSDFs for radiance, times |cos| of wi. Radiance is divided by the squared index of its
-//! medium, so the quotient does not change where light is refracted.
+//! medium. This quotient does not change where light is refracted.
 
 mod place;
 mod reflects;
@@ -254,8 +254,8 @@ impl Scatter {
         }
     }
 
-    /// Returns the texture factors of both parts of a material, which are the base, and the lobe or
-    /// mirror above the base. A material with a single part has only a base.
+    /// Returns the texture factors of both parts of a material. One part is the base, and the other
+    /// part is the lobe or mirror above the base. A material with a single part has only a base.
     pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
         match self {
             Self::TwoSided(sides) => {

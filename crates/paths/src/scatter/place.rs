@@ -71,7 +71,8 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
     }
 }
 
-/// Returns the factor on light that is reflected (wi in front, as wo) or transmitted.
+/// Returns the factor that multiplies light. The light is reflected if wi is in front, as wo is;
+/// otherwise it is transmitted.
 pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
         of.reflectance.value(uv)
@@ -88,7 +89,7 @@ pub(super) fn principled(of: &world::Principled, uv: DVec2) -> Principled {
     Principled {
         facets: Microfacets {
             distribution: MicrofacetDistribution::Ggx,
-            // Mitsuba has the same minimum.
+            // Mitsuba uses the same minimum of α.
             alpha: [squared / aspect, squared * aspect].map(|alpha| alpha.max(1e-3)),
         },
         index: of.index,

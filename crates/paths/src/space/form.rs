@@ -142,8 +142,8 @@ impl Form {
 /// coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // Distances on the line are measured from the point nearest to the axis or centre, so that they
-    // are also precise for rays that start far away.
+    // Distances on the line are measured from the point that is nearest to the axis or the centre.
+    // Therefore the distances are precise even for rays that start far away.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);

@@ -87,8 +87,8 @@ impl WorldMesh {
         is_met
     }
 
-    /// Returns the point whose barycentric coordinates for the second and the third corner are
-    /// given.
+    /// Returns the point of a triangle whose barycentric coordinates are `place`. The coordinates
+    /// belong to the second and the third corner.
     fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);

@@ -26,10 +26,10 @@ impl TriangleRay {
         }
     }
 
-    /// Returns the distance of the hit, and the barycentric coordinates of the hit for the second
-    /// and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*).
-    /// For a shared edge, both triangles compute the same number with opposite signs, so no ray
-    /// passes between the triangles.
+    /// Returns the distance of the hit, and two of its barycentric coordinates, which belong to the
+    /// second and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle
+    /// intersection*). For a shared edge, both triangles compute the same number with opposite
+    /// signs, so no ray passes between the triangles.
     #[inline]
     pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);

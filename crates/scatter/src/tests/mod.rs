@@ -46,8 +46,8 @@ fn samples_know_their_density() {
     });
 }
 
-/// Returns the means over samples of two quantities, each with its standard error: the weights of
-/// samples with a density, and all flux that leaves.
+/// Returns the means of two quantities over samples, each with its standard error. The first
+/// quantity is the weight of samples with a density, and the second is all flux that leaves.
 fn means(model: &Model, wo: DVec3) -> [[f64; 2]; 2] {
     let mut sums = [[0.0; 2]; 2];
     for bounce in numbers().filter_map(|random| model.bsdf.sample(wo, random)) {

@@ -4,7 +4,7 @@ use super::text;
 use etendue_scenefile::{Fault, fault};
 use std::path::Path;
 
-/// Reads bytes in the format that the extension of `file` names.
+/// Reads bytes in the format to which the extension of `file` belongs.
 pub(super) fn by_extension<T>(
     file: &Path,
     bytes: &[u8],

@@ -16,13 +16,13 @@ impl Mesh {
     /// coordinates and lists of any type. The readers ignore all elements and properties of PLY
     /// files except vertices with their coordinates and faces with their corners. A face of more
     /// than three corners becomes a fan of triangles about its first corner, which is correct for
-    /// convex faces. A face has at most 4,096 corners. Triangles of zero area are dropped, unless
-    /// no other triangles remain.
+    /// convex faces. A face has at most 4,096 corners. Triangles of zero area are dropped if other
+    /// triangles remain.
     ///
     /// # Errors
-    /// The first fault found: its position in the file, the faulty value and the values that are
-    /// allowed. Elements are counted from 1 in OBJ files and from 0 in PLY files, as these formats
-    /// do. Lines and corners are always counted from 1.
+    /// The first fault that is found. The fault states its position in the file, the faulty value
+    /// and the values that are allowed. Elements are counted from 1 in OBJ files and from 0 in PLY
+    /// files, as these formats do. Lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
             let mesh = ply::detailed::read(bytes, false)?;
@@ -30,8 +30,8 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh as a binary little-endian PLY file without loss: coordinates as `double`,
-    /// indices as `uint`.
+    /// Returns the mesh as a binary little-endian PLY file. Coordinates are written as `double` and
+    /// indices as `uint`, so no digits are lost.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {
         ply::write(&self.vertices, &self.triangles)

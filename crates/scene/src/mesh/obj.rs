@@ -108,8 +108,8 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
 }
 
 /// Returns the triangles of the `f` lines; at least one is required. `index` returns the vertex of
-/// a corner, given the corner's word and the numbers of `v`, `vt` and `vn` lines above the corner's
-/// line.
+/// a corner. Its arguments are the corner's word and the numbers of `v`, `vt` and `vn` lines above
+/// the corner's line.
 fn triangles(
     bytes: &[u8],
     mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,

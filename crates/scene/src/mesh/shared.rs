@@ -7,9 +7,9 @@ use glam::{DAffine3, DVec3};
 /// Triangles with shared vertices, in the file's units and frame.
 ///
 /// A `Mesh` is always valid: it has at least one triangle, each triangle has an area and valid
-/// vertex indices, and coordinates are within ±10⁹. Corners run counterclockwise as seen from
-/// outside, if the file lists corners in this order. The surface need not be closed. Unused
-/// vertices are allowed.
+/// vertex indices, and coordinates are within ±10⁹. If the file lists corners counterclockwise as
+/// seen from outside, the corners of the mesh also have this order. The surface need not be closed.
+/// Unused vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,
@@ -17,9 +17,9 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the mesh of the given triangles without triangles of zero area (in f64), which
-    /// occur in real files. A scene may drop or refuse further triangles, depending on where the
-    /// scene places the mesh.
+    /// Returns the mesh of the given triangles. Real files contain triangles whose area is zero in
+    /// f64; these triangles are left out. A scene may drop or refuse further triangles, depending
+    /// on where the scene places the mesh.
     ///
     /// # Errors
     /// When a coordinate or an index is out of range, or when no triangle has an area.

@@ -6,9 +6,9 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 impl Mesh {
-    /// Returns a smooth closed star-shaped surface about the origin with lobes about the z axis,
-    /// which is a sphere plus a sectoral harmonic. The radius of the surface is r(θ, φ) = `radius`
-    /// · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`.
+    /// Returns a smooth, closed, star-shaped surface around the origin, which has lobes around the
+    /// z axis. The surface is a sphere plus a sectoral harmonic. The radius of the surface is r(θ,
+    /// φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`.
     ///
     /// The angle θ steps through `rings` bands, and the angle φ steps through 2 `rings` segments.
     /// Each pole is one vertex and no vertex is doubled at φ = 0, so the surface is watertight.

@@ -1,9 +1,9 @@
 //! Splits mesh files of arbitrary bytes into lines, words and numbers.
 
-/// The lines of a file with their numbers, counted from 1, without surrounding white space.
+/// The lines of a file, without surrounding white space. Each line has its number, counted from 1.
 ///
-/// Every line ends in the same way as the first line: at a line feed, with or without a carriage
-/// return before it, or at a carriage return alone (old Macintosh files).
+/// Every line ends in the same way as the first line. It ends at a line feed, which may follow a
+/// carriage return, or at a carriage return alone (old Macintosh files).
 pub(super) struct Lines<'a> {
     /// The bytes after the last line returned.
     pub(super) rest: &'a [u8],

@@ -114,8 +114,8 @@ impl Resolver<'_> {
         if !(fill > 0.0 && fill <= 1.0) {
             let allowed = "above 0, at most 1: a share of the pitch";
             self.faults.add(format!("{of}.fill"), number(fill), allowed);
-        // If squares overlapped, the prediction would count the overlap twice. In spite of
-        // rounding errors, the tolerance admits a fill of 0.7 with a jitter of 0.3.
+        // If squares overlapped, the prediction would count the overlap twice. A fill of 0.7 with a
+        // jitter of 0.3 is allowed, and the tolerance admits it in spite of rounding errors.
         } else if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
             let allowed = format!("0 to 1 − fill, which is {}", tidy(1.0 - fill));
             self.faults

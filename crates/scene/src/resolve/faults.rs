@@ -70,8 +70,8 @@ impl Faults {
     }
 }
 
-/// Checks whether a field sets the position of a surface or of blockers, which determines the
-/// objects that the central ray meets.
+/// Checks whether a field sets the position of a surface or of blockers. These positions determine
+/// which objects the central ray meets.
 fn is_of_place(field: &str) -> bool {
     let of_things = |list: &str| {
         field

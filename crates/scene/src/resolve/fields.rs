@@ -1,4 +1,4 @@
-//! Finds the paths of fields in a scene file by the name of an object.
+//! Finds objects in a scene file by name, and returns the paths of their fields.
 
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 

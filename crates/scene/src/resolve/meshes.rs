@@ -172,8 +172,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the largest distance from the origin at which light may begin or leave a surface. The
-/// distance bounds the coordinates of rays and meshes.
+/// Returns the largest distance from the origin at which light may start at the light source or
+/// leave a surface. The distance bounds the coordinates of rays and meshes.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {
         SurfaceFile::Rectangle { center, .. }

@@ -15,11 +15,11 @@ use glam::DVec3;
 /// at most 4e-4 (`triangles.rs`), so at least eight tenths of the component along the triangle's
 /// normal remain.
 ///
-/// The same limit applies to a ratio at each vertex. The ratio is the length of the sum of the
-/// area-weighted normals of the triangles around the vertex, divided by the sum of the lengths of
-/// these normals. This ratio is the area-weighted mean of the cosines, so if the ratio is below the
-/// limit, the cosine of at least one triangle is below the limit too. A mesh that passes the test
-/// of the cosines therefore also passes the test of the ratio.
+/// The same limit applies to a ratio at each vertex. To form the ratio, take the area-weighted
+/// normals of the triangles around the vertex. The ratio is the length of their sum divided by the
+/// sum of their lengths. This ratio is the area-weighted mean of the cosines, so if the ratio is
+/// below the limit, the cosine of at least one triangle is below the limit too. A mesh that passes
+/// the test of the cosines therefore also passes the test of the ratio.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {

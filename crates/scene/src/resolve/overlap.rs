@@ -30,10 +30,12 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..count).flat_map(|j| (0..j).map(move |i| [i, j]))
 }
 
-/// Returns the first shape that overlaps another shape, and the first shape that it overlaps.
+/// Finds the first shape that overlaps another shape. Returns this shape and the first of the
+/// shapes that it overlaps.
 ///
-/// The bounding boxes of disjoint shapes overlap only where the shapes touch, or in the corners of
-/// the boxes of discs. Few boxes of similar size overlap at any point, so few pairs are tested.
+/// If shapes are disjoint, their bounding boxes overlap only where the shapes touch, or in the
+/// corners of the boxes around discs. Few boxes of similar size overlap at any point, so few pairs
+/// are tested.
 fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     let indexed = shapes.iter().enumerate().map(|(i, shape)| {
         let [low, high] = corners(shape);
@@ -56,8 +58,8 @@ fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     [[left, bottom], [right, top]]
 }
 
-/// The largest overlap, as a share of the sizes of the shapes, that counts as a rounding error.
-/// Shapes may touch, and rounding may make touching shapes overlap.
+/// An overlap up to this share of the sizes of the shapes counts as a rounding error. Shapes may
+/// touch, and rounding may make touching shapes overlap.
 const TOUCH: f64 = 1e-9;
 
 fn meet(a: &Shape, b: &Shape) -> bool {

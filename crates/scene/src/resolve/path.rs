@@ -9,8 +9,8 @@ use etendue_scenefile::did_you_mean;
 use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
-/// The share of a leg's length, from the leg's beginning, within which hits on the surface that
-/// the ray leaves are ignored.
+/// Near the beginning of a leg, hits on the surface that the ray leaves are ignored. They are
+/// ignored up to this share of the leg's length.
 const MIN_LEG_SHARE: f64 = 1e-9;
 
 /// A surface counts as edge-on if the cosine of the angle between the ray and the normal is below
@@ -189,8 +189,8 @@ impl Resolver<'_> {
 /// Returns the frame of the light that leaves a hit along the direction `d`. The arriving frame is
 /// reflected at the surface with X reversed, and is then rotated by the smallest angle that turns D
 /// to `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D) (Durand
-/// et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of incidence, the
-/// frame is the frame of docs/conventions.md.
+/// et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light that leaves in the plane of
+/// incidence, the frame is as described in docs/conventions.md.
 ///
 /// For transmitted light, the arriving frame is rotated by the smallest angle that turns D to `d`.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
@@ -234,8 +234,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// Returns the event of a smooth surface at the end of a leg, the frame of the surface as a
-    /// lens, and the normal at the hit on the side that the surface faces.
+    /// Describes a smooth surface at the end of a leg. Returns its event, its frame as a lens, and
+    /// its normal at the hit, on the side that the surface faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,
@@ -263,7 +263,7 @@ impl Things<'_> {
         }
     }
 
-    /// Checks whether light is transmitted if it leaves a hit along `d`.
+    /// Checks whether light that leaves a hit along `d` has passed through the surface.
     fn is_left_behind(&self, hit: &Hit, d: DVec3, leg: &Frame) -> bool {
         self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }

@@ -14,8 +14,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The distance from the centre of a lobe, in widths of the lobe, beyond which the lobe's light
-/// is negligible.
+/// Beyond this distance from the centre of a lobe, in widths of the lobe, the lobe's light is
+/// negligible.
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {

@@ -300,8 +300,8 @@ impl Resolver<'_> {
         match *profile {
             Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                // A prediction sums a series whose number of terms grows with the cut, the
-                // half-width at which a Gaussian profile ends.
+                // A Gaussian profile ends at a half-width, the cut. A prediction sums a series, and
+                // the number of its terms grows with the cut.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed =
                         "at most 10 widths: beyond 3.5 widths the Gaussian is below 1e-16";
@@ -367,9 +367,9 @@ impl Resolver<'_> {
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Memory holds the spectra of all batches and their residuals. A hundred further copies
-        // of the spectra suffice for the prediction, its derivatives and errors, and for seven
-        // fine grids of the transform on each of a dozen threads.
+        // Memory holds the spectra of all batches and their residuals. A hundred further copies of
+        // the spectra suffice for the rest. The rest is the prediction, its derivatives and errors,
+        // and seven fine grids of the transform on each of a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()

@@ -91,7 +91,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the rays that go forward, each at its intersection with the plane of the light.
+/// Returns the rays that go forward. Each ray is given at the point where it crosses the plane of
+/// the light.
 fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight> {
     let mut rays = Vec::with_capacity(set.len());
     let mut behind = 0.0;
@@ -114,8 +115,8 @@ fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight>
     RayLight::new(rays, behind)
 }
 
-/// The cosine of the angle to the central ray below which a ray counts as parallel to the plane
-/// of the light.
+/// A ray counts as parallel to the plane of the light if the cosine of its angle to the central ray
+/// is below this limit.
 const LEVEL: f64 = 1e-6;
 
 fn of_flux(flux: f64) -> FluxRay {

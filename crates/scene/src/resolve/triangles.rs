@@ -8,8 +8,8 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The smallest ratio of a triangle's height to the largest coordinate of the scene at which the
-/// triangle can be distinguished from a line.
+/// The smallest ratio of a triangle's height to the largest coordinate of the scene. If the ratio
+/// is smaller, the triangle cannot be distinguished from a line.
 ///
 /// Rounding changes a coordinate in the frame of a leg by up to 4e-16 of the largest coordinate. At
 /// a ratio of 1e-12, rounding tilts the normal of a triangle by 4e-4 radians and changes the
@@ -18,8 +18,8 @@ const THIN: f64 = 1e-12;
 /// The smallest allowed height of a triangle in metres: the smallest size in a scene times the
 /// smallest scale. Products of six lengths of 1e-18 m are within the range of f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// The maximum share of a mesh's area for which thin triangles are dropped. The light that the
-/// dropped triangles would meet is far below the noise.
+/// Thin triangles are dropped if together they have at most this share of the mesh's area. The
+/// light that they would meet is far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The placement of a mesh in the scene, with the information to report its faults.
 pub(super) struct MeshPlacement<'a> {
@@ -28,7 +28,7 @@ pub(super) struct MeshPlacement<'a> {
     pub(super) source: &'a MeshSource,
     pub(super) center: DVec3,
     pub(super) scale: f64,
-    /// The largest distance from the origin of any point where light begins or leaves a surface.
+    /// The largest distance from the origin at which light starts or leaves a surface.
     pub(super) reach: f64,
 }
 
@@ -64,8 +64,8 @@ impl MeshPlacement<'_> {
 }
 
 impl Resolver<'_> {
-    /// Returns the mesh without triangles that are too thin for f64, if these triangles are a
-    /// negligible part of the mesh.
+    /// Returns the mesh without the triangles that are too thin for f64. If these triangles are not
+    /// a negligible part of the mesh, reports a fault and returns `None`.
     pub(super) fn distinct_triangles(
         &mut self,
         at: &MeshPlacement<'_>,

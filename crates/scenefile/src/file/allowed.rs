@@ -1,6 +1,6 @@
-//! Defines attributes of types: a description of a field of a scene file, an example, and the
-//! allowed range of its numbers. The schema, the hints in messages and the checks of all numbers
-//! are derived from these attributes.
+//! Defines attributes of the types of scene files. The attributes of a field are a description, an
+//! example, and the allowed range of its numbers. The schema, the hints in messages and the checks
+//! of all numbers are derived from these attributes.
 
 use crate::display::number;
 use crate::limits::MAX_NUMBER;
@@ -20,8 +20,8 @@ pub(super) fn within(least: f64, most: f64) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| bound(node, least, most))
 }
 
-/// Describes the allowed range in words, if it depends on other fields and is checked when the
-/// scene is resolved.
+/// Describes the allowed range of a field in words. This is used if the range depends on other
+/// fields, so that it is checked only when the scene is resolved.
 pub(super) fn depends(words: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| node["x-range"] = words.into())
 }

@@ -4,8 +4,8 @@ use super::spectrum::FieldSpectrum;
 use super::spline::mean_square_alias;
 use etendue_field::{Complex, FrequencyAxis, Slices};
 
-/// The difference between a 4D spectrum and the alias-free slices of the same photons, at the
-/// frequencies that both have.
+/// A comparison of a 4D spectrum with the alias-free slices of the same photons, at the frequencies
+/// that both have.
 ///
 /// All values are norms over the shared frequencies, divided by the norm of the slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +15,9 @@ pub struct Aliasing {
     /// The difference between the spectrum and the slices. It includes the error of the slices,
     /// which is below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
-    /// The difference that aliasing would cause if the spectrum beyond Nyquist were as strong as
-    /// the spectrum in the outermost quarter below Nyquist. The expected difference is not a bound.
-    /// It is correct for white noise, too large if the spectrum falls off, and too small if the
+    /// The expected difference due to aliasing. It assumes that the spectrum beyond Nyquist is as
+    /// strong as in the outermost quarter below Nyquist. The expected difference is not a bound. It
+    /// is correct for white noise, too large if the spectrum falls off, and too small if the
     /// spectrum rises beyond Nyquist.
     pub expected: f64,
     /// The bound from [`FieldSpectrum::alias_bound`]. The bound holds for any photons, but it is
@@ -111,8 +111,8 @@ impl FieldSpectrum {
         lines.into_iter().map(line).collect()
     }
 
-    /// Returns the ratio of the frequency at `index` of `frequencies` to the spacing along
-    /// `axis`, if this ratio is a whole number up to Nyquist.
+    /// Divides the frequency at `index` of `frequencies` by the spacing along `axis`. Returns the
+    /// result if it is a whole number and the frequency does not exceed Nyquist.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the multiple of the frequency is below the number of cells"

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 /// The width Δ of the rings is the natural spacing 1/(2·half-width). If the spacings of x and y (or
 /// u and v) differ, Δ is the larger spacing. The edges are 0, Δ/2, 3Δ/2, …: the first ring contains
 /// only zero, and ring j is centred at jΔ. The last edge is the largest edge that does not exceed
-/// the lower of the two Nyquist frequencies, so every ring is complete and contains no frequency at
-/// Nyquist.
+/// the lower of the two Nyquist frequencies. Therefore every ring is complete and contains no
+/// frequency at Nyquist.
 #[derive(Clone, Debug)]
 pub struct RadialBins {
     grid: FieldGrid,
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(bins.counts[[1, 0]], 8); // |(m, n)| = 1 and √2
     }
 
-    /// Tests the means of two known numbers: the number 1, and a number whose mean would change if
+    /// Tests two means that are known: the mean of the number 1, and a mean that would change if
     /// conjugates had a wrong weight.
     #[test]
     fn means_count_conjugates() {

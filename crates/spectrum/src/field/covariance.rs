@@ -16,9 +16,9 @@ const COUNT: usize = 11;
 ///
 /// If the band contains the entire spectrum, the covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals
 /// the ratio ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field. If the field has an edge, neither of
-/// these two ratios exists, because P falls only as Ω⁻² along the normal of the edge, so that the
-/// second moments grow with the band. Each result therefore belongs to a band, and only results
-/// over the same band can be compared.
+/// these two ratios exists: P falls only as Ω⁻² along the normal of the edge, so the second moments
+/// grow with the band. Each result therefore belongs to a band, and only results over the same band
+/// can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor that all moments share.
@@ -136,8 +136,8 @@ fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
     }
 }
 
-/// The contribution Re(G_r conj(G − G_r)) of a group of batches to the moments of the spectrum, as
-/// in [`GroupPower`](super::cross::GroupPower).
+/// The contribution of a group of batches to the moments of the spectrum. It is computed from
+/// Re(G_r conj(G − G_r)), as in [`GroupPower`](super::cross::GroupPower).
 #[derive(Clone, Debug)]
 pub(crate) struct GroupMoments {
     share: f64,
@@ -180,7 +180,7 @@ pub struct FieldCovariance {
     pub moments: PowerMoments,
     /// The moments over half of the band of frequencies.
     half: PowerMoments,
-    /// The moments with each of the groups left out in turn, up to a common factor.
+    /// For each group, the moments of all other groups, up to a common factor.
     without: Vec<PowerMoments>,
 }
 
@@ -231,11 +231,11 @@ impl FieldCovariance {
         self.estimate_of(|matrix| Some(*matrix))
     }
 
-    /// Returns the factor by which each variance grows if half of the band is extended to the
-    /// entire band. The factor is 1 if half of the band contains the spectrum, and about 2 if the
-    /// field has an edge. The factor is larger if replicas lie beyond half of the band. The
-    /// spectrum of a field with an edge has no second moment. Returns `None` if the power is not
-    /// above the noise.
+    /// Returns the growth of each variance, which is its value over the entire band divided by its
+    /// value over half of the band. The growth is 1 if half of the band contains the spectrum, and
+    /// about 2 if the field has an edge. The growth is larger if replicas lie beyond half of the
+    /// band. The spectrum of a field with an edge has no second moment. Returns `None` if the power
+    /// is not above the noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

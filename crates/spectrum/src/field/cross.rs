@@ -5,8 +5,8 @@ use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;
 use ndarray::Array2;
 
-/// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
-/// independently, over the azimuth of (Ωu, Ωv).
+/// The full radial spectrum of a plane. It is the mean of |ℓ̂|² over two independent azimuths: the
+/// azimuth of (Ωx, Ωy) and the azimuth of (Ωu, Ωv).
 ///
 /// Arrays are indexed [|Ωxy|, |Ωuv|], and [`RadialBins`] defines the bins. The unit of the power is
 /// the square of the unit of ℓ̂. A full radial spectrum does not show the sign of a shear, but the

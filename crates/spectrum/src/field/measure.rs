@@ -19,8 +19,8 @@ const MIN_GROUPS: usize = 3;
 pub struct FieldOptions {
     /// The method that assigns a ray to cells.
     pub assignment: Assignment,
-    /// Number of independent groups of batches from which errors are estimated. There are at least
-    /// 3 groups, and at most as many groups as batches.
+    /// Number of independent groups of batches from which errors are estimated. The number is at
+    /// least 3, and at most the number of batches.
     pub groups: usize,
     /// Whether the grids of all groups are kept in memory. If the grids are not kept, photons are
     /// traced twice: once for the sum of all groups, and once for each group. The result is
@@ -66,10 +66,9 @@ impl FieldOptions {
         FieldGrid::new(&plane.window, &slices)
     }
 
-    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads. These are the
-    /// bytes of the field, of its spectrum, and of the grid of each group that is kept or being
-    /// measured. The caller should compare this number with the available memory before the
-    /// measurement.
+    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads. The field,
+    /// its spectrum, and the grids of all groups that are kept or being measured need these bytes.
+    /// The caller should compare this number with the available memory before the measurement.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);

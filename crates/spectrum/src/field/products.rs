@@ -14,7 +14,7 @@ impl RadialBins {
     /// identical on any number of threads.
     ///
     /// # Panics
-    /// If a spectrum is on a grid other than that of these bins.
+    /// If a spectrum and these bins belong to different grids.
     #[must_use]
     pub fn products(&self, spectra: &[&FieldSpectrum]) -> Array3<f64> {
         let (rings, columns) = self.counts.dim();

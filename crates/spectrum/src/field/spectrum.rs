@@ -7,9 +7,9 @@ use ndarray::Array4;
 /// The spectrum of a windowed light field, computed on a 4D grid. Apart from aliasing, the spectrum
 /// is Σ w e^(−2πi Ω·z) over the rays.
 ///
-/// Phases refer to the plane's origin, and the transform of the spline is divided out, so at each
-/// frequency a ray contributes w e^(−2πi Ω·z) (1 + ε). The unit is that of ∫ L W dx dy du dv, as
-/// for [`Slices`](etendue_field::Slices).
+/// Phases refer to the plane's origin, and the spectrum is divided by the transform of the spline.
+/// Therefore a ray contributes w e^(−2πi Ω·z) (1 + ε) at each frequency. The unit is the unit of ∫
+/// L W dx dy du dv, as for [`Slices`](etendue_field::Slices).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldSpectrum {
     /// The grid, which determines the frequencies.

@@ -1,9 +1,9 @@
-//! Computes the shares of a ray in cells by B-splines, the transforms of these splines, and the
-//! aliasing due to sampling on a grid.
+//! Computes the shares of a ray in cells by B-splines. Also computes the transforms of these
+//! splines, and the aliasing that the grid causes.
 //!
 //! A ray at t (in cells) adds the share B(j − t) to each cell j, where B is the B-spline of order p
-//! with the transform sinc^p. Poisson's summation formula gives the transform of the shares at f
-//! cycles per cell, |f| ≤ ½, divided by sinc^p(f):
+//! with the transform sinc^p. Let f be a frequency in cycles per cell, with |f| ≤ ½. Poisson's
+//! summation formula gives the transform of the shares, divided by sinc^p(f):
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(cells(Assignment::Nearest, 7.6), [0]);
         assert_eq!(cells(Assignment::Cic, 7.6), [7, 0]);
         assert_eq!(cells(Assignment::Tsc, 0.2), [7, 0, 1]);
-        assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // what rounding makes of a ray just inside
+        assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // a ray that rounding has moved to the edge
     }
 
     /// Computes ε from its definition, for many positions of a ray.

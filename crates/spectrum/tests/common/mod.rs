@@ -65,8 +65,8 @@ pub fn boxed() -> Window {
     }
 }
 
-/// Returns a grid of `azimuths` slices with `half` values of ρ and of ν on either side of zero,
-/// and with `fineness` samples per 1/(2 half-width).
+/// Returns a grid of `azimuths` slices. Each slice has `half` values of ρ and of ν on either side
+/// of zero, and `fineness` samples per 1/(2 half-width).
 pub fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,

@@ -112,10 +112,10 @@ pub fn slope_cosine() -> Matrix<4> {
 /// directions.
 ///
 /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. A microfacet that is tilted
-/// by τ turns light by 2τ in the plane of incidence, and by 2τ cos θ₀ perpendicular to this plane,
-/// so the variances of a Beckmann lobe are 2α² and 2α² cos² θ₀. A GGX lobe has no variance, so
-/// 5α²/3 is used, which corresponds to the variance of its power spectrum. Shadowing, the Fresnel
-/// factor and the factor 1/(4 cos θi cos θo) are omitted.
+/// by τ turns light by 2τ in the plane of incidence, and by 2τ cos θ₀ perpendicular to this plane.
+/// The variances of a Beckmann lobe are therefore 2α² and 2α² cos² θ₀. A GGX lobe has no variance,
+/// so 5α²/3 is used, which corresponds to the variance of its power spectrum. Shadowing, the
+/// Fresnel factor and the factor 1/(4 cos θi cos θo) are omitted.
 #[must_use]
 pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
     let microfacets = |variance: f64| {

@@ -153,8 +153,8 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// Returns the light field multiplied by the grating in the picture of its light source. `first` is
-/// the index of the first coordinate (position or slope) of the picture.
+/// Returns the covariance of the light after multiplication by the grating in the picture of the
+/// light source. `first` is the index of the first coordinate (position or slope) of the picture.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
     image.grating.map_or(*light, |lines| {
         let mut factor = [[0.0; 4]; 4];

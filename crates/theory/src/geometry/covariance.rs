@@ -1,7 +1,7 @@
 //! Covariances of Gaussian light fields, for chains that follow only second moments.
 //!
 //! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and remains Gaussian under every step. Three
-//! functions compute the new S: [`covariance`](super::AffineMap::covariance) after an
+//! functions compute the new S. [`covariance`](super::AffineMap::covariance) computes it after an
 //! [`AffineMap`](super::AffineMap), [`gaussian_window`] after a product, and [`gaussian_lobe`]
 //! after a convolution over angles.
 
@@ -13,9 +13,9 @@ use std::f64::consts::{PI, TAU};
 /// for each coordinate. The product changes S⁻¹ to S⁻¹ + diag(1/std²). Infinite standard deviations
 /// have no effect.
 ///
-/// The result is computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light
-/// from a point. Returns `None` if 1 + diag(1/std²) S has no inverse, which cannot occur if S is a
-/// covariance.
+/// The result is computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S. For example,
+/// light from a point has a singular S. Returns `None` if 1 + diag(1/std²) S has no inverse, which
+/// cannot occur if S is a covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);

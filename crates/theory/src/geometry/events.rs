@@ -1,10 +1,11 @@
-//! Complete reflections and refractions at a surface, composed of single steps, from the frame of
-//! the arriving central ray to the frame of the leaving central ray.
+//! Complete reflections and refractions at a surface. Each of them is composed of single steps,
+//! which lead from the frame of the arriving central ray to the frame of the leaving central ray.
 
 use super::{AffineMap, Matrix, Media};
 
 impl AffineMap<2> {
-    /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
+    /// Returns the map of the reflection by a mirror that the central ray meets at the angle θ₀.
+    /// The curvature k, in 1/m, is positive for a convex mirror.
     ///
     /// The event consists of the steps incidence, curvature, mirror, back, and outgoing at −θ₀. The
     /// product is x' = −x, θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)). The two shears by
@@ -18,8 +19,9 @@ impl AffineMap<2> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from the side of the
-    /// incident light), met at the angle θ₀.
+    /// Returns the map of the refraction at a surface that the central ray meets at the angle θ₀.
+    /// The curvature k, in 1/m, is positive if the surface is convex on the side of the incident
+    /// light.
     ///
     /// The event consists of the steps incidence, curvature, refraction, back, and outgoing on the
     /// other side of the surface, where the central ray continues at θ₂. Returns `None` as for
@@ -33,8 +35,8 @@ impl AffineMap<2> {
         Some(onto.then(&local).then(&off))
     }
 
-    /// A caustic: mirror reflection, then travel by a distance in metres (Durand et al. 2005, Fig.
-    /// 11).
+    /// Returns the map of a caustic, which is a mirror reflection followed by travel over a
+    /// distance in metres (Durand et al. 2005, Fig. 11).
     ///
     /// The [focus](Self::focus) of the reflection is at the distance −cos θ₀/2k. At this distance,
     /// the position of a ray depends only on its direction, so parallel light meets in a point.
@@ -45,8 +47,8 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Reflection by a mirror with the shape operator M (see [`curvature`](Self::curvature)), met
-    /// at the angle θ₀.
+    /// Returns the map of the reflection by a mirror with the shape operator M (see
+    /// [`curvature`](Self::curvature)). The central ray meets the mirror at the angle θ₀.
     ///
     /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀
     /// M₂₂ y. A sphere of radius R thus has its focus at R/2 · cos θ₀ in the plane of incidence,
@@ -60,8 +62,9 @@ impl AffineMap<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface with the shape operator M, met at the angle θ₀. The event is
-    /// composed of the same steps as in 2D; the step back uses the cosine of θ₂.
+    /// Returns the map of the refraction at a surface with the shape operator M. The central ray
+    /// meets the surface at the angle θ₀. The event is composed of the same steps as in 2D; the
+    /// step back uses the cosine of θ₂.
     #[must_use]
     pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

@@ -16,11 +16,11 @@ pub struct AffineMap<const N: usize> {
     pub offset: [f64; N],
 }
 
-/// Step of the finite differences that estimate a map, in metres and radians.
+/// The finite differences that estimate a map have this step, in metres and radians.
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
-    /// Returns the affine map that is tangent at the ray z = 0 to another map of rays. It is
+    /// Returns the affine map that is tangent to another map of rays, at the ray z = 0. It is
     /// computed by differences of fourth order and is accurate to about 10⁻¹⁰ per metre and radian.
     /// Returns `None` if a ray near z = 0 does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
@@ -46,10 +46,10 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// Returns the distance between this map and the affine map that is tangent at the ray z = 0 to
-    /// another map of rays. [`apart`](Self::apart) defines the distance. The estimated error of the
-    /// finite differences is subtracted from the distance, because this error is noticeable if the
-    /// other map is strongly curved.
+    /// Compares this map with another map of rays near the ray z = 0. Returns the distance, as
+    /// [`apart`](Self::apart) defines it, between this map and the affine map that is tangent to
+    /// the other map at this ray. The estimated error of the finite differences is subtracted from
+    /// the distance, because this error is noticeable if the other map is strongly curved.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -114,8 +114,8 @@ impl<const N: usize> AffineMap<N> {
         })
     }
 
-    /// Returns det A, the factor by which volumes of ray space grow. The determinant is negative
-    /// if the map reverses orientation, such as the step onto a surface.
+    /// Returns det A, the factor by which volumes of ray space grow. The determinant is negative if
+    /// the map reverses orientation, as the step onto a surface does.
     #[must_use]
     pub fn det(&self) -> f64 {
         matrix::determinant(&self.matrix)

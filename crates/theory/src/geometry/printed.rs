@@ -21,7 +21,8 @@ pub enum Edition {
 }
 
 impl Edition {
-    /// Light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ θ₀)/c₀ L(−c₀ Ωx, Ωθ).
+    /// Returns the step of light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ
+    /// θ₀)/c₀ L(−c₀ Ωx, Ωθ).
     #[must_use]
     pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {
         let right = AffineMap::<2>::incidence(theta0).spectrum_map();
@@ -38,20 +39,21 @@ impl Edition {
         }
     }
 
-    /// Curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ, Ωθ).
+    /// Returns the step of curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ,
+    /// Ωθ).
     #[must_use]
     pub fn curvature(self, k: f64) -> SpectrumMap<2> {
         AffineMap::<2>::curvature(self.sign() * k).spectrum_map()
     }
 
-    /// Back from the frames of the local normals: the inverse of [`curvature`](Self::curvature), as
-    /// step 6 says.
+    /// Returns the step back from the frames of the local normals. It is the inverse of
+    /// [`curvature`](Self::curvature), as the text of step 6 says.
     #[must_use]
     pub fn back(self, k: f64) -> SpectrumMap<2> {
         AffineMap::<2>::back(self.sign() * k).spectrum_map()
     }
 
-    /// Outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
+    /// Returns the step of the outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
     #[must_use]
     pub fn outgoing(self, theta1: f64) -> SpectrumMap<2> {
         let right = AffineMap::<2>::outgoing(theta1).spectrum_map();
@@ -65,7 +67,8 @@ impl Edition {
         }
     }
 
-    /// Mirror reflection, composed of incidence, curvature, mirror, back, and outgoing at −θ₀.
+    /// Returns a mirror reflection, composed of incidence, curvature, mirror, back, and outgoing at
+    /// −θ₀.
     #[must_use]
     pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
         self.incidence(theta0)
@@ -75,26 +78,28 @@ impl Edition {
             .then(&self.outgoing(-theta0))
     }
 
-    /// Light incidence in 4D, where (x, θ) change as in 2D. The paper does not mention that the
-    /// latitude changes its sign; this function includes the change of sign for every edition.
+    /// Returns the step of light incidence in 4D, where (x, θ) change as in 2D. The paper does not
+    /// mention that the latitude changes its sign; this function includes the change of sign for
+    /// every edition.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
     }
 
-    /// Curvature in 4D. In the text after Eq. 19, this step is a shear by M without the cosine.
+    /// Returns the step of curvature in 4D. In the text after Eq. 19, this step is a shear by M
+    /// without the cosine.
     #[must_use]
     pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
         AffineMap::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
     }
 
-    /// Back from the frames of the local normals in 4D.
+    /// Returns the step back from the frames of the local normals in 4D.
     #[must_use]
     pub fn back_4d(self, shape: Matrix<2>, theta1: f64) -> SpectrumMap<4> {
         AffineMap::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
     }
 
-    /// Outgoing angle in 4D, where (x, θ) change as in 2D.
+    /// Returns the step of the outgoing angle in 4D, where (x, θ) change as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(
@@ -103,8 +108,8 @@ impl Edition {
         )
     }
 
-    /// Mirror reflection in 4D, composed of incidence, curvature, mirror, back, and outgoing at
-    /// −θ₀.
+    /// Returns a mirror reflection in 4D, composed of incidence, curvature, mirror, back, and
+    /// outgoing at −θ₀.
     #[must_use]
     pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
         self.incidence_4d(theta0)

@@ -41,8 +41,8 @@ impl Media {
 }
 
 impl AffineMap<2> {
-    /// Refraction of local directions by Snell's law, linearised at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
-    /// θ₀/(n₂ cos θ₂).
+    /// Returns the map of local directions under refraction by Snell's law, linearised at θ₀: θ' =
+    /// θ₂ + (θ − θ₀) n₁ cos θ₀/(n₂ cos θ₂).
     ///
     /// The formula follows by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); Durand et
     /// al. 2005 do not treat refraction. Directions stay flipped, because light continues through
@@ -61,8 +61,8 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Refraction of local directions. The longitude changes as in 2D, and the latitude satisfies
-    /// n₁ φ = n₂ φ'.
+    /// Returns the map of local directions under refraction. The longitude changes as in 2D, and
+    /// the latitude satisfies n₁ φ = n₂ φ'.
     ///
     /// The tangential part of n ω is the same on both sides. Its component along B is n sin φ. Its
     /// component along T is n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).

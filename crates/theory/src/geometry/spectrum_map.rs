@@ -16,7 +16,7 @@ pub struct SpectrumMap<const N: usize> {
     pub factor: f64,
     /// The matrix, as rows. It maps the frequency after the step to the frequency before the step.
     pub matrix: Matrix<N>,
-    /// The phase vector, in the units of the ray coordinates.
+    /// The phase vector. Its components have the units of the ray coordinates.
     pub phase: [f64; N],
 }
 

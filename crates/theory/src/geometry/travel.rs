@@ -5,7 +5,7 @@ use super::matrix::{diagonal, from_fn};
 use std::array;
 
 impl<const N: usize> AffineMap<N> {
-    /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
+    /// Returns the map of travel over a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
     /// The step is exact if (u, v) are slopes. If (u, v) are angles, the step holds to first order.
     /// L'(Ωx, Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2
@@ -20,8 +20,8 @@ impl<const N: usize> AffineMap<N> {
         ))
     }
 
-    /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. If f is positive, the
-    /// lens converges light.
+    /// Returns the map of a thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. If
+    /// f is positive, the lens converges light.
     ///
     /// The map describes an ideal lens, which images planes onto planes exactly if directions are
     /// slopes (docs/theory.md (24)). Durand et al. 2005 do not treat lenses.
@@ -37,8 +37,8 @@ impl<const N: usize> AffineMap<N> {
         }))
     }
 
-    /// The mirror reflection of local directions, θ' = −θ and φ' = −φ, in the frames of the local
-    /// normals.
+    /// Returns the map of the mirror reflection of local directions, θ' = −θ and φ' = −φ, in the
+    /// frames of the local normals.
     ///
     /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ,
     /// so no cosine appears; the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
@@ -50,8 +50,9 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<4> {
-    /// A rotation of the axes by an angle in radians, from the first axis towards the second: x' =
-    /// x cos + y sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
+    /// Returns the map of a rotation of the axes by an angle in radians, from the first axis
+    /// towards the second: x' = x cos + y sin, y' = −x sin + y cos, and likewise for directions. A
+    /// is orthogonal.
     ///
     /// For two-plane coordinates, a rotation about the central ray is exact; it is used, for
     /// example, to bring the plane of incidence onto X. For a rotation about a surface normal, the

@@ -29,11 +29,11 @@ pub const REPLICATES: usize = 32;
 const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// Minimum and maximum number of nodes in each net for derivatives.
+/// Minimum and maximum number of nodes in each net by which derivatives are computed.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. If a parameter is
-/// measured with such a derivative, the measured value changes by about the square of this error,
-/// times the difference between the measured value and the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
+/// derivative, the measured value of a parameter is wrong by about the square of this error, times
+/// the difference between the measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -43,7 +43,7 @@ const FIRST_NODES: u32 = 1 << 11;
 /// underestimates the error.
 const MIN_NODES: u32 = 1 << 14;
 
-/// Criterion for when to stop adding nodes.
+/// The criterion by which a prediction stops adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
     /// Maximum number of nodes of all nets together. If this budget ends the prediction, at least
@@ -72,11 +72,11 @@ impl RayNode {
     };
 }
 
-/// Light fields as functions of a point of the unit cube.
+/// Light fields whose rays are functions of a point of the unit cube.
 pub(crate) trait Integrand: Sync {
     /// Returns the number of fields.
     fn fields(&self) -> usize;
-    /// Returns the number of coordinates of a point that the fields depend on, at most
+    /// Returns how many coordinates of a point the fields depend on. The number is at most
     /// [`DIMENSIONS`].
     fn dimensions(&self) -> usize {
         6
@@ -109,7 +109,7 @@ impl Predicted {
     }
 }
 
-/// A net whose nodes are not yet all summed.
+/// The sums over the nodes of a net, to which more nodes can be added.
 struct Running {
     net: NetPoints,
     /// The sums of each field so far.

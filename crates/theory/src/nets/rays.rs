@@ -1,4 +1,5 @@
-//! Access to the individual rays of nets, for sums over rays other than the slices of a spectrum.
+//! Access to the individual rays of nets. With it, other sums over rays than the slices of a
+//! spectrum can be computed.
 
 use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
 use etendue_field::TwoPlane;

@@ -6,10 +6,10 @@ use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::slope::Slope;
 use etendue_field::{Complex, Window};
 
-/// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
+/// Returns the spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
-/// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where each factor F is the transform of a
-/// convex polygon and is evaluated separately. The result is exact for uniform rectangles,
+/// The spectrum is brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where each factor F is the transform
+/// of a convex polygon and is evaluated separately. The result is exact for uniform rectangles,
 /// half-planes and gratings, and accurate to 10⁻⁸ for factors that depend on slopes. For discs and
 /// for diffuse reflection, the result has the error of a quadrature (see
 /// [`quadrature_error`](crate::quadrature_error)). This function is the reference for

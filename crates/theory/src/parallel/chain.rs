@@ -2,7 +2,7 @@
 
 use etendue_field::{Light, Mask, Shape};
 
-/// The light, in a plane perpendicular to the central ray.
+/// The light, which is in a plane perpendicular to the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// The name of the light, which messages use.
@@ -35,8 +35,8 @@ pub enum Operator {
         /// The mask's transmission as a function of position relative to the central ray.
         mask: Mask,
     },
-    /// A product with G = (1 + u² + v²)⁻², which converts radiance to differential irradiance
-    /// (docs/theory.md (7)).
+    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md (7)). This product converts radiance to
+    /// differential irradiance.
     Cosine {
         /// Name of the surface.
         name: String,

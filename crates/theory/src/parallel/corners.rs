@@ -25,9 +25,9 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Sums over corners are used if |k·d| is at least this value, where d is the longest possible edge
-/// along a direction. If both directions of a corner are at this limit, the quotient amplifies
-/// rounding errors by 1/CANCELLATION² = 1000.
+/// If |k·d| is at least this value for every direction, sums over corners are used. Here d is the
+/// longest possible edge along the direction. If both directions of a corner are at this limit, the
+/// quotient amplifies rounding errors by 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves that are processed together. The number is so small that the quotients of these
 /// waves fit into the cache.
@@ -52,7 +52,7 @@ pub(crate) struct Corners<'a> {
     section: &'a AxisSection,
     waves: &'a [SectionWave],
     corners: Vec<Corner>,
-    /// The values (cos θ, sin θ) for each corner and wave, as [corner, wave].
+    /// The values (cos θ, sin θ) for each corner and each wave. The indices are [corner, wave].
     phases: Vec<[f64; 2]>,
     /// Pairs of directions of the two edges that meet at a corner, with the lower index first. For
     /// the end of a segment the two indices are equal.

@@ -41,11 +41,12 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
 /// Returns the rectangles of the sum Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], where t_j = π
 /// (2j + 1)/4n (docs/theory.md (5b)).
 ///
-/// In an integral with a smooth function, this sum replaces the disc. The integral of the function
-/// over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the two sides
-/// of a rectangle. The functions A and B are odd, so they are expanded in the cosines and sines of
-/// odd multiples of t. The sum over multiples m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m
-/// t_k) = π/2n (c(k + j + 1) + c(k − j)), with c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
+/// In an integral over the product of a smooth function and the disc, this sum replaces the disc.
+/// The integral of the function over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the
+/// integrals along the two sides of a rectangle. The functions A and B are odd, so they are
+/// expanded in the cosines and sines of odd multiples of t. The sum over multiples m < 2n has a
+/// closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with c(i) =
+/// −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);

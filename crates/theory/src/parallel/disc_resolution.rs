@@ -12,20 +12,20 @@ const SPARE_NODES: f64 = 6.0;
 /// Maximum number of nodes of the rule for discs. With this number, a disc is split into 72²
 /// rectangles.
 const MOST_NODES: f64 = 72.0;
-/// Limit on the bandwidth that edges in other planes cause, as a multiple of the largest frequency
-/// of the spectra.
+/// Edges in other planes increase the bandwidth up to this limit. The limit is a multiple of the
+/// largest frequency of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
 /// Edges in other planes increase the bandwidth, and only this fraction of the increased bandwidth
-/// is resolved. The rest is reached only in the corners of the grid of frequencies, where spectra
-/// are small.
+/// is resolved. Higher frequencies are reached only in the corners of the grid of frequencies,
+/// where spectra are small.
 const FAR_SHARE: f64 = 0.7;
 /// Maximum number of terms of an expansion that results from splitting discs.
 const MOST_TERMS: f64 = 3e5;
 /// Maximum number of strips into which a disc is split.
 const MOST_STRIPS: f64 = 64.0;
 
-/// The methods for splitting the discs of a chain: first for the discs of the light, then for the
-/// discs of each opaque mask.
+/// The methods by which the discs of a chain are split. The first method is for the discs of the
+/// light, and the others are for the discs of each opaque mask.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
@@ -140,13 +140,13 @@ impl DiscResolution {
     }
 }
 
-/// A bound on the bandwidth of the integrals of the field along the lines x − h u = c, as functions
-/// of c. The spectrum of these integrals at frequency γ is the spectrum of the other factors of the
-/// field at (Ωx − γ, Ωu + h γ).
+/// A bound on the bandwidth of a function of c, which is the integral of the field along the line x
+/// − h u = c. The spectrum of this function at frequency γ is the spectrum of the other factors of
+/// the field at (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
-    /// The half-width of the window's spectrum, by which the window blurs |Ωx| and |Ωu|.
+    /// The half-width of the window's spectrum. The window blurs |Ωx| and |Ωu| by this half-width.
     blur: [f64; 2],
     /// Distances of the planes that have edges: first of the light's plane, then of each opaque
     /// mask.

@@ -18,13 +18,14 @@ const PAIRS_PER_TERM: usize = 8;
 /// An interval without lower or upper bound.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis, with the polygons that light fills in it. Coordinates
-/// are in units of the window's half-widths.
+/// The (position, slope) plane of one axis, and the polygons of this plane that light fills.
+/// Coordinates are in units of the window's half-widths.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
     /// Half-widths of the window in position (metres) and slope.
     pub(crate) half: [f64; 2],
-    /// Unit of the polygons' measure: metre · slope, or slope for the segments of a point light.
+    /// Unit of the polygons' measure. It is metre · slope, or slope for the segments of a point
+    /// light.
     pub(crate) unit: f64,
     /// Directions of edges as vectors: (1, 0), (0, 1), and (shear, 1) for each distance of a
     /// plane.
@@ -66,8 +67,8 @@ pub(crate) struct SectionColumns {
 /// The light field of a path inside a window, expanded as brightness · Σ products · Σ terms
 /// (docs/theory.md (4) and (5d)).
 ///
-/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v),
-/// so the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex
+/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v).
+/// The product source · Π_layers (1 − Σ blockers) is therefore a signed sum of products of convex
 /// polygons. All other factors are sums of products of a wave of (x, u) and a wave of (y, v).
 #[derive(Debug)]
 pub(crate) struct Expansion {
@@ -120,8 +121,9 @@ impl AxisSection {
         })
     }
 
-    /// Returns the part of a polygon whose rays were at positions in `extent` (metres) at the
-    /// given `distance` upstream, or `None` if this part is empty.
+    /// Returns the part of a polygon that contains the rays from a strip. These rays were at
+    /// positions in `extent` (metres) at the given `distance` upstream. Returns `None` if the part
+    /// is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -361,7 +363,7 @@ fn products(
     slope.parts.iter().map(product).collect()
 }
 
-/// Returns the rectangles of an opaque mask, whose discs are split by the given method.
+/// Returns the rectangles of an opaque mask. The discs of the mask are split by the given method.
 fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
     let Mask::Opaque {
         shapes,

@@ -6,13 +6,14 @@
 //!
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
-//! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is computed as a sum over q. A sum over q corresponds to periodic copies of
-//! the field over slopes. The field under this window is bounded, so the copies do not overlap if
-//! the spacing of the sum is small enough. Then the sum is exact up to the lobe's tail. The lobe
-//! also blurs slopes along y, which moves a fraction of the light out of the window. The result is
-//! therefore multiplied by the remaining fraction. This is exact if the field is the product of a
-//! function of (x, u) and a function of (y, v), as behind slats along y.
+//! where I is the spectrum under a wider window. The wider window contains all slopes from which
+//! lobes reach the plane's window. The integral is computed as a sum over q. A sum over q
+//! corresponds to periodic copies of the field over slopes. The field under this window is bounded,
+//! so the copies do not overlap if the spacing of the sum is small enough. Then the sum is exact up
+//! to the lobe's tail. The lobe also blurs slopes along y, which moves a fraction of the light out
+//! of the window. The result is therefore multiplied by the remaining fraction. This is exact if
+//! the field is the product of a function of (x, u) and a function of (y, v), as behind slats along
+//! y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -30,7 +31,8 @@ const TAIL: f64 = 1e-10;
 const SEEN_TAIL: f64 = 1e-4;
 /// Distance between the periodic copies of the field, in widths of the field.
 const APART: f64 = 1.05;
-/// Lobes whose reach exceeds this angle, in radians, are treated as cut off at a right angle.
+/// If the reach of a lobe exceeds this angle, in radians, the lobe is treated as cut off at a right
+/// angle.
 const BROAD: f64 = 1.5;
 /// Maximum number of frequencies on each side of zero. Narrow lobes need this maximum number.
 const MAX_FREQUENCIES: usize = 512;
@@ -111,7 +113,7 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
 
 /// A lobe as a function of one slope, represented by a sum over frequencies.
 struct Blur {
-    /// A profile that contains all slopes whose lobes reach the window.
+    /// A profile that contains all slopes from which lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
     /// The values of ρ̂' at the frequencies of the sum, multiplied by the spacing of these

@@ -11,7 +11,8 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Assignment, Complex, FieldGrid, Window};
 use rayon::prelude::*;
 
-/// The spectrum of a chain at the multiples of a frequency spacing along each of the four axes.
+/// The spectrum of a chain on a grid of frequencies. Along each of the four axes, the frequencies
+/// are multiples of a spacing.
 ///
 /// The spectrum is a sum of products of two factors, one over (Ωx, Ωu) and one over (Ωy, Ωv).
 /// Therefore only tables of the factors are stored, and the value at a frequency is computed from
@@ -39,8 +40,8 @@ impl Harmonics {
     /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along
     /// each axis.
     ///
-    /// Returns `None` if the chain has a diffuse reflection, whose spectrum is not a sum of
-    /// products of two factors, or if the tables would be larger than 1.6 GB.
+    /// Returns `None` if the tables would be larger than 1.6 GB. Also returns `None` if the chain
+    /// has a diffuse reflection, because its spectrum is then not a sum of products of two factors.
     #[must_use]
     pub fn new(
         chain: &Chain,
@@ -81,8 +82,8 @@ impl Harmonics {
         if path.receiver().is_some() {
             return None;
         }
-        // A spline of order 3 multiplies aliases from beyond twice the Nyquist frequency by less
-        // than 1/27.
+        // A spline of order 3 multiplies an alias by less than 1/27 if the alias comes from beyond
+        // twice the Nyquist frequency.
         let reach = if folded.is_some() { 2.0 } else { 1.0 };
         let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
@@ -273,7 +274,7 @@ mod tests {
             for h in [[0, 0, 0, 0], [3, -2, -4, 3], [1, 2, 0, -1], [-2, 0, 3, 0]] {
                 let frequency = [0, 1, 2, 3].map(|axis| h[axis] as f64 * spacing[axis]);
                 let difference = harmonics.at(h) - at(&chain, &window, frequency);
-                assert!(difference.norm() < 1e-10 * zero, "{h:?}"); // as of the slices
+                assert!(difference.norm() < 1e-10 * zero, "{h:?}"); // the tolerance of slices
             }
         }
     }

@@ -9,9 +9,9 @@ use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
-    /// Returns the chain whose final light field is that of this chain after the map u' = u +
-    /// `power` x. A thin lens of focal length −1/power applies this map, and a curved mirror at
-    /// normal incidence applies it to first order.
+    /// Returns a chain whose final light field is the final light field of this chain after the map
+    /// u' = u + `power` x. A thin lens of focal length −1/power applies this map, and a curved
+    /// mirror at normal incidence applies it to first order.
     ///
     /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, with
     /// m = 1 + power · h. The image of the plane is therefore at the distance h/m and is 1/m times

@@ -19,13 +19,13 @@ const SERIES_TERMS: u32 = 11;
 pub(crate) struct Vertex {
     /// The coordinates (position, slope).
     pub(crate) at: [f64; 2],
-    /// The direction of the edge from this corner to the next, as an index into a list that many
-    /// polygons share.
+    /// The direction of the edge from this corner to the next corner. It is an index into a list of
+    /// directions that many polygons share.
     pub(crate) edge: usize,
 }
 
-/// A convex polygon with corners in counter-clockwise order, or a segment, whose two corners are
-/// in order of increasing slope.
+/// A convex polygon or a segment. The corners of a polygon are in counter-clockwise order, and the
+/// two corners of a segment are in order of increasing slope.
 ///
 /// A segment along (shear, 1) represents δ(position − shear · slope), so integrals along the
 /// segment are over the slope.

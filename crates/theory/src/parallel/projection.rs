@@ -161,13 +161,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Returns the lower edge of the cells with index `i` along an axis.
+    /// Returns the coordinate of the lower edge of the cells with index `i` along an axis.
     fn edge(&self, i: usize, axis: usize) -> f64 {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Returns a value for each position bin: the integral of density · W over the cell of this bin
-    /// in slope bin `j`, summed over polygons.
+    /// Returns the values of all cells in slope bin `j`, one for each position bin. The value of a
+    /// cell is the integral of density · W over the cell, summed over polygons.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];
@@ -232,8 +232,8 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: half the mean of W over
-    /// the triangle with the vertices p, p + b and p + c.
+    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square. The result is half the
+    /// mean of W over the triangle with the vertices p, p + b and p + c.
     fn mean(&self, p: [f64; 2], b: [f64; 2], c: [f64; 2], slope: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for &(t, weight) in &self.nodes {

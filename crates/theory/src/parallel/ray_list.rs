@@ -35,7 +35,7 @@ enum RayStep<'a> {
     Cosine,
 }
 
-/// Returns the slices of rays that pass through a chain, and their picture.
+/// Returns the slices and the picture of the rays that pass through a chain.
 ///
 /// # Panics
 /// Panics if the chain has a diffuse reflection.

@@ -28,8 +28,8 @@ const LARGEST_COEFFICIENT: f64 = 30.0;
 /// The function W(u) W(v) (1 + u² + v²)^p inside a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Slope {
-    /// The summands. Each is a product of a cosine series along u and a cosine series along v,
-    /// whose frequencies are in cycles per unit slope.
+    /// The summands. Each is a product of a cosine series along u and a cosine series along v.
+    /// Frequencies are in cycles per unit slope.
     pub(crate) parts: Vec<[Vec<CosineTerm>; 2]>,
     /// Root mean square error over the window, divided by the root mean square of the function. The
     /// residual is 0 if p = 0.

@@ -42,8 +42,8 @@ impl SectionWave {
         }
     }
 
-    /// Returns the product of a cosine series in position and a cosine series in slope, whose
-    /// frequencies are in cycles per metre and per unit slope.
+    /// Returns the product of a cosine series in position and a cosine series in slope. Frequencies
+    /// are in cycles per metre and per unit slope.
     pub(crate) fn of_terms(terms: [&[CosineTerm]; 2], half: [f64; 2]) -> Vec<Self> {
         let along = |axis: usize| -> Vec<Self> {
             let waves = terms[axis].iter().map(|term| {

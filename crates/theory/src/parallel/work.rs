@@ -74,9 +74,9 @@ fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -
     2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
 }
 
-/// Estimated computing steps at a frequency for each of the following: a wave and a pair of
-/// directions (`WAVE`), a wave and a polygon whose corners may cancel (`CANCELLED`), a wave and a
-/// corner (`AT_CORNER`), a corner (`CORNER`), and a product of shapes (`TERM`).
+/// Estimated computing steps at one frequency. They are for each wave and pair of directions
+/// (`WAVE`), for each wave and polygon whose corners may cancel (`CANCELLED`), for each wave and
+/// corner (`AT_CORNER`), for each corner (`CORNER`), and for each product of shapes (`TERM`).
 const WAVE: f64 = 13.0;
 const CANCELLED: f64 = 2.3;
 const AT_CORNER: f64 = 0.4;

@@ -73,7 +73,7 @@ impl Back {
 
 impl SpecularSurface {
     /// Returns the factor by which dx dy du dv / (1 + u² + v²)² increases when a ray is followed
-    /// backward through the surface; `before` is the ray on the light's side and `after` is the
+    /// backward through the surface. `before` is the ray on the light's side, and `after` is the
     /// direction on the plane's side.
     fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
         let frame = &self.patch.frame;

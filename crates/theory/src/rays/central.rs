@@ -18,7 +18,7 @@ pub(crate) struct Incidence {
     pub(crate) t: DVec3,
     pub(crate) b: DVec3,
     pub(crate) theta0: f64,
-    /// The angle, between −π/2 and π/2, by which the leg's frame is turned about its D so that its
+    /// The angle by which the leg's frame is turned about D, between −π/2 and π/2. After this turn,
     /// X lies in the plane of incidence.
     pub(super) turn: f64,
 }

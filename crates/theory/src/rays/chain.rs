@@ -366,8 +366,9 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
     Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
-/// Returns the derivative of positions and slopes in a plane with respect to positions and slopes
-/// in the frame of a leg that meets the plane obliquely.
+/// Returns the derivative of a ray's coordinates in a plane with respect to the ray's coordinates
+/// in the frame of a leg. Coordinates are positions and slopes, and the leg meets the plane
+/// obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));

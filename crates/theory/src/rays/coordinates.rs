@@ -38,9 +38,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// Returns the ray, in the direction of light, that has the given coordinates on the plane or
-    /// on the plane's surface, and the étendue per dx dy du dv at this ray. This is the inverse of
-    /// [`Self::coordinates`]. Returns `None` if there is no such ray.
+    /// Returns the ray that has the given coordinates on the plane or on the plane's surface, in
+    /// the direction of light. Also returns the étendue per dx dy du dv at this ray. This is the
+    /// inverse of [`Self::coordinates`]. Returns `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {

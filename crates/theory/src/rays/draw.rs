@@ -1,4 +1,5 @@
-//! Sampling of the light's rays, either by the light's emission or by target points at the plane.
+//! Sampling of the light's rays. Rays are sampled either by the light's emission or by target
+//! points at the plane.
 //!
 //! To first order, the linearisation about the central ray maps a ray of the light to its landing
 //! point. A target position or slope in the window therefore determines which ray of the light to
@@ -45,8 +46,8 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// Sampling of the two ray coordinates that a light with extent has in addition to the two inner
-/// coordinates of its emission.
+/// The sampling of the two outer coordinates of a ray. Only a light with extent needs them, in
+/// addition to the two inner coordinates of its emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
     /// The two additional coordinates are not sampled, because they are the same for all rays.
@@ -70,8 +71,8 @@ enum By {
         targets: [Target; 2],
         /// The two target coordinates of the point where the central ray lands.
         center: [f64; 2],
-        /// Derivatives of the target coordinates with respect to the outer coordinates, which the
-        /// light samples.
+        /// Derivatives of the target coordinates with respect to the outer coordinates. The outer
+        /// coordinates are sampled at the light.
         outer: Matrix<2>,
         inverse: Matrix<2>,
         determinant: f64,

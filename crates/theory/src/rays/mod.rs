@@ -89,9 +89,9 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
-/// Maximum distance, in metres, by which a point of a recording plane may be behind the light's
-/// plane and still be lit. This tolerance covers the rounding errors of a tilted recording plane
-/// at the light itself. No object is closer to the light than this tolerance.
+/// A point of a recording plane may be behind the light's plane by up to this distance, in metres,
+/// and still be lit. This tolerance covers the rounding errors of a tilted recording plane at the
+/// light itself. No object is closer to the light than this tolerance.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.

@@ -204,8 +204,8 @@ pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
     light
 }
 
-/// Returns a patch's frame turned about B at the central ray's hit point, such that the angle of
-/// incidence θ₀ increases by `by`.
+/// Returns a patch's frame after a turn about B at the central ray's hit point. The turn increases
+/// the angle of incidence θ₀ by `by`.
 fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
     let center = hit.arriving.origin;

@@ -206,7 +206,8 @@ fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     ([start[0], start[1], longitude, latitude], per_slope)
 }
 
-/// A leg with its first-order map about the central ray, which maps the light's rays to this leg.
+/// A leg, and the first-order map about the central ray. This map takes the light's rays to the
+/// leg.
 struct AffineLeg {
     /// The map from (x, y, u, v) at the light to the coordinates in the leg's frame at the start
     /// of the leg.
@@ -259,7 +260,7 @@ impl AffineLeg {
     }
 }
 
-/// Returns the flux per unit of the emission's coordinates of a ray that has passed the masks.
+/// Returns the flux of a ray behind the masks, per unit of the emission's coordinates.
 fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])

@@ -93,8 +93,8 @@ impl<F: RayField> Finder<'_, F> {
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
-        // The number of cycles per unit of an emission coordinate `k`, from the phases of the
-        // spectrum and from the window.
+        // Returns the number of cycles per unit of an emission coordinate `k`. The cycles are those
+        // that the phases of the spectrum and the window cause.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
             let phase =

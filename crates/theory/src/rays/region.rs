@@ -10,14 +10,16 @@ use etendue_field::{TwoPlane, Window};
 pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light. It
-/// returns the ray's coordinates at the plane, and the ray's contribution to ray space at the plane
-/// per unit of the emission's coordinates. The function returns `None` if the ray does not arrive.
+/// returns the ray's coordinates at the plane. It also returns the ray's contribution to ray space
+/// at the plane, per unit of the emission's coordinates. The function returns `None` if the ray
+/// does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
 /// Number of cells along each side of the box in which rays are sought.
 const CELLS: usize = 32;
-/// Rays with less than this fraction of the strongest ray's contribution are ignored.
+/// Rays are ignored if their contribution is less than this fraction of the strongest ray's
+/// contribution.
 const MIN_SHARE: f64 = 1e-13;
 /// Number of bisections that locate an edge in a cell up to rounding error.
 const HALVINGS: usize = 40;
@@ -35,9 +37,9 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// The landing point of the central ray, and the derivative of a ray's landing point with respect
-/// to the ray at the light. Rows are coordinates at the plane, and columns are coordinates at the
-/// light.
+/// The point where the central ray lands, and a derivative. It is the derivative of a ray's landing
+/// point with respect to the ray at the light. Rows are coordinates at the plane, and columns are
+/// coordinates at the light.
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// Returns the neighbourhood from exact rays without masks, or `None` if the central ray or one of
@@ -120,8 +122,8 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
-    /// Returns the absolute contribution to the windowed ray space of the ray at inner coordinates
-    /// of the emission.
+    /// Returns the absolute value of a ray's contribution to the windowed ray space. The ray is
+    /// given by inner coordinates of the emission.
     fn strength(&self, inner: [f64; 2]) -> f64 {
         self.node(self.ray(inner), 1.0).weight.abs()
     }
@@ -218,7 +220,7 @@ fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     [at(0, i), at(1, j)]
 }
 
-/// Returns the part of a convex polygon with n·p ≤ c.
+/// Returns the part of a convex polygon where n·p ≤ c.
 fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     let height = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - c;
     let mut kept = Vec::new();

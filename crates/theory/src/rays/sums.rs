@@ -52,8 +52,8 @@ pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
 }
 
 /// Returns sums over rays of the products of the factors for ρ and ν. Entry [2m + i, 2n + j] is for
-/// part i of the factor for ρ and part j of the factor for ν, where part 0 is real and part 1 is
-/// imaginary.
+/// part i of the factor for ρ and part j of the factor for ν. Part 0 is the real part, and part 1
+/// is the imaginary part.
 fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));

@@ -68,8 +68,8 @@ impl LegRay {
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        // The mirror image of one root about the extremum is a good first estimate of the root on
-        // the other side of the extremum.
+        // The two roots are on opposite sides of the extremum. The mirror image of one root about
+        // the extremum is a good first estimate of the other root.
         let leaves = side.is_some_and(|side| side * b > 0.0);
         let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {

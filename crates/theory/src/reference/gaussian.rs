@@ -1,8 +1,9 @@
 //! Closed forms under an untruncated Gaussian window, for checks only.
 //!
 //! A [`Window`](etendue_field::Window) has a finite support, so only these checks use the
-//! untruncated Gaussian window. All closed forms except that of the disc are in 2D. Frequencies are
-//! (Ωx, Ωv), in cycles per metre and per unit slope. The slope is called v, as in the paper.
+//! untruncated Gaussian window. All closed forms are in 2D, except the closed form for the disc.
+//! Frequencies are (Ωx, Ωv), in cycles per metre and per unit slope. The slope is called v, as in
+//! the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -167,10 +168,10 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// Returns the spectra of a field without a blocker, with x < 0 blocked, and with x > 0 blocked.
-/// The first spectrum is F₀ = A exp(−πa²Ω'²) with A = γ^(−1/2) exp(−πΩv²/γ) a, 1/a² = α − β²/γ and
-/// Ω' = Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π · A · Dawson(√π a Ω') (docs/theory.md
-/// (22)).
+/// Returns three spectra of a field: the first without a blocker, the second with x < 0 blocked,
+/// and the third with x > 0 blocked. The first spectrum is F₀ = A exp(−πa²Ω'²) with A = γ^(−1/2)
+/// exp(−πΩv²/γ) a, 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π · A ·
+/// Dawson(√π a Ω') (docs/theory.md (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;

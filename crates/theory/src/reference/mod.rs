@@ -22,8 +22,8 @@ use gaussian::{GaussianBlock, GaussianWindow};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
-/// The tolerance relative to the largest value of a block. The file is accurate to 14 digits, and
-/// rounding errors affect the last digit.
+/// Values must agree to this tolerance, relative to the largest value of a block. The file is
+/// accurate to 14 digits, and rounding errors affect the last digit.
 const CLOSE: f64 = 1e-13;
 /// Length of the rectangles that represent strips, which is greater than the width of any window.
 const ENDLESS: f64 = 1e3;

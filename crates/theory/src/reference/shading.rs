@@ -13,8 +13,8 @@ use crate::shading::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// The tolerance relative to the largest value of a block. The expected values are closed forms, or
-/// quadratures accurate to 10⁻¹².
+/// Values must agree to this tolerance, relative to the largest value of a block. The expected
+/// values are closed forms, or quadratures accurate to 10⁻¹².
 const NEAR: f64 = 1e-9;
 /// The minimum error that a planted fault must cause; the actual errors are much larger.
 const FAULT: f64 = 1e-3;
@@ -226,8 +226,8 @@ fn every_step_of_a_reflection() {
 /// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of the central ray
 /// at the angle `central`.
 ///
-/// The frame is that of light after the reflection, with X = cos T − sin N. For light before the
-/// reflection, the caller reverses rays and X.
+/// The frame is the frame of light after the reflection, with X = cos T − sin N. For light before
+/// the reflection, the caller reverses rays and X.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
     let point = [libm::sin(turn) / k, (libm::cos(turn) - 1.0) / k];

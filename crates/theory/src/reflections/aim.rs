@@ -2,7 +2,7 @@
 //! a point.
 //!
 //! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
-//! coordinates are a position on this surface or plane. Rays from anywhere on a wide surface can
+//! coordinates are a position on this surface or plane. Rays from all points of a wide surface can
 //! then be aimed at a narrow window. Otherwise the coordinates are angles, and the landing point is
 //! known only to first order.
 

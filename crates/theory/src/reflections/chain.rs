@@ -13,8 +13,8 @@ use glam::DVec3;
 /// The path of the central ray, with first-order maps of the rays near the central ray.
 ///
 /// Local coordinates at a scattering surface are (s, t, θ, φ): positions along T and B in metres,
-/// and the longitude and latitude of a direction away from the surface about the local normal. T
-/// lies in the plane of incidence.
+/// and two angles about the local normal. The angles are the longitude and latitude of a direction
+/// away from the surface. T lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionChain {
     /// The scattering surfaces, in the order in which light meets them.
@@ -173,8 +173,8 @@ impl ScatteringSurface {
     }
 }
 
-/// Returns the direction with a longitude and a latitude about a normal, in the axes of a frame
-/// whose D is turned to the normal.
+/// Returns the direction with a longitude and a latitude about a normal. The angles are measured in
+/// the axes of a frame after its D is turned to the normal.
 pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
     let away = DVec3::new(across * sin, up, across * cos);

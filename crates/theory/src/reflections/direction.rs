@@ -1,9 +1,10 @@
 //! Samples directions away from a scattering surface.
 //!
 //! Most directions are aimed at positions at the end of the leg. If the next surface is near, as in
-//! a corner, the solid angle per unit area of this surface is unbounded, and so would be the
-//! weights of paths. Therefore some directions are sampled by the angles of the lobe, independently
-//! of the next surface. This bounds the weights of all paths.
+//! a corner, the solid angle per unit area of this surface is unbounded. If all directions were
+//! aimed at positions, the weights of paths would be unbounded too. Therefore some directions are
+//! sampled by the angles of the lobe, independently of the next surface. This bounds the weights of
+//! all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;

@@ -41,8 +41,8 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of the incident light that a lobe scatters into light of this
-    /// Gaussian, whose angles are relative to the central ray. The lobe blurs the Gaussian about
+    /// Returns the Gaussian of incident light that a lobe scatters into light of this Gaussian. The
+    /// angles of this Gaussian are relative to the central ray. The lobe blurs the Gaussian about
     /// the mirror direction. If the surface is diffuse, the angles of the incident light are
     /// arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
@@ -110,7 +110,7 @@ impl Gaussian<4> {
     }
 }
 
-/// A Gaussian of two coordinates, whose mean depends linearly on two other coordinates.
+/// A Gaussian of two coordinates. Its mean depends linearly on two other coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditional {
     /// The value of the other two coordinates at which the mean is `mean`.

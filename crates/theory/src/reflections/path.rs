@@ -33,10 +33,10 @@ pub(super) struct FieldPaths<'a> {
 /// The sampling of the light's rays.
 #[derive(Debug)]
 enum Start<'a> {
-    /// Positions in a beam, drawn by the Gaussian of the rays that reach the window.
+    /// Positions in a beam are drawn. The Gaussian describes the rays that reach the window.
     Beam(Conditional),
-    /// Directions from points of the light, drawn by the Gaussian of the rays that reach the
-    /// window.
+    /// Directions from points of the light are drawn. The Gaussian describes the rays that reach
+    /// the window.
     Points(Conditional),
     Sky(Box<SkyRays<'a>>),
 }
@@ -305,8 +305,8 @@ impl<'a> FieldPaths<'a> {
 
 /// Points closer than this share of their distance are treated as equal.
 const SAME_DISTANCE: f64 = 1e-6;
-/// Standard deviation of the angles of incidence in a guide, in radians, if neither the light nor
-/// the surface narrows them.
+/// Standard deviation of the angles of incidence in a guide, in radians. It applies if the light
+/// and the surface do not narrow these angles.
 const FRONT: f64 = 0.6;
 
 /// Returns the guide for incident light at a surface, given the guide for outgoing light.

@@ -85,8 +85,9 @@ impl PathSurface {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
-    /// Returns the BRDF that the chain uses. `angles` contains the longitude and latitude from
-    /// which light arrives, and those towards which it leaves.
+    /// Returns the BRDF that the chain uses. `angles` contains the longitude and latitude of two
+    /// directions: first of the direction from which light arrives, then of the direction towards
+    /// which it leaves.
     pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
         let [from, to] = angles;
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))

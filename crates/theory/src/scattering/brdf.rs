@@ -15,7 +15,7 @@ pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 
         .sum()
 }
 
-/// Returns the value of a single BRDF; the other arguments are those of [`sum`].
+/// Returns the value of a single BRDF, for the same directions and normal as in [`sum`].
 #[must_use]
 pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     factors(brdf, normal.dot(from), normal.dot(to)) * lobe(brdf, normal, from, to)

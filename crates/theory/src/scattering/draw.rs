@@ -77,8 +77,8 @@ pub(super) struct PlaneRaySampler {
     mirrored: Option<Mirrored>,
 }
 
-/// A density of slopes about the slopes of the light's mirror image, which depend affinely on the
-/// position.
+/// A density of slopes. The density is centred on the slopes of the light's mirror image, and these
+/// slopes depend affinely on the position.
 #[derive(Clone, Copy, Debug)]
 struct Mirrored {
     /// Constant part of the angles between a ray and the mirror direction. The angles are `first`

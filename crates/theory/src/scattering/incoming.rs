@@ -12,8 +12,8 @@ pub(super) enum LightPart {
     Whole,
     /// A point of an area light. Densities of points on an area light are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of the rays from this direction, and its
-    /// radiance. Densities of directions of an environment are per steradian.
+    /// A direction of an environment and its radiance. The direction is given by the slopes of the
+    /// rays that come from it. Densities of directions of an environment are per steradian.
     Sky {
         /// Slopes of rays from the environment, in the direction of light.
         slopes: [f64; 2],
@@ -78,8 +78,8 @@ impl Masks<'_> {
     }
 }
 
-/// Relative rounding error of a distance; an occluder whose distance from the point is within this
-/// error is ignored.
+/// Relative rounding error of a distance. If an occluder's distance from the point is within this
+/// error, the occluder is ignored.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns 1/cos of the angle between the central ray and a ray with slopes (u, v).

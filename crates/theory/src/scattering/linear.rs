@@ -17,11 +17,11 @@ pub(super) struct Linear<'a> {
     chain: &'a ScatteringChain,
     /// The map from the plane to local coordinates of the outgoing direction.
     off: AffineMap<4>,
-    /// The matrix that converts positions on the surface to positions in the plane perpendicular to
-    /// the light's axis at the distance of the surface.
+    /// The matrix that converts positions on the surface to positions in a plane. This plane is
+    /// perpendicular to the light's axis and as far from the light as the surface.
     across: [[f64; 2]; 2],
-    /// The matrix that converts angles to the light's axis to angles on the surface, at a point of
-    /// the surface.
+    /// The matrix that converts angles at a point of the surface. It converts angles relative to
+    /// the light's axis to angles on the surface.
     angles: Matrix<2>,
     /// The frame (T, B, N), given in the frame of the patch. It is used to look up BRDFs.
     frame: Frame,

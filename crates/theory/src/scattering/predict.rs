@@ -16,17 +16,17 @@ use glam::DVec3;
 /// Returns the windowed spectrum of the light that a surface scatters, and its derivatives with
 /// respect to given parameters.
 ///
-/// Rays are sampled at the plane. For each ray, one or four parts of the light are sampled that
-/// shine on the point where the ray leaves the surface (docs/theory.md (40)). `chain` is the chain
-/// returned by [`chain`](super::chain()), which guides the sampling. The result is bitwise
+/// Rays are sampled at the plane. Each ray leaves the surface at a point, and one or four parts of
+/// the light that shine on this point are sampled (docs/theory.md (40)). `chain` guides the
+/// sampling; the function [`chain`](super::chain()) returns such a chain. The result is bitwise
 /// identical on any number of threads.
 ///
 /// The difference between the chain and the exact prediction is a sum over rays of differences
 /// between two radiances of the same ray. The derivatives are also such sums. These sums are
 /// accurate to about a per cent of their values. Sampled parts of the light move with the light, so
 /// the edges of the light cause no edges in a difference. However, sampled parts do not move with
-/// the shadows of masks. Points that are lit in only one of the two radiances therefore add noise,
-/// which decreases with the step of the difference.
+/// the shadows of masks. Therefore points that are lit in only one of the two radiances add noise.
+/// A larger step of the difference reduces this noise.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,

@@ -1,4 +1,4 @@
-//! The sampling criteria of glossy reflections, which say how fast a reflection varies across an
+//! The sampling criteria of glossy reflections. They say how fast a reflection varies across an
 //! image.
 
 /// The frequency below which 99 % of the energy of [`cosine_hat`](super::cosine_hat) lies, in

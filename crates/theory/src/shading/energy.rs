@@ -3,8 +3,8 @@
 /// Number of steps of a sum up to the largest frequency.
 const STEPS: usize = 3000;
 
-/// Returns, for each share, the frequency below which a spectrum has this share of its energy, in
-/// the unit of `largest`; `None` if this frequency is above `largest`.
+/// Returns a frequency for each share. Below this frequency, a spectrum has this share of its
+/// energy. The frequency is in the unit of `largest`, and `None` if it would be above `largest`.
 ///
 /// `hat` is the transform of an even function, and `energy` is the integral of this function's
 /// square, which is ∫|f̂|² over all frequencies (Parseval). The energy below a frequency is a sum

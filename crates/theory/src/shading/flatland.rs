@@ -1,5 +1,5 @@
-//! Diffuse shading in flatland: a light, strips and a receiver on parallel lines, as in Fig. 6 of
-//! Durand et al. 2005.
+//! Diffuse shading in flatland. A light, strips and a receiver are on parallel lines, as in Fig. 6
+//! of Durand et al. 2005.
 
 use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, FrequencyAxis, Profile, cis};
@@ -38,7 +38,7 @@ pub enum DiffuseStep {
 }
 
 /// Number of nodes of the midpoint rule over slopes, or over positions on the receiver. Edges cause
-/// kinks in the integrand, which result in a relative error of 10⁻⁵.
+/// kinks in the integrand, and these kinks cause a relative error of 10⁻⁵.
 const NODES: usize = 1024;
 
 impl Flatland {
@@ -198,7 +198,7 @@ mod tests {
     use etendue_field::Rectangle;
 
     const STRIPS: [[f64; 2]; 3] = [[-0.31, -0.19], [-0.06, 0.06], [0.19, 0.27]];
-    /// A length greater than that of any window.
+    /// A length greater than the width of any window.
     const ENDLESS: f64 = 1e3;
 
     fn flatland() -> Flatland {

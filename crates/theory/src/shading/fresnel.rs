@@ -5,8 +5,8 @@ use super::panels::even_transform;
 use etendue_field::{Complex, square_root};
 use std::f64::consts::FRAC_PI_2;
 
-/// Number of times that panels are halved towards grazing angles, where the reflectance for an
-/// index N changes over 1/N. This number suffices for indices beyond 1000.
+/// Number of times that panels are halved towards grazing angles. There the reflectance for an
+/// index N changes within an angle of about 1/N. This number suffices for indices beyond 1000.
 const GRAZING: i32 = 12;
 /// Number of times that panels are halved towards the critical angle, where the reflectance behaves
 /// as a square root.

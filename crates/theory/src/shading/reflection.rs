@@ -45,8 +45,8 @@ impl ReflectionStep {
 /// A factor that depends on the local direction and is given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// The constant 1, which does not cut off light at the horizon. Without a [`PlanarLobe`], a
-    /// surface with this factor is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
+    /// The constant 1, which does not cut off light at the horizon. A surface with this factor and
+    /// without a [`PlanarLobe`] is an ideal mirror. Its BRDF δ/cos θ_i' cancels the cosine.
     One,
     /// The clamped cosine cos⁺.
     Cosine,

@@ -30,9 +30,9 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
 }
 
 /// Returns the ray from a light without extent to `point`. `point` is in the frame at the light,
-/// and the ray is given in the plane of the light. Also returns the irradiance that the light
-/// causes at `point`, on an area perpendicular to the ray, divided by the value of the ray per du
-/// dv or dx dy.
+/// and the ray is given in the plane of the light. Also returns a ratio: the irradiance that the
+/// light causes at `point` on an area perpendicular to the ray, divided by the value of the ray per
+/// du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {

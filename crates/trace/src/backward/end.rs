@@ -1,5 +1,5 @@
-//! The point at which a backward ray begins, and the part of its line on which light may leave the
-//! next surface.
+//! Defines where a backward ray begins, and on which part of its line light may leave the next
+//! surface.
 
 use etendue_field::Side;
 

@@ -28,7 +28,7 @@ pub(super) struct BackwardCourse {
     pub(super) leaves: Option<LeftSurface>,
 }
 
-/// A ray along which light of a leg may arrive, in the frame of the ray's heading.
+/// A ray of a leg, along which light may arrive. The ray is given in the frame of its heading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingRay {
     pub(super) leg: usize,

@@ -17,8 +17,8 @@ pub(super) struct PlaneSampler {
     pub(super) planes_on_leg: Both<PlaneOnLeg>,
     pub(super) position: [ProfileDensity; 2],
     pub(super) slope: [ProfileDensity; 2],
-    /// Whether slopes are drawn towards points of the light. Slopes are drawn towards points of
-    /// the light if the light restricts slopes more than the window does.
+    /// Whether slopes are drawn towards points of the light. This is the case if the light
+    /// restricts slopes more than the window does.
     pub(super) to_light: bool,
 }
 
@@ -50,8 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// Returns the ray of the leg that has the coordinates `seen` at the virtual plane, the end
-    /// point of the ray, and dA / dx dy at the plane; `None` if there is no such ray.
+    /// Finds the ray of the leg that has the coordinates `seen` at the virtual plane. Returns this
+    /// ray, its end point, and dA / dx dy at the plane; `None` if there is no such ray.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {

@@ -21,9 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, which checks [`Tracer`](crate::Tracer) independently.
 ///
-/// For each photon and each virtual plane, the tracer draws a ray in the plane's window, traces
-/// this ray back to the light, and finds the radiance that arrives along it. The backward tracer
-/// emits no photons and absorbs none, and has no ledger.
+/// For each photon of the run and each virtual plane, this tracer draws a ray in the plane's
+/// window. It traces the ray back to the light and finds the radiance that arrives along the ray.
+/// It emits and absorbs no photons, so it has no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -367,8 +367,8 @@ impl Backward {
 }
 
 /// Returns the ratio of the radiance after a deflection to the radiance before it, for light that
-/// arrives along `came` and leaves along `along`. The ratio of radiances is (n'/n)² at an
-/// interface. At an ideal lens, the ratio of radiances conserves flux in two-plane coordinates.
+/// arrives along `came` and leaves along `along`. At an interface, the ratio is (n'/n)². At an
+/// ideal lens, the ratio follows from the conservation of flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
@@ -393,8 +393,8 @@ impl Backward {
     /// Returns the radiance reflected at the end of a leg, estimated from one direction. On later
     /// legs, the direction is drawn by the lobe of the BRDF. On the first leg, half of the
     /// directions are drawn by the lobe, and half of them towards a point of the light. The
-    /// estimate divides by the density of this mixture (the balance heuristic of Veach and Guibas
-    /// 1995 for one sample).
+    /// estimate divides by the density of this mixture, which is the balance heuristic of Veach and
+    /// Guibas (1995) for one sample.
     fn reflected(
         &self,
         leg: usize,
@@ -446,8 +446,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// Returns the radiance that a light without extent causes at a virtual plane on the first
-    /// leg. From a point drawn in the plane's window, the direction to the light is known.
+    /// Returns the radiance that a light without extent causes at a virtual plane on the first leg.
+    /// Draws a point in the plane's window; one direction leads from it to the light.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,
@@ -459,7 +459,7 @@ impl Backward {
         let (point, normal, area) = plane_on_leg.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // The ratio of dA to du dv at the light, or to dx dy there for distant light.
+        // The ratio of dA to du dv at the light. For distant light, dA is divided by dx dy.
         let cosine = along.dot(normal).abs();
         let per_ray = if light.is_distant() {
             cosine

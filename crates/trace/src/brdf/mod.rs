@@ -38,8 +38,8 @@ fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// Returns a direction wo, drawn with two random numbers in (0, 1), for a direction wi in front
-/// of the surface. If the direction lies below the surface, it carries no light.
+/// Draws a direction wo for a direction wi in front of the surface, with two random numbers in (0,
+/// 1). If wo lies below the surface, it carries no light.
 ///
 /// Backward rays draw wi for a given wo by the same lobes, because the lobes are symmetric. The
 /// albedo and the angular factors are applied as weights, and do not affect the density.

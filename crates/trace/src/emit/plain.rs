@@ -29,7 +29,7 @@ impl Plain {
     #[inline(never)]
     pub(super) fn sample(&self, r: [f64; 4]) -> TwoPlane {
         let (sin, cos) = libm::sincos(TAU * r[3]);
-        // Returns the two normal deviates of Box and Muller (1958), which set a point under the
+        // Returns two normal deviates (Box and Muller 1958), scaled to a point that follows the
         // picture's envelope.
         let normal = |image: &Image| {
             let radius = (-libm::log(r[2]) / PI).sqrt();
@@ -55,10 +55,10 @@ impl Plain {
         TwoPlane { x, y, u, v }
     }
 
-    /// Returns the density of [`Self::sample`]: with respect to du dv for a point light or a
-    /// projector, to dx dy for a beam, and to dx dy du dv for an area light. For rays of a file the
-    /// density is 1: the probability of each ray is its share of the flux, and each drawn ray
-    /// represents the total flux.
+    /// Returns the density of [`Self::sample`]. The density is per du dv for a point light or a
+    /// projector, per dx dy for a beam, and per dx dy du dv for an area light. For rays of a file,
+    /// the density is 1, because the probability of each ray is its share of the flux and each
+    /// drawn ray represents the total flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();

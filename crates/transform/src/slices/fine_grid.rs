@@ -132,7 +132,7 @@ impl FineTransform {
     }
 
     /// Computes row `index` of the period. Each cell of the row is the sum of the padded cells that
-    /// map to it; some of these cells are a period away.
+    /// map to it. Some of these padded cells are a period away from the cell.
     fn wrap(&self, fine: &[f64], index: usize, row: &mut [f64]) {
         /// A point is spread over three cells before its own cell.
         const BEFORE: usize = WIDTH / 2 - 1;

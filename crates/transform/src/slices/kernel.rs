@@ -23,8 +23,8 @@ const BETA: f64 = 2.35 * WIDTH as f64;
 const TERMS: usize = 4;
 
 /// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, where z is
-/// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, *SIAM Journal on
-/// Scientific Computing* 41(5)).
+/// the distance from the point in units of four cells (Barnett, Magland and af Klinteberg 2019,
+/// *SIAM Journal on Scientific Computing* 41(5)).
 ///
 /// A point is spread over eight cells. If the point lies a fraction f of a cell beyond a cell of
 /// the fine grid, the weight of cell j, called tap j, is the kernel at z = (j − 3 − f)/4. Each tap

@@ -24,8 +24,8 @@ use std::fmt;
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
 /// Klinteberg 2019, *SIAM Journal on Scientific Computing* 41(5)). The plan spreads each ray over 8
-/// × 8 cells of a grid 2.5 times as fine as the frequencies require, transforms the grid, and
-/// divides by the transform of the spreading kernel.
+/// × 8 cells of a grid, transforms the grid, and divides by the transform of the spreading kernel.
+/// The grid is 2.5 times as fine as the frequencies require.
 ///
 /// The error is below 2·10⁻⁷ Σ|w| at every frequency. A single ray reaches this bound; with many
 /// scattered rays, errors average out. The weight `w` is used as given, so the caller applies the

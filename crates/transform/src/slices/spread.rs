@@ -4,7 +4,8 @@ use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH, transposed};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// The mapping of rays to the fine grid of one azimuth φ, a period of `rows` × `columns` cells.
+/// The mapping of rays to the fine grid of one azimuth φ. The grid is a period of `rows` ×
+/// `columns` cells.
 ///
 /// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the coordinate of the frequency ρ.
 /// Columns divide the period of q = u cos φ + v sin φ, the coordinate of the frequency ν.
@@ -21,9 +22,9 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Returns the rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3,
-    /// j − 3] of the period. A ray reaches eight cells, and cells outside the period are wrapped
-    /// once, after all spreading.
+    /// Returns the numbers of rows and columns of the padded fine grid. Its cell [i, j] is the cell
+    /// [i − 3, j − 3] of the period. A ray reaches eight cells, and cells outside the period are
+    /// wrapped once, after all spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
@@ -87,8 +88,8 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
     }
 }
 
-/// Returns the cell of a point among the `count` of a period, and the fraction of a cell by which
-/// the point lies beyond it.
+/// Returns the cell of a point, and the fraction of a cell by which the point lies beyond this
+/// cell. A period has `count` cells.
 ///
 /// A point outside the period is moved into it by whole periods. The sum does not change, because
 /// at the frequencies m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p.

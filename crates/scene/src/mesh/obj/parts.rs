@@ -29,9 +29,9 @@ pub struct ObjFile {
     pub parts: Vec<ObjPart>,
     /// The line number of each `mtllib` statement, with the file that it names.
     pub libraries: Vec<(usize, String)>,
-    /// The ignored statements: for each kind, the line of its first occurrence, its first word,
-    /// and the number of occurrences. The statement `s` is counted as ignored in files without
-    /// normals.
+    /// The kinds of statements that are ignored. Each entry holds the line of the first occurrence,
+    /// the first word, and the number of occurrences. The statement `s` is counted as ignored in
+    /// files without normals.
     pub left_out: Vec<(usize, String, usize)>,
 }
 

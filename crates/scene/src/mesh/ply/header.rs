@@ -64,8 +64,8 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Hash sets hold the names of all elements, and of the properties of the last element, so
-        // the time to read a header is proportional to its length.
+        // Hash sets hold the names of all elements and the names of the last element's properties.
+        // Therefore the time to read a header is proportional to its length.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
@@ -135,7 +135,7 @@ impl PlyHeader {
             least = least.saturating_add(element.count as u128 * row.sum::<usize>() as u128);
         }
         if self.encoding == Encoding::Ascii {
-            least = least.saturating_sub(1); // the last line may lack its end
+            least = least.saturating_sub(1); // the last line may have no line end
         }
         if (length as u128) < least {
             let rows = self.elements.iter().take(MOST_LISTED);
@@ -157,7 +157,7 @@ impl PlyProperty {
     /// Returns the minimum number of bytes that the property takes in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
-            Encoding::Ascii => 2, // a digit and what parts it from the next
+            Encoding::Ascii => 2, // a digit and a separator
             _ => self.length.unwrap_or(self.scalar).size(),
         }
     }

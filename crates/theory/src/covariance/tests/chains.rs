@@ -28,7 +28,7 @@ fn lamp() -> Light {
     }
 }
 
-/// The variances S of the light in these tests, along x, y, u and v.
+/// The light in these tests has these variances S along x, y, u and v.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
 /// Returns the standard deviations of the Gaussian window that replaces an opening of the given

@@ -144,8 +144,8 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // Compared with diffuse reflection, a lobe of variance 10⁷ has an error of 1/(8π² 10⁷)
-        // along angles, and an error of the square root of this number in the other entries.
+        // A lobe of variance 10⁷ differs from diffuse reflection by 1/(8π² 10⁷) in the entries for
+        // angles. In the other entries, it differs by the square root of this number.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);

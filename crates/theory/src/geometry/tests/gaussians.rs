@@ -51,7 +51,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     let back = map.inverse().unwrap();
     let after = |z: [f64; 2]| field(back.apply(z));
     // The transform is a trapezoid rule on a lattice. Both fields are below 1e-20 at the edges of
-    // the lattice, and so are their spectra above half of the sampling frequency.
+    // the lattice. Their spectra are also below 1e-20 above half of the sampling frequency.
     let transform = |f: &dyn Fn([f64; 2]) -> f64, [ox, ot]: [f64; 2]| -> Complex {
         let nodes = (-120..=120).map(|i| 0.04 * f64::from(i));
         let rows = nodes.clone().map(|x| -> Complex {

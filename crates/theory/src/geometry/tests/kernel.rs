@@ -10,7 +10,8 @@ const STATED: f64 = 1e-13;
 
 #[test]
 fn values_of_tricomi_function() {
-    // Values of π e^(−a) U(−b/2, 0, 2a)/Γ(1 + b/2), from mpmath 1.3 at 60 digits.
+    // These are values of π e^(−a) U(−b/2, 0, 2a)/Γ(1 + b/2), computed by mpmath 1.3 with 60
+    // digits.
     let values = [
         (0.001, 160.0, -0.004_354_544_446_450_9),
         (1e-6, 2.3, -0.090_144_709_358_218_17),
@@ -116,8 +117,8 @@ fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
             })
         };
         let through = side(1.0) + side(-1.0);
-        // After the substitution, the kink becomes s⁵ ln s. The tolerance is the error of a rule
-        // with 200 nodes for this function, whose coefficients fall as n^−12.
+        // After the substitution, the kink becomes s⁵ ln s. The coefficients of this function fall
+        // as n^−12. The tolerance is the error of a rule with 200 nodes for such a function.
         assert!(
             (through - direct).abs() < 1e-12,
             "{theta}: {}",

@@ -25,8 +25,8 @@ fn apart<const N: usize>(a: &AffineMap<N>, b: &AffineMap<N>) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Returns quasi-random numbers that are uniform over (−1, 1) for each coordinate and jointly
-/// uniform over coordinates, as multiples of square roots of primes.
+/// Returns a quasi-random number in (−1, 1), which is a multiple of the square root of a prime. The
+/// numbers are uniform for each coordinate and for all coordinates together.
 fn scatter(index: usize, coordinate: usize) -> f64 {
     let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
     2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0

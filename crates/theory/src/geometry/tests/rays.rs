@@ -8,8 +8,8 @@ use crate::geometry::plane_sphere::{to_angles, to_slopes};
 /// Half the size of the largest tested neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// Returns the largest error of a map over rays in a neighbourhood of size e, divided by e, and
-/// the power of e with which the error falls.
+/// Returns the largest error of a map over rays in a neighbourhood of size e, divided by e. Also
+/// returns the power of e with which the error falls.
 pub(super) fn error_and_order<const N: usize>(
     map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],

@@ -17,7 +17,8 @@ fn scaled(a: Vector, t: f64) -> Vector {
     a.map(|x| t * x)
 }
 
-/// The axes (X, Y, D) of a light frame at the origin, in the axes (T, B, N) of the surface.
+/// The axes (X, Y, D) of a light frame at the origin. Their components are along the axes (T, B, N)
+/// of the surface.
 #[derive(Clone, Copy)]
 pub(super) struct LightAxes([Vector; 3]);
 

@@ -1,10 +1,11 @@
-//! A reference for tests: transforms of chains by sums over many quasi-random rays.
+//! Transforms of chains, computed as sums over many quasi-random rays. They are a reference for
+//! tests.
 
 use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain as seen from its end, with the distances of the masks upstream and the number of factors
+/// A chain, described from its end: the distances of the masks upstream, and the number of factors
 /// G.
 struct WalkedRay<'a> {
     distance: f64,

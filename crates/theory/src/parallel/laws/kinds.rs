@@ -179,7 +179,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // A closed form without the factor √(1 + u² + v²), so its radiance is constant in slope.
+    // This closed form omits the factor √(1 + u² + v²), so its radiance is constant in slope.
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])
@@ -189,7 +189,7 @@ fn discs_and_points_agree_with_closed_forms() {
         assert!(error < 1e-12, "{error:e}"); // the rule is exponential under a smooth window
         let segments = at_power(&point, &window, 0.0, k);
         let error = (segments - closed_point(k)).norm() / closed_point([0.0; 4]);
-        assert!(error < 1e-13, "{error:e}"); // closed forms both: rounding of some hundred waves
+        assert!(error < 1e-13, "{error:e}"); // rounding of hundreds of waves in two closed forms
     }
 }
 

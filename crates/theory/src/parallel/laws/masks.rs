@@ -33,7 +33,7 @@ fn two_half_planes_let_nothing_through_together() {
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
-    assert!(blind > 0.05 * zero(&open())); // twelve orders above
+    assert!(blind > 0.05 * zero(&open())); // twelve orders of magnitude above rounding
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
     let (slit, blocks) = (behind(slit), behind(blocks));
     for k in FREQUENCIES {
         let difference = at(&slit, &hann(), k) - at(&blocks, &hann(), k);
-        assert!(difference.norm() < 1e-13 * zero(&open())); // 100 m cost two digits
+        assert!(difference.norm() < 1e-13 * zero(&open())); // distances of 100 m lose two digits
     }
 }
 
@@ -91,8 +91,8 @@ fn a_grating_is_three_copies() {
 /// zero there.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // The tested frequency is at a zero of the transform of the window, whose half-widths are 0.5
-    // and 0.3.
+    // The window has the half-widths 0.5 and 0.3. At the tested frequency, the transform of the
+    // window is zero.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));

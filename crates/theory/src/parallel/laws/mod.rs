@@ -138,7 +138,7 @@ fn a_wrong_sign_of_the_shear_shows() {
     // light's spectrum.
     let k = [1.0, 0.0, -2.0, 0.0];
     let difference = at(&right, &hann(), k) - at(&wrong, &hann(), k);
-    assert!(difference.norm() > 0.3 * zero(&right)); // a third of everything
+    assert!(difference.norm() > 0.3 * zero(&right)); // the error is a third of all light
     let truth = brute_force(&right, &hann(), &[k], 100_000)[0];
     let close = 3e-3 * zero(&right); // about 1/√100000
     assert!((at(&right, &hann(), k) - truth).norm() < close);

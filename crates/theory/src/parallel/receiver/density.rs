@@ -6,16 +6,16 @@ use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
-/// Negative logarithm −ln ε of the relative error ε = 10⁻¹² of a Gauss rule.
+/// The relative error ε of a Gauss rule is 10⁻¹², and this number is −ln ε.
 const NATS: f64 = 28.0;
 /// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
 /// panels.
 const MAX_NODES: usize = 48;
-/// Number of additional nodes on an arc, beyond the nodes that the arc's length requires. They are
-/// needed because the direction of the arc changes.
+/// Number of additional nodes on an arc, beyond the nodes that the arc's length requires. The
+/// additional nodes are needed because the direction of the arc changes.
 const ARC: usize = 10;
-/// Number of panel lengths for which numbers of nodes are precomputed; each length is half the
-/// previous one.
+/// Number of panel lengths for which numbers of nodes are precomputed. Each length is half of the
+/// previous length.
 const LEVELS: usize = 24;
 /// Estimated number of computing steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
@@ -62,7 +62,8 @@ impl SlopePower {
     }
 }
 
-/// The number of nodes that an interval of slopes requires, as a function of the interval's length.
+/// The numbers of nodes that intervals of slopes require. The number depends on the length of the
+/// interval.
 #[derive(Debug)]
 struct NodeCounts {
     /// Length of the longest panel; a panel of level k is 2^k times shorter.
@@ -104,8 +105,8 @@ impl NodeCounts {
 /// the error e^(−[`NATS`]).
 ///
 /// The error of the rule with n nodes is ρ^(−2n) times the largest value of the integrand on an
-/// ellipse around the interval, where the ellipse extends by b in the imaginary direction and ln ρ
-/// = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
+/// ellipse around the interval. The ellipse extends by b in the imaginary direction, and ln ρ =
+/// arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
 /// 19.3). The ellipse contains no pole if b < 1. The number is computed for several values of b,
 /// and the smallest number is used.
 #[expect(
@@ -124,8 +125,8 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     counts.fold(f64::INFINITY, f64::min).ceil() as usize
 }
 
-/// The lobe, with Gauss rules that integrate the product of the lobe and the gratings in front of
-/// the receiver.
+/// The lobe, and Gauss rules for its integrals. The rules integrate the product of the lobe and the
+/// gratings in front of the receiver.
 #[derive(Debug)]
 pub(crate) struct Integrator {
     lobe: SlopePower,
@@ -136,8 +137,8 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per
-    /// slope along u and along v, add up to `frequencies`.
+    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings. The frequencies of these
+    /// gratings, in cycles per slope, add up to `frequencies` along u and along v.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
             lobe: SlopePower::new(power),
@@ -151,8 +152,8 @@ impl Integrator {
 #[derive(Debug)]
 pub(crate) struct ReceiverDensity<'a> {
     pub(crate) integrator: &'a Integrator,
-    /// Gratings as functions of the slope, with frequencies in cycles per unit slope and phases at
-    /// this point of the receiver.
+    /// Gratings as functions of the slope. Their frequencies are in cycles per unit slope, and
+    /// their phases are for this point of the receiver.
     pub(crate) gratings: Vec<Grating>,
 }
 
@@ -366,6 +367,6 @@ mod tests {
         let side = 1e-7;
         let value = density(&integrator).rectangle([[0.5, 0.5 + side], [0.2, 0.2 + side]]);
         let expected = side * side / 1.29_f64.powi(2);
-        assert!((value / expected - 1.0).abs() < 1e-6); // the lobe varies by that over the side
+        assert!((value / expected - 1.0).abs() < 1e-6); // the lobe varies this much over the side
     }
 }

@@ -112,7 +112,8 @@ impl Receiver<'_> {
         let cell = self.side(window) / NODES[1];
         self.barriers.iter().all(|barrier| {
             let beyond = self.distance - barrier.distance;
-            // Magnification of a mask's shadow on the receiver, for light from a single point.
+            // For light from a single point, a mask's shadow on the receiver is larger than the
+            // mask by this factor.
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > MIN_NODES * cell;
             let penumbra = self.width() * barrier.distance / beyond;

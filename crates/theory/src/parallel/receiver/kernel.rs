@@ -7,7 +7,8 @@ use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
 
-/// One axis of a window in position and slope, `after` metres past the receiver.
+/// The profiles of a window along one axis, in position and slope. The window is `after` metres
+/// past the receiver.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KernelAxis {
     pub(crate) position: Profile,
@@ -23,7 +24,8 @@ pub(crate) struct Kernels {
 }
 
 impl KernelAxis {
-    /// Returns the largest absolute coordinate of the receiver that is seen through the window.
+    /// Returns the largest absolute coordinate among the points of the receiver that are seen
+    /// through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
     }

@@ -5,8 +5,8 @@
 //! ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h before
 //! the receiver. Therefore the slopes at (x, y) of the rays through a shape form a scaled copy of
 //! this shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
-//! integrals over rectangles and discs, which are these copies of the light and of the blockers
-//! (docs/theory.md, section 4b).
+//! integrals over rectangles and discs. These rectangles and discs are the scaled copies of the
+//! light and of the blockers (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -24,8 +24,8 @@ use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
 
-/// A Lambertian receiver, with the light and masks in front of it and the distance that reflected
-/// light travels to the plane where it is observed.
+/// A Lambertian receiver, with the light and the masks in front of the receiver. After the
+/// reflection, light travels to the plane where it is observed.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
     light: ParallelEmitter,
@@ -39,8 +39,8 @@ pub(crate) struct Receiver<'a> {
     albedo: f64,
 }
 
-/// The relation position = origin + b · slope between slopes at the receiver and positions at a
-/// distance h before the receiver.
+/// The relation position = origin + b · slope for some rays. Slopes are at the receiver, and
+/// positions are at a distance h before the receiver.
 #[derive(Clone, Copy, Debug)]
 enum SlopeProjection {
     /// Rays that arrive at the given point of the receiver: b = −h.

@@ -127,8 +127,8 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// Returns ∫ A dv upward along the line of constant u, over the part of this line that is
-    /// inside all discs and between the rectangle's lower and upper sides.
+    /// Returns ∫ A dv upward along the line of constant u. The integral is over the part of this
+    /// line that is inside all discs and between the rectangle's lower and upper sides.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];

@@ -134,8 +134,8 @@ fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork 
     } else {
         [0.0; 2]
     };
-    // The Gauss rule is computed again for each row, by a recurrence over n nodes for each of its
-    // n nodes.
+    // The Gauss rule of n nodes is computed again for each row. For each of its nodes, a recurrence
+    // of n steps is computed.
     let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
     let row = if travels {
         kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count

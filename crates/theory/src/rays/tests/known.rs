@@ -212,8 +212,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating directly on it. The slide is at a = 0.5
-    // m from a lens of focal length f = 0.3 m, so its image is at b = 0.75 m.
+    // The slide is a Lambertian light of 1 cm² with a grating directly on it. The slide is at a =
+    // 0.5 m from a lens of focal length f = 0.3 m, so its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);

@@ -23,8 +23,8 @@ fn covariance_of_a_gaussian_beam() {
     let expected = map.covariance(&before);
     for i in 0..16 {
         let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
-        // A mirror of radius R = 100 m turns a ray by a slope of 2x/R, with a relative error of
-        // order (x/R)².
+        // A mirror of radius R = 100 m changes the slope of a ray by 2x/R. This formula has a
+        // relative error of order (x/R)².
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
     assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions

@@ -212,7 +212,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     let error = found.error.unwrap();
     let ratio = apart / error;
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
-    assert!(error < 6e-3, "{error:e}"); // of a million nodes
+    assert!(error < 6e-3, "{error:e}"); // the error of a million nodes
     // If the mask is removed, the prediction differs detectably.
     system.layers.clear();
     let open = exact(&system, &plane, &window, &grid);
@@ -405,7 +405,7 @@ fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
         }
         value
     };
-    let mut factorials = 1.0; // l!/(2^l ((l/2)!)²), of even l
+    let mut factorials = 1.0; // l!/(2^l ((l/2)!)²), for even l
     let mut sum = 0.0;
     for l in 0..=60 {
         let cosine = if l == 0 {

@@ -50,7 +50,7 @@ impl TestReceiver {
         self.after(0.0)
     }
 
-    /// Builds the receiver, whose reflected light is observed at the distance `after`.
+    /// Builds the receiver. Its reflected light is observed at the distance `after`.
     fn after(&self, after: f64) -> Receiver<'_> {
         Receiver::new(
             ParallelEmitter::new(&self.light),

@@ -60,7 +60,7 @@ fn white_sky() {
         assert!((got / (1.7 * PI * factor) - 1.0).abs() < CLOSE);
     }
     let got = wide(1e6).receiver().irradiance(3.0, -2.0);
-    assert!((got / (1.7 * PI) - 1.0).abs() < 1e-11); // what is missing beyond 10⁶: 1/half²
+    assert!((got / (1.7 * PI) - 1.0).abs() < 1e-11); // the part beyond 10⁶ is missing: 1/half²
     let round = alone(area(disc([0.0, 0.0], 1e4), 0.0), 1.0);
     let got = round.receiver().irradiance(3.0, -2.0);
     assert!((got / (1.7 * PI) - 1.0).abs() < 2e-8); // 1/radius²
@@ -226,5 +226,5 @@ fn point_light() {
     }
     // A cell that is centred on the edge of a shadow is half lit.
     let mean = receiver.cell([0.2, 0.0], [1e-3; 2]);
-    assert!((mean / lit(0.2, 0.0) - 0.5).abs() < 1e-4); // the light changes by that over a cell
+    assert!((mean / lit(0.2, 0.0) - 0.5).abs() < 1e-4); // the light varies this much over a cell
 }

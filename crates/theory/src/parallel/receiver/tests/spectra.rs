@@ -57,8 +57,8 @@ pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
     (1..=count).map(move |n| steps.map(|s| (0.5 + s * f64::from(n)).fract()))
 }
 
-/// Estimates the spectrum at some frequencies from rays that are sampled at random through the
-/// window and on the light, and followed back.
+/// Estimates the spectrum at some frequencies from random rays. Each ray is sampled in the window,
+/// followed back, and connected to a random point of the light.
 fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
@@ -175,7 +175,7 @@ fn error_falls_with_the_square_of_the_spacing() {
         // The error is of second order in the spacing, apart from fluctuations due to the positions
         // of kinks between nodes.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
-        assert!(errors[3] < 1e-4, "{errors:?}"); // the aim at the fewest nodes
+        assert!(errors[3] < 1e-4, "{errors:?}"); // the requested error, with the fewest nodes
     }
 }
 
@@ -204,7 +204,7 @@ fn error_is_told() {
         vec![(1.0, opaque(vec![rectangle([0.0; 2], [4.0; 2])]))],
     );
     let slices = dark.receiver().slices(&window, &grid);
-    assert!(slices.half.iter().all(|s| s.norm() < 1e-17)); // rounding of the light less itself
+    assert!(slices.half.iter().all(|s| s.norm() < 1e-17)); // rounding of a difference that is zero
 }
 
 #[test]
