@@ -164,9 +164,8 @@ fn scenes_that_took_long_have_an_answer() {
     holds("big_map", &on_and_off);
 }
 
-/// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
-/// stated error of the prediction includes the deviation of the mesh from the patch; without this
-/// deviation, the scene fails.
+/// A fine mesh deviates from the patch that osculates it by more than the noise of photon nets. The
+/// stated error of the prediction includes this deviation; without it, the scene fails.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -179,13 +178,13 @@ fn a_mesh_beside_its_patch_is_no_disagreement() {
         let verdict = |p: &Prediction| report(&scene, &photons, i, p).verdict;
         assert_eq!(verdict(&prediction), Verdict::Pass, "{}", plane.name);
         let error = prediction.mesh_error.unwrap_or(0.0);
-        assert!(error < 1e-4, "{error:e} at {}", plane.name); // ten times the 10⁻⁵ by which photons are off
+        assert!(error < 1e-4, "{error:e} at {}", plane.name); // the error for photons is 10⁻⁵
         let unaware = Prediction {
             mesh_error: Some(1e-6),
             ..prediction
         };
         let fails = verdict(&unaware) == Verdict::Fail;
-        assert_eq!(fails, i > 0, "{}", plane.name); // nothing is reflected before
+        assert_eq!(fails, i > 0, "{}", plane.name); // before the first plane, nothing is reflected
     }
 }
 
@@ -252,8 +251,8 @@ fn the_chain_of_a_small_map_does_not_fail() {
     holds_in(&edited("small_map_phong", &[MORE]), &planes);
 }
 
-/// Nets of rays resolve a grating that the quadrature nodes on a receiver do not resolve. A
-/// prediction with the quadrature nodes on the receiver is still wrong.
+/// Nets of rays resolve a grating, but the quadrature nodes on a receiver do not. A prediction that
+/// uses these nodes is still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -342,7 +341,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// Backward rays also replace theory for light that a surface itself blocks with its other side.
+/// Backward rays also replace theory if one side of a surface blocks light of the other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -443,7 +442,7 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window perpendicular to the path do not block all light for a window of
+/// If squares cover a window perpendicular to the path, they still let light through to a window of
 /// the same size on a surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
@@ -464,7 +463,7 @@ fn a_low_sky_is_decided() {
 }
 
 /// In these scenes, rays that leave the triangles of a mesh meet the mesh again, or take another
-/// direction, unlike rays that leave its osculating patch.
+/// direction. Rays that leave the patch that osculates the mesh do not.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -575,7 +574,7 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Tests that no light is found at angles beyond a right angle, although there is light at these
+/// Tests angles beyond a right angle: no light is found there, although there is light at these
 /// angles minus a full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
@@ -586,8 +585,8 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror is so close to the light that a part of the mirror is before the mask. Rays sampled
-/// from the light to the mirror are unlikely to hit the part of the mirror before the mask.
+/// A mirror is so close to the light that a part of the mirror is before the mask. Few rays that
+/// are sampled from the light to the mirror hit this part.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
@@ -670,8 +669,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// The window is so narrow that hardly any ray aimed by the affine chain enters it, but exact
-/// rays traced back from the window have almost no noise.
+/// The window is so narrow that hardly any ray aimed by the affine chain enters it. Exact rays that
+/// are traced back from the window have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {

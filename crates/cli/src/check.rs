@@ -63,7 +63,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// Describes the ray map of the light, z' = A z, and the foci of parallel rays.
+/// Describes the map z' = A z of the rays, and the distances at which it focuses parallel rays.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

@@ -81,8 +81,8 @@ pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
 pub(crate) const MAX_ERROR_LINES: usize = 20;
 const MAX_LINE_LENGTH: usize = 2000;
 
-/// Returns text cut to `lines` lines, in characters that are safe on a terminal, because names
-/// and contents of files may hold any characters.
+/// Cuts a text to `lines` lines, and escapes characters that are not safe on a terminal. Names and
+/// contents of files may hold such characters.
 pub(crate) fn printable(text: &str, lines: usize) -> String {
     let mut all = text.split('\n');
     let shown = all

@@ -35,8 +35,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane does not fail if only photons aimed at another plane cross it, although these photons
-/// cover only part of its window.
+/// If a plane is crossed only by photons that were aimed at another plane, it does not fail. Such
+/// photons cover only a part of its window.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -143,8 +143,8 @@ fn expecting_disagreement_turns_the_exit_code() {
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// If a first-order chain is wrong only in amplitude, no wrong map is reported; the picture and
-/// the page show that the chain fails.
+/// If only the amplitude of a first-order chain is wrong, the command does not report a wrong map.
+/// The picture and the page show that the chain fails.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -437,8 +437,8 @@ fn bad_arguments_are_refused() {
     assert_eq!(missing.status.code(), Some(2));
 }
 
-/// A run is killed at twenty moments, some of them after its usual duration. Each kill leaves a
-/// complete result or no result.
+/// The test kills a run at twenty moments, some of which are later than the run usually takes. Each
+/// kill leaves a complete result or no result.
 #[test]
 fn a_killed_run_leaves_no_half_result() {
     let folder = tempfile::tempdir().unwrap();

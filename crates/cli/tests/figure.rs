@@ -119,8 +119,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // The error of the lines' nearest points is 0.12, and the error of the criteria is 1
-            // %. If the bandwidth is below 2, the window determines the spectrum.
+            // A line consists of points, which causes an error of 0.12, and the criteria have an
+            // error of 1 %. If the bandwidth is below 2, the window determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");

@@ -95,7 +95,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
         let code = call(path, &run).status.code();
-        // With so few photons, the verdict may be undecided instead of the expected verdict.
+        // With so few photons, the verdict may be undecided.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
         let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));

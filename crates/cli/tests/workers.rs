@@ -122,8 +122,8 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // The first process that is ready takes the next piece of work. On a busy machine the
-        // other processes may get no work; the test then repeats the run.
+        // The next piece of work goes to the first process that is ready. On a busy machine, some
+        // processes may get no work; the test then repeats the run.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
             // A process reports its presence with one message, and answers each order with one

@@ -31,9 +31,9 @@ struct FieldIndex {
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of
-    /// the same photons, at shared frequencies up to half of Nyquist, with the values to compare
-    /// it with.
+    /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of the
+    /// same photons, and the values with which it is compared. The norms are over shared
+    /// frequencies up to half of Nyquist.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -118,8 +118,8 @@ impl Field {
     }
 }
 
-/// Traces the photons of a plane by a method: once if the grids of groups are kept, otherwise
-/// once for the sum and once for the groups.
+/// Traces the photons of a plane by a method. If the grids of groups are kept, the photons are
+/// traced once; otherwise they are traced once for the sum and once for the groups.
 fn on_grid(
     (case, method): (&MeasuredScene, Method),
     index: usize,

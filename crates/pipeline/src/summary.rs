@@ -62,7 +62,7 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// Returns the settings from which the arrays of the result were computed.
+    /// Returns the settings that determine the arrays of the result.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,

@@ -201,8 +201,8 @@ impl<T> Stored<T> {
     }
 }
 
-/// Returns the file `name` of a folder. The hash of its bytes must be the hash that `files`, from
-/// the index called `index`, lists.
+/// Returns the file `name` of a folder. The hash of its bytes must equal the hash in `files`, which
+/// comes from the index called `index`.
 pub fn listed_bytes(
     folder: &Path,
     index: &str,

@@ -6,7 +6,7 @@ use super::{NotInMitsuba, Writer};
 use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
 
 impl Writer {
-    /// A mirror or an interface.
+    /// Returns the BSDF of a mirror or an interface.
     pub(super) fn specular(event: &Specular, name: &str) -> Result<String, NotInMitsuba> {
         match *event {
             Specular::Mirror => Ok(format!(

@@ -107,7 +107,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Width and height in pixels.
+/// Returns the width and height in pixels.
 fn size(aspect: f64) -> [usize; 2] {
     #[expect(
         clippy::cast_possible_truncation,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// The rule by which (u, v) of a surface in pbrt follow from the surface's (u, v) in a world.
+/// The relation between the (u, v) of a surface in pbrt and its (u, v) in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
     /// Both are equal.

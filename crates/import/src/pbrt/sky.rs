@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Number of samples along a side of a map, before the samples of a pixel are limited to between 3
-/// and 16 along a side. Larger maps use fewer samples per pixel, to bound the time.
+/// Number of samples along a side of a map. It bounds the time, because larger maps have fewer
+/// samples per pixel. A pixel has at least 3 and at most 16 samples along a side.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {

@@ -104,8 +104,8 @@ impl CuttingPlane<'_> {
         [leg.start + local.z, within, off]
     }
 
-    /// Returns the half-width of the drawing, which is slightly larger than the half-widths of the
-    /// light, of the bounded blockers and of the windows.
+    /// Returns the half-width of the drawing. It is slightly larger than the half-width of the
+    /// light, of each bounded blocker and of each window.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
         let light = self.light();

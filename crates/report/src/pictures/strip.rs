@@ -33,9 +33,9 @@ pub fn path(
     Ok(figure.svg)
 }
 
-/// Draws the planes in the order in which light meets them. If the strip is a figure, predicted
-/// spectra are below the measured ones. `photons` is the number of emitted photons, which is lower
-/// in a partial measurement than the scene requests.
+/// Draws the planes in the order in which light meets them. If the strip is a figure, it also shows
+/// the predicted spectra, below the measured spectra. `photons` is the number of emitted photons,
+/// which is lower in a partial measurement than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,

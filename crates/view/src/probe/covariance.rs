@@ -1,5 +1,5 @@
-//! Computes covariances of the spectra along the ray of a pixel. They are measured, and the
-//! covariance at the first surface is also propagated to the camera by covariance tracing.
+//! Measures covariances of the spectra along the ray of a pixel. Covariance tracing also propagates
+//! the covariance at the first surface to the camera.
 
 use super::scene::{BATCHES, FREQUENCIES};
 use etendue_compare::AXES;

@@ -1,5 +1,5 @@
-//! Makes maps over a picture of how fast light changes with angle at the camera, as measured and by
-//! the criterion of Durand et al. 2005.
+//! Makes maps of a picture that show how fast the light at the camera changes with angle. The
+//! change is measured, and computed by the criterion of Durand et al. 2005.
 
 use super::picture::PictureBandwidth;
 use super::scene::{ProbeRequest, ProbedScene};
@@ -194,8 +194,8 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the expected measurement, which is the larger of two bandwidths: the bandwidth by the
-/// criterion, and the bandwidth of the window.
+/// Returns the bandwidth that the measurement should give. It is the larger of two bandwidths: the
+/// bandwidth by the criterion, and the bandwidth of the window.
 fn expected(point: &MapPoint) -> f64 {
     // This comparison is false for NaN, so NaN is returned.
     if point.criterion < point.window {

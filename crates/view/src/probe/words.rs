@@ -265,8 +265,8 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     lines
 }
 
-/// Returns, for each plane, the entries of the covariance along x, which lies in the plane of
-/// incidence. The camera also has a row with the propagated covariance.
+/// Returns a row for each plane with the entries of the covariance along x, where x lies in the
+/// plane of incidence. The camera has a second row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
     let row = |name: String, of: &MatrixEstimate| {
