@@ -129,7 +129,7 @@ fn the_light_field_is_written_on_its_grid() {
     let slices: ndarray::Array3<etendue_field::Complex> =
         array(&plane.join("slices.npz"), "measured");
     let [_, rho, nu] = [0, slices.shape()[1] / 2, slices.shape()[2] / 2];
-    assert!((sum / slices[[0, rho, nu]].re - 1.0).abs() < 1e-6); // weights and slices have errors of 2e-7
+    assert!((sum / slices[[0, rho, nu]].re - 1.0).abs() < 1e-6); // relative errors are 2e-7
     let [power, predicted]: [Array2<f64>; 2] =
         ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
     let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");
