@@ -136,8 +136,7 @@ fn two_parameterisations() {
     }
 }
 
-/// Checks Fig. 14: the light on a sphere, before the lobes of the sphere's BRDF act on this
-/// light.
+/// Checks Fig. 14: the light on a sphere, before the sphere's lobes act on it.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {
@@ -158,7 +157,7 @@ fn the_steps_of_shading() {
     tells(&scene, &photons, "cosine", &faults);
 }
 
-/// A scene with an environment in front of a diffuse wall and a glossy floor.
+/// Checks a scene in which an environment lights a diffuse wall and then a glossy floor.
 #[test]
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");

@@ -603,8 +603,8 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
-/// If a surface curves by more than a right angle, photons are recorded where they first meet the
-/// surface, with the coordinates of backward rays at this point.
+/// A surface may curve by more than a right angle. Photons are then recorded where they first meet
+/// the surface, and have the same coordinates there as backward rays.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
     let scene = scene("ridge_under_a_sky");
@@ -656,8 +656,8 @@ fn decided_against_chain(name: &str, class: Class) {
     });
 }
 
-/// Light whose line meets a hollow surface again is not counted, even if a blocker stops this
-/// light before the surface. Light that meets a floor inside the hollow surface continues from
+/// If the line of a ray meets a hollow surface again, its light is not counted, even if a blocker
+/// stops it before the surface. Light that meets a floor inside the hollow surface continues from
 /// the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
@@ -683,9 +683,9 @@ fn a_narrow_window_is_decided() {
     }
 }
 
-/// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe,
-/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled in
-/// proportion to the cosine carry the light, these photons do not contradict backward rays.
+/// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe, so
+/// some photons are sampled in proportion to the cosine. If only a few of the latter carry the
+/// light, they do not contradict backward rays.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");

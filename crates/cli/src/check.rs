@@ -53,7 +53,7 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     )
 }
 
-/// Returns the lengths of the legs of the path, with the surface at which each leg ends.
+/// Returns the length of each leg of the path, and the surface at its end.
 fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {

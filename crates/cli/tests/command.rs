@@ -263,7 +263,7 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each of the two slopes
+    // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)². Each of the two slopes
     // contributes a factor 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;

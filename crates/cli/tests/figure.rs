@@ -76,8 +76,8 @@ fn curves_have_a_table() {
     assert!((at_zero("3D").unwrap() - std::f64::consts::PI).abs() < 1e-9);
 }
 
-/// The bandwidths measured with photons lie on the lines of the corrected Eqs. 20 and 21, and off
-/// the lines of the printed equations.
+/// Bandwidths that photons measure lie on the lines of the corrected Eqs. 20 and 21. They do not
+/// lie on the lines of the printed equations.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn photons_tell_the_criteria_from_their_print() {

@@ -240,8 +240,8 @@ fn what_makes_no_light_is_refused() {
     }
 }
 
-/// The command refuses planes at which no verdict is possible, warns of rays that go back, and
-/// writes the same bytes on any number of threads.
+/// The command refuses planes that can have no verdict, and warns of rays that go back. It writes
+/// the same bytes on any number of threads.
 #[test]
 fn the_command_knows_what_it_can_judge() {
     let folder = folder();

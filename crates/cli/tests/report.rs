@@ -7,8 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Returns a folder with the runs `a` and `b`. Run `a` is of the small scene, and run `b` is of the
-/// same scene with another pitch and a name that would close the page's data tag.
+/// Returns a folder with the runs `a` and `b`. Run `a` has the small scene. Run `b` has the same
+/// scene with another pitch, and with a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

@@ -167,8 +167,8 @@ pub fn compare(
     Ok(())
 }
 
-/// The number of tests of each plane whose light field is saved: a test of the slices, and a test
-/// of the full radial spectrum.
+/// The number of tests of a plane if its light field is saved: a test of the slices, and a test of
+/// the full radial spectrum.
 pub const TESTS: usize = 2;
 
 /// The share of Nyquist up to which the grid is compared with the slices.

@@ -10,8 +10,8 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// Uses the other method to measure planes that disagree with theory, and compares photons, the
-/// other method and theory.
+/// Measures planes that disagree with theory by the other method, and compares photons, the other
+/// method and theory.
 pub(crate) fn inquire(
     case: &MeasuredScene,
     planes: &[PlaneComparison],

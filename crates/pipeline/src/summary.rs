@@ -53,9 +53,9 @@ pub struct Summary {
 pub struct Inquiry {
     /// Name of the plane.
     pub plane: String,
-    /// Verdict and p-value of the comparison of photons with the other tracer.
+    /// Verdict and p-value if photons are compared with the other tracer.
     pub tracers: (Verdict, Option<f64>),
-    /// Verdict and p-value of the comparison of the other tracer with the prediction.
+    /// Verdict and p-value if the other tracer is compared with the prediction.
     pub other: (Verdict, Option<f64>),
     /// The conclusion, in words.
     pub finding: String,

@@ -81,8 +81,8 @@ pub fn reached(
     }
 }
 
-/// Describes the noise of the run, and the noise of a run that lasts a hundred times as long;
-/// returns `None` if there is no light.
+/// Describes the noise of the run, and predicts the noise of a run that lasts a hundred times as
+/// long. Returns `None` if there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes

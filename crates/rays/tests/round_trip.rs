@@ -95,8 +95,8 @@ fn unusual_texts_and_fluxes_have_notes() {
     assert_eq!(file.notes().len(), 3, "{:?}", file.notes());
 }
 
-/// Files with every combination of the options of MCPL, packed or not, are read and written with
-/// the same bytes.
+/// Files with each combination of MCPL's options have the same bytes after they are read and
+/// written. This also holds for packed files.
 #[test]
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {

@@ -11,8 +11,8 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// Returns the part after `#` in the address of the page that shows a scene; `None` if the explorer
-/// does not support the scene.
+/// Returns the part after `#` in the address at which the explorer shows a scene; `None` if the
+/// explorer does not support the scene.
 ///
 /// A scene is supported if the explorer, with its controls set to the numbers of the scene, saves
 /// the same scene. Planes, names and the extent of surfaces may differ.

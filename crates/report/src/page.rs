@@ -18,7 +18,7 @@ pub const NAME: &str = "report.html";
 /// The largest number of bytes of a page that is read.
 const MAX_PAGE_BYTES: u64 = 1 << 28;
 
-/// The text before and after the data of a run in a page.
+/// In a page, this text is before the data of a run, and the next text is after them.
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 

@@ -333,8 +333,8 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Returns the files that an index lists, with their hashes; `None` unless the index is exactly as
-/// Étendue wrote it.
+/// Returns the files that an index lists, with their hashes. Returns `None` if the index was
+/// changed after Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;

@@ -233,8 +233,8 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails if a folder holds a result of another scene, because a result must not replace the
-/// result of another scene with the same name. Settings of the measurement are ignored.
+/// Fails if a folder holds a result of another scene. Two scenes may have the same name, but the
+/// result of one must not replace the result of the other. Settings of the measurement are ignored.
 /// `arguments` is the style in which the message names `force`.
 pub fn check_earlier(
     folder: &Path,

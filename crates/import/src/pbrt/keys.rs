@@ -16,6 +16,6 @@ pub(super) enum Uv {
 /// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
-/// The key of a texture: the name of the texture, and the type and the coordinates for which it
-/// is read.
+/// The key of a texture. It consists of the texture's name, the type of its values, and the
+/// coordinates of its surface.
 pub(super) type TextureKey = (bool, String, u8, Uv);

@@ -74,8 +74,8 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// Returns the picture in longitude and latitude, from pole to pole, in which each pixel is the
-/// mean over its area.
+/// Returns the picture over longitude and latitude, from pole to pole. Each pixel is the mean over
+/// its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);

@@ -40,7 +40,7 @@ pub(super) struct Compared {
     unresolved: Option<String>,
     /// The reason why the outcome of the tests cannot be trusted.
     invalid: Option<String>,
-    /// Whether the two results have the same numbers because they come from the same photons.
+    /// Whether the two results come from the same photons, and so have the same numbers.
     pub(super) is_identical: bool,
 }
 
@@ -313,7 +313,7 @@ impl ResultPair<'_> {
     }
 }
 
-/// Returns a number of photons in each batch: so many photons of equal weight would vary as much as
+/// Returns a number of photons per batch. This many photons of equal weight would vary as much as
 /// the light of this sample. Returns `None` if this number is so large that no batch would be
 /// empty. `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {

@@ -326,8 +326,8 @@ impl Left {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes pieces with `parts` parts in total from the end of the list, because the leading
-    /// process takes pieces from the front of the list.
+    /// Takes pieces with `parts` parts in total. They come from the end of the list, because the
+    /// leading process takes pieces from the front.
     fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
         let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));

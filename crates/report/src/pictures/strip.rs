@@ -344,10 +344,10 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Returns lines along which the chain predicts the spectrum of a picture, in the plane of
-/// incidence and across it. At the light, the spectrum of a projector lies along ρ, and the
-/// spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω to
-/// A⁻ᵀ Ω.
+/// Returns lines for a picture, in the plane of incidence and across it. According to the chain,
+/// the spectrum lies along these lines. At the light, the spectrum of a projector lies along ρ, and
+/// the spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω
+/// to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
@@ -369,6 +369,6 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
 /// The relative difference of two slopes that coincide up to rounding.
 const NEAR: f64 = 1e-9;
 
-/// A line is left out if the modulus of its slope, in metres, is at least this limit, because the
-/// line would be vertical in any picture.
+/// A line with a slope of at least this modulus, in metres, is left out, because it would be
+/// vertical in any picture.
 const STEEPEST: f64 = 1e6;

@@ -22,8 +22,8 @@ const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"]
 /// The results for a pixel. A number is NaN if there is no light or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    /// The bandwidth of the picture after its mean is subtracted, in cycles per slope, along the
-    /// direction in which the bandwidth is largest; `error` is its standard error.
+    /// The bandwidth, in cycles per slope, of the picture minus its mean. It is taken along the
+    /// direction in which it is largest; `error` is its standard error.
     measured: f64,
     error: f64,
     /// The direction of the largest bandwidth, radians from the right, counter-clockwise.

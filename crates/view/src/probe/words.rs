@@ -23,8 +23,8 @@ fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// Returns the paper's criterion for light that leaves a surface, in cycles per radian at the
-/// camera (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
+/// Returns the paper's criterion for light that leaves a surface (Durand et al. 2005, Eq. 20,
+/// corrected), in cycles per radian at the camera. Returns `None` if the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
