@@ -271,8 +271,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// The light is an environment map with few pixels, reflected by a narrow lobe; the planes are on
-/// the surface and after the surface. Photons reject a lobe that is a fifth wider.
+/// A narrow lobe reflects an environment map with few pixels. One plane is on the surface, and one
+/// is after it. Photons reject a lobe that is a fifth wider.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -353,8 +353,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Checks that both tracers agree with each other and disagree with a prediction by `theory`,
-/// which does not apply.
+/// Checks that both tracers agree with each other. They must disagree with a prediction by
+/// `theory`, which does not apply.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,

@@ -447,8 +447,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs of this test use the same folder. No result may consist of the summary of an
-        // earlier run and the files of a later run that was killed.
+        // All runs of this test use the same folder. A result must not mix the summary of an
+        // earlier run with files of a later run that was killed.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -466,8 +466,8 @@ fn a_killed_run_leaves_no_half_result() {
             .spawn()
             .unwrap();
         // The golden ratio spreads the moments of the kills evenly over twice the time of a run.
-        // Half of these moments are within the run, and some are after its end even if the
-        // machine has become slower.
+        // Half of these moments are within the run. Some moments are after its end, even on a
+        // machine that has become slower.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

@@ -1,5 +1,5 @@
-//! Tests, from the command line, other methods of measurement, export to other programs, meshes
-//! and the 4D light field.
+//! Tests parts of the command line: methods of measurement, export to other programs, meshes and
+//! the 4D light field.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -46,7 +46,7 @@ impl Workers for Member {
 }
 
 /// Runs the command lines `lines`, each in its own process. Returns the exit code of the first
-/// process, and for each other process the number of messages that it has sent.
+/// process, and how many messages each other process has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();

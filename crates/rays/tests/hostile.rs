@@ -121,8 +121,8 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // The file is so large that the bound depends mostly on the length of the file, and not on
-    // the bytes that any file may take.
+    // The file is so large that its length determines most of the bound. The bytes that any file
+    // may take matter little.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());

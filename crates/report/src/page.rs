@@ -51,8 +51,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     Ok(data.to_owned())
 }
 
-/// Returns a page with the data of several runs in JSON, each run with its folder relative to the
-/// page.
+/// Returns a page with the data of several runs. Each run has its data in JSON, and its folder
+/// relative to the page.
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");

@@ -90,7 +90,7 @@ pub fn call(folder: &Path, arguments: &str) -> Output {
         .unwrap()
 }
 
-/// Checks that the command refuses bad input with one line that holds all `parts`, and does not
+/// Checks that the command refuses bad input. It must print one line with all `parts`, and must not
 /// write to `out`.
 pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     let output = call(folder, arguments);

@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Writes `inside` within the edge of a picture and `outside` beyond the edge, because Mitsuba
-    /// itself can only continue the picture beyond its edge.
+    /// Writes `inside` where a picture is, and `outside` beyond its edge. Mitsuba itself can only
+    /// continue a picture beyond its edge.
     fn inside(
         &mut self,
         pattern: &Pattern,

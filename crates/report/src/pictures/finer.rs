@@ -24,9 +24,9 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// Returns finer frequencies over the same range. Returns `None` if the scene's frequencies are
-    /// fine enough for the picture, or if they are too far apart to determine the values between
-    /// them.
+    /// Returns finer frequencies over the same range. Returns `None` in two cases: the scene's
+    /// frequencies are fine enough for the picture, or they are too far apart to determine the
+    /// values between them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,

@@ -317,9 +317,9 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
 
 /// Returns lines along which theory predicts the power of the spectrum. After light has travelled a
 /// distance d, its spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f,
-/// the spectrum also lies along parallel lines through (± f, ∓ h f), if the window and the
-/// frequencies resolve these lines. After a diffuse surface, only ν = 0 remains, and d is measured
-/// from this surface.
+/// the spectrum also lies along parallel lines through (± f, ∓ h f). These lines are returned if
+/// the window and the frequencies resolve them. After a diffuse surface, only ν = 0 remains, and d
+/// is measured from this surface.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {

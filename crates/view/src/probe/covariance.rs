@@ -24,8 +24,8 @@ pub(super) struct FoundCovariance {
     band: [f64; 4],
     pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
-    /// The covariance that covariance tracing computes at the camera from the light that leaves the
-    /// first surface; `None` at all other planes.
+    /// At the camera, the covariance by covariance tracing from the light that leaves the first
+    /// surface; `None` at all other planes.
     pub(super) propagated: Option<MatrixEstimate>,
 }
 
