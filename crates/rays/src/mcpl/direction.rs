@@ -59,9 +59,9 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Unpacks a direction of version 2. The direction is stored as a point of the octahedron |x| + |y|
-/// + |z| = 1. The lower half of the octahedron is folded out, which gives a square. `flat` means
-/// that z is 0.
+/// Unpacks a direction of version 2. The direction is stored as a point of an octahedron,
+/// |x| + |y| + |z| = 1. The lower half of the octahedron is folded out, which gives a square.
+/// `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
     // The numbers are coordinates in a square. Rounding to f32 may move a point outside the
     // square by up to 1e-6.

@@ -94,9 +94,10 @@ impl Particle {
 
     /// Appends the record of a file with this header, packed as in version 3.
     ///
-    /// # Errors When the file cannot hold the particle. A file cannot hold numbers that are not
-    /// finite or that exceed its precision, negative energies, and directions that are not unit
-    /// vectors. If it has a universal weight or PDG code, the particle must have this value.
+    /// # Errors
+    /// When the file cannot hold the particle. A file holds only finite numbers that its precision
+    /// can store, energies that are not negative, and directions that are unit vectors. If the file
+    /// has a universal weight or PDG code, the particle must have this value.
     pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header
