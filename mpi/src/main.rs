@@ -8,9 +8,9 @@
 //! so the result has the same bytes as the result of `etendue run`. The arguments are the arguments
 //! of `etendue`, and the crate of `etendue` parses them.
 //!
-//! The crate uses `ferrompi`, because it needs no libclang, its calls return errors instead of
-//! aborting, and it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings
-//! with libclang, which cluster nodes often lack.
+//! The crate uses `ferrompi` for three reasons: `ferrompi` needs no libclang, its calls return
+//! errors instead of aborting, and it is tested with both MPICH and Open MPI. `mpi` (rsmpi)
+//! generates its bindings with libclang, which cluster nodes often lack.
 
 use etendue::command_of_workers;
 use etendue_pipeline::Workers;

@@ -126,7 +126,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// Three coordinates.
+    /// Reads three coordinates.
     pub(crate) fn point(&self, name: &str, limit: f64) -> PyResult<Option<[f64; 3]>> {
         let mut point = None;
         let allowed = format!("three numbers within ±{limit:e}, such as (0, 1.5, -4)");
@@ -142,7 +142,7 @@ impl<'py> Arguments<'_, 'py> {
         Ok(point)
     }
 
-    /// Width and height in pixels, as two numbers or as text, such as 64x48.
+    /// Reads a width and a height in pixels, from two numbers or from text such as 64x48.
     pub(crate) fn size(
         &self,
         name: &str,
@@ -167,7 +167,7 @@ impl<'py> Arguments<'_, 'py> {
     }
 }
 
-/// Column and row of a pixel.
+/// Reads the column and row of a pixel.
 pub(crate) fn pixel(value: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
     let allowed = "two whole numbers, column and row from the top left, such as (128, 200)";
     let pixel = value.extract().ok();

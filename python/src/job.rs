@@ -78,8 +78,8 @@ impl Job {
         self.0.scene().warnings()
     }
 
-    /// Returns, for each plane, its name, its class, the steps of its chain, and the parts of the
-    /// scene that no theory describes.
+    /// Describes each plane: returns its name, its class, the steps of its chain, and the parts of
+    /// the scene that no theory describes.
     fn planes(&self) -> Vec<(String, String, Vec<String>, Vec<String>)> {
         let scene = self.0.scene();
         let planes = scene.planes.iter().zip(self.0.theories());

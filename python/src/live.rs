@@ -175,9 +175,9 @@ impl Watch for Tracing<'_> {
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
 /// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C, the
-/// work stops at the next block of photons or at the next step. The function returns when the work
-/// has ended, but waits only for a short time. If the work is not counted, the function returns at
-/// once.
+/// work stops at the next block of photons or at the next step. After Ctrl-C, the function waits
+/// until the work has ended, but only for a short time. If the work is not counted, the function
+/// does not wait.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,

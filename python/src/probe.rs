@@ -1,4 +1,4 @@
-//! The light field behind a pixel of a scene of another program.
+//! Probes the light field behind a pixel, in a scene of another program.
 
 use crate::arguments::{self, Arguments};
 use crate::live::alive;

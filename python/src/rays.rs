@@ -24,7 +24,7 @@ pub(crate) struct Rays(Vec<Vec<Crossing>>);
 
 impl Rays {
     /// Creates rays from columns x, y, u, v and weight. Weights are multiplied by the number of
-    /// batches, which makes the mean over batches the sum over all rays.
+    /// batches, so that the mean over batches is the sum over all rays.
     pub(crate) fn new(
         columns: &[PyReadonlyArray1<'_, f64>; 5],
         batch: &PyReadonlyArray1<'_, u32>,

@@ -1,5 +1,5 @@
-//! Tests of environment light on a leg and on surfaces: photons must accept correct predictions
-//! and reject predictions with a fault.
+//! Tests of environment light on a leg and on surfaces: photons must agree with correct
+//! predictions, and disagree with predictions that have a fault.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -42,7 +42,8 @@ fn predicted(view: &impl Model, plane: &VirtualPlane) -> Predicted {
     view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET)
 }
 
-/// Checks that photons accept the prediction of a plane, and reject each fault.
+/// Checks that photons agree with the prediction of a plane, and disagree with the prediction with
+/// each fault.
 fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     let plane = scene.planes.iter().find(|plane| plane.name == name);
     let view = system(scene, plane.unwrap()).unwrap();
@@ -135,8 +136,7 @@ fn two_parameterisations() {
     }
 }
 
-/// Checks Fig. 14: the light on a sphere, before the lobes of the sphere's BRDF act on this
-/// light.
+/// Checks Fig. 14: the light on a sphere, before the sphere's lobes act on it.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {
@@ -157,7 +157,7 @@ fn the_steps_of_shading() {
     tells(&scene, &photons, "cosine", &faults);
 }
 
-/// A scene with an environment in front of a diffuse wall and a glossy floor.
+/// Checks a scene in which an environment lights a diffuse wall and then a glossy floor.
 #[test]
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");

@@ -142,8 +142,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// Reduces the numbers of photons, frequencies and blockers of a scene, because the test concerns
-/// values of fields and not numbers of items.
+/// Reduces the numbers of photons, frequencies and blockers of a scene. The test concerns values of
+/// fields, and small numbers save time.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;

@@ -1,5 +1,4 @@
-//! Runs short forms of the attacks on the program from outside: mutated input of every kind, and
-//! kills.
+//! Attacks the program from outside for a short time, by mutated input of every kind and by kills.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

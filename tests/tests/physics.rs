@@ -29,8 +29,8 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
-/// Returns, for all planes, the verdict of comparing photons of the scene `traced` with
-/// predictions for the scene `predicted`.
+/// Compares photons of the scene `traced` with predictions for the scene `predicted`; returns the
+/// verdict on each plane.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -134,8 +134,8 @@ fn other_scenes_agree() {
     }
 }
 
-/// If a prediction omits the surface beside the ray, it is rejected at planes behind that surface,
-/// and at no other plane.
+/// If a prediction omits the surface beside the ray, photons reject it behind that surface, and at
+/// no other plane.
 #[test]
 fn a_forgotten_surface_is_noticed() {
     let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
@@ -199,8 +199,8 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// If a step of a first-order chain is omitted or doubled, the chain must fail, unless the omission
-/// or doubling leaves the chain unchanged.
+/// If a step of a first-order chain is omitted or doubled and this changes the chain, the chain
+/// must fail.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);

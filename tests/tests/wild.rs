@@ -164,9 +164,8 @@ fn scenes_that_took_long_have_an_answer() {
     holds("big_map", &on_and_off);
 }
 
-/// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
-/// stated error of the prediction includes the deviation of the mesh from the patch; without this
-/// deviation, the scene fails.
+/// A fine mesh deviates from the patch that osculates it by more than the noise of photon nets. The
+/// stated error of the prediction includes this deviation; without it, the scene fails.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -179,13 +178,13 @@ fn a_mesh_beside_its_patch_is_no_disagreement() {
         let verdict = |p: &Prediction| report(&scene, &photons, i, p).verdict;
         assert_eq!(verdict(&prediction), Verdict::Pass, "{}", plane.name);
         let error = prediction.mesh_error.unwrap_or(0.0);
-        assert!(error < 1e-4, "{error:e} at {}", plane.name); // ten times the 10⁻⁵ by which photons are off
+        assert!(error < 1e-4, "{error:e} at {}", plane.name); // the error for photons is 10⁻⁵
         let unaware = Prediction {
             mesh_error: Some(1e-6),
             ..prediction
         };
         let fails = verdict(&unaware) == Verdict::Fail;
-        assert_eq!(fails, i > 0, "{}", plane.name); // nothing is reflected before
+        assert_eq!(fails, i > 0, "{}", plane.name); // before the first plane, nothing is reflected
     }
 }
 
@@ -252,8 +251,8 @@ fn the_chain_of_a_small_map_does_not_fail() {
     holds_in(&edited("small_map_phong", &[MORE]), &planes);
 }
 
-/// Nets of rays resolve a grating that the quadrature nodes on a receiver do not resolve. A
-/// prediction with the quadrature nodes on the receiver is still wrong.
+/// Nets of rays resolve a grating, but the quadrature nodes on a receiver do not. A prediction that
+/// uses these nodes is still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -272,8 +271,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// The light is an environment map with few pixels, reflected by a narrow lobe; the planes are on
-/// the surface and after the surface. Photons reject a lobe that is a fifth wider.
+/// A narrow lobe reflects an environment map with few pixels. One plane is on the surface, and one
+/// is after it. Photons reject a lobe that is a fifth wider.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -342,7 +341,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// Backward rays also replace theory for light that a surface itself blocks with its other side.
+/// Backward rays also replace theory if one side of a surface blocks light of the other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -354,8 +353,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Checks that both tracers agree with each other and disagree with a prediction by `theory`,
-/// which does not apply.
+/// Checks that both tracers agree with each other. They must disagree with a prediction by
+/// `theory`, which does not apply.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,
@@ -443,7 +442,7 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window perpendicular to the path do not block all light for a window of
+/// If squares cover a window perpendicular to the path, they still let light through to a window of
 /// the same size on a surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
@@ -464,7 +463,7 @@ fn a_low_sky_is_decided() {
 }
 
 /// In these scenes, rays that leave the triangles of a mesh meet the mesh again, or take another
-/// direction, unlike rays that leave its osculating patch.
+/// direction. Rays that leave the patch that osculates the mesh do not.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -575,7 +574,7 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Tests that no light is found at angles beyond a right angle, although there is light at these
+/// Tests angles beyond a right angle: no light is found there, although there is light at these
 /// angles minus a full turn.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
@@ -586,8 +585,8 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror is so close to the light that a part of the mirror is before the mask. Rays sampled
-/// from the light to the mirror are unlikely to hit the part of the mirror before the mask.
+/// A mirror is so close to the light that a part of the mirror is before the mask. Few rays that
+/// are sampled from the light to the mirror hit this part.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
@@ -604,8 +603,8 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
-/// If a surface curves by more than a right angle, photons are recorded where they first meet the
-/// surface, with the coordinates of backward rays at this point.
+/// A surface may curve by more than a right angle. Photons are then recorded where they first meet
+/// the surface, and have the same coordinates there as backward rays.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
     let scene = scene("ridge_under_a_sky");
@@ -657,8 +656,8 @@ fn decided_against_chain(name: &str, class: Class) {
     });
 }
 
-/// Light whose line meets a hollow surface again is not counted, even if a blocker stops this
-/// light before the surface. Light that meets a floor inside the hollow surface continues from
+/// If the line of a ray meets a hollow surface again, its light is not counted, even if a blocker
+/// stops it before the surface. Light that meets a floor inside the hollow surface continues from
 /// the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
@@ -670,8 +669,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// The window is so narrow that hardly any ray aimed by the affine chain enters it, but exact
-/// rays traced back from the window have almost no noise.
+/// The window is so narrow that hardly any ray aimed by the affine chain enters it. Exact rays that
+/// are traced back from the window have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {
@@ -684,9 +683,9 @@ fn a_narrow_window_is_decided() {
     }
 }
 
-/// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe,
-/// so some photons are sampled in proportion to the cosine. If only a few of the photons sampled in
-/// proportion to the cosine carry the light, these photons do not contradict backward rays.
+/// Photons sampled in proportion to the sky's radiance rarely come from the direction of a lobe, so
+/// some photons are sampled in proportion to the cosine. If only a few of the latter carry the
+/// light, they do not contradict backward rays.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");

@@ -53,7 +53,7 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     )
 }
 
-/// Returns the lengths of the legs of the path, with the surface at which each leg ends.
+/// Returns the length of each leg of the path, and the surface at its end.
 fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {
@@ -63,7 +63,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// Describes the ray map of the light, z' = A z, and the foci of parallel rays.
+/// Describes the map z' = A z of the rays, and the distances at which it focuses parallel rays.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

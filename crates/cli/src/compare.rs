@@ -21,7 +21,7 @@ use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The minimum number of batches from which errors are computed; scenes have the same minimum.
+/// The minimum number of batches. Errors are computed from batches; a scene has the same minimum.
 const LEAST_BATCHES: usize = 32;
 
 /// Runs `etendue compare`; returns the exit code.
@@ -65,7 +65,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
 }
 
 /// Reads the measurement and the predictions, and checks that they belong to the same scene.
-/// Returns the scene, its measurement and its predictions, with the files from which they were
+/// Returns the scene, its measurement and its predictions, and the paths of all files that were
 /// read.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();

@@ -1,5 +1,5 @@
-//! Concludes commands that compare a measurement with predictions. Writes the result, prints it
-//! and determines the exit code.
+//! Ends commands that compare a measurement with predictions: writes the result, prints it and
+//! determines the exit code.
 
 use crate::args::Expect;
 use crate::print::{say, say_replaced};

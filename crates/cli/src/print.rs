@@ -5,14 +5,14 @@ use etendue_store::{Failure, Finished};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::path::Path;
 
-/// Prints to standard output. If the pipe is closed or the disk is full, neither the result nor
-/// the exit code changes.
+/// Prints to standard output. A closed pipe or a full disk does not change the result or the exit
+/// code.
 pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints the main output of a command. If the output cannot be written, the function fails, unless
-/// the program at the other end has closed the pipe.
+/// Prints the main output of a command. If the output cannot be written, the function fails. It
+/// does not fail if the program at the other end has closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
     let text = if stdout().is_terminal() {
@@ -38,8 +38,8 @@ pub(crate) fn tell(message: &str) {
     let _ = writeln!(stderr(), "{message}");
 }
 
-/// The maximum number of columns of a line on a terminal, at which sentences are wrapped. If
-/// standard error is not a terminal, each message is written on one line.
+/// The maximum number of columns on a terminal. Longer lines are wrapped. If standard error is not
+/// a terminal, each message is written on one line.
 const COLUMNS: usize = 100;
 
 /// Wraps sentences between words and indents continued lines. Rows of tables, whose columns are
@@ -81,8 +81,8 @@ pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
 pub(crate) const MAX_ERROR_LINES: usize = 20;
 const MAX_LINE_LENGTH: usize = 2000;
 
-/// Returns text cut to `lines` lines, in characters that are safe on a terminal, because names
-/// and contents of files may hold any characters.
+/// Cuts a text to `lines` lines, and escapes characters that are not safe on a terminal. Names and
+/// contents of files may hold such characters.
 pub(crate) fn printable(text: &str, lines: usize) -> String {
     let mut all = text.split('\n');
     let shown = all

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// The largest size of a ray file, in bytes.
 const MOST_BYTES: u64 = 1 << 34;
-/// The maximum number of characters of a text that are shown, and the maximum number of texts
+/// The maximum number of characters that are shown of each text, and the maximum number of texts
 /// that are shown.
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;

@@ -97,7 +97,7 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
-/// The folder of a result that is to be written, and the processes that share the work.
+/// The folder to which a result will be written, and the processes that share the work.
 struct ResultPlace<'a> {
     folder: &'a Path,
     plan: Plan,

@@ -62,7 +62,8 @@ fn named_below<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
     }
 }
 
-/// Iterates over the fields of a node: first the required fields, then the other fields by name.
+/// Iterates over the fields of a node. The required fields come first, and the other fields follow
+/// by name.
 fn fields(node: &Value) -> impl Iterator<Item = (&str, &Value)> {
     let required = node["required"].as_array().into_iter().flatten();
     let required = required.filter_map(Value::as_str);

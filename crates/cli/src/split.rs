@@ -1,5 +1,5 @@
-//! Implements `etendue split`: prints commands that measure parts of a scene on several machines,
-//! and a command that combines these parts.
+//! Implements `etendue split`. It prints commands that measure parts of a scene on several
+//! machines, and a command that combines these parts.
 
 use crate::args::SplitArgs;
 use crate::print::deliver;

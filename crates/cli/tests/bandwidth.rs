@@ -32,12 +32,13 @@ fn a_sweep_measures_what_the_criterion_says() {
     let at = |name: &str| rows[0].iter().position(|cell| *cell == name).unwrap();
     for row in &rows[1..] {
         let number = |name: &str| row[at(name)].parse::<f64>().unwrap();
-        // The larger of the two bandwidths is Ω_ρ |1 + 2kd/cos θ₁| with d = 0.5 and tan θ₁ = 0.5.
+        // B is Ω_ρ |1 + 2kd/cos θ₁|, where Ω_ρ is the bandwidth of the lobe, d = 0.5, and tan θ₁ =
+        // 0.5.
         let finer = 1.0 + number("k [1/m]") * 1.25_f64.sqrt();
         assert!((number("B (Eq. 20)") / (number("lobe") * finer) - 1.0).abs() < 1e-9); // rounding, and the scene's frames
         assert!((number("exact") / number("B (Eq. 20)") - 1.0).abs() < 0.05); // as validated
         let off = (number("measured") - number("exact")) / number("error");
-        assert!(off.abs() < 4.0, "{off}"); // one in 16,000, of a fixed seed
+        assert!(off.abs() < 4.0, "{off}"); // one seed in 16,000 is beyond 4
         assert_eq!(row[at("d' [m]")], "");
     }
 }

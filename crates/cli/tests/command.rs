@@ -35,8 +35,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane does not fail if only photons aimed at another plane cross it, although these photons
-/// cover only part of its window.
+/// If a plane is crossed only by photons that were aimed at another plane, it does not fail. Such
+/// photons cover only a part of its window.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -143,8 +143,8 @@ fn expecting_disagreement_turns_the_exit_code() {
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// If a first-order chain is wrong only in amplitude, no wrong map is reported; the picture and
-/// the page show that the chain fails.
+/// If only the amplitude of a first-order chain is wrong, the command does not report a wrong map.
+/// The picture and the page show that the chain fails.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -263,7 +263,7 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each of the two slopes
+    // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)². Each of the two slopes
     // contributes a factor 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;
@@ -437,8 +437,8 @@ fn bad_arguments_are_refused() {
     assert_eq!(missing.status.code(), Some(2));
 }
 
-/// A run is killed at twenty moments, some of them after its usual duration. Each kill leaves a
-/// complete result or no result.
+/// The test kills a run at twenty moments, some of which are later than the run usually takes. Each
+/// kill leaves a complete result or no result.
 #[test]
 fn a_killed_run_leaves_no_half_result() {
     let folder = tempfile::tempdir().unwrap();
@@ -447,8 +447,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs of this test use the same folder. No result may consist of the summary of an
-        // earlier run and the files of a later run that was killed.
+        // All runs of this test use the same folder. A result must not mix the summary of an
+        // earlier run with files of a later run that was killed.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -466,8 +466,8 @@ fn a_killed_run_leaves_no_half_result() {
             .spawn()
             .unwrap();
         // The golden ratio spreads the moments of the kills evenly over twice the time of a run.
-        // Half of these moments are within the run, and some are after its end even if the
-        // machine has become slower.
+        // Half of these moments are within the run. Some moments are after its end, even on a
+        // machine that has become slower.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

@@ -47,8 +47,8 @@ fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     Swap::new(index.to_owned(), &sealed(tree))
 }
 
-/// Checks that `compare` refuses other bytes in `file`, although the hash of `file` in the index
-/// matches these bytes.
+/// Checks that `compare` refuses `file` with other bytes, even if the index has the hash of these
+/// bytes.
 fn refused_with(folder: &Path, file: &str, bytes: &[u8], parts: &[&str]) {
     let (stage, name) = file.split_once('/').unwrap();
     let index = ["measurement.json", "prediction.json"].map(|index| folder.join(stage).join(index));
@@ -157,8 +157,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // In the cases above, the hash in the index matches the changed bytes; if the hash does not
-    // match, any changed bit is detected.
+    // In the cases above, the index has the hash of the changed bytes. If it has another hash, any
+    // changed bit is detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -370,8 +370,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Tests that parts measured with another mesh are refused, because meshes belong to a scene, and
-/// that the copies of meshes are checked.
+/// Tests that `compare` refuses parts measured with another mesh, because meshes belong to a scene,
+/// and that it checks the copies of meshes.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();

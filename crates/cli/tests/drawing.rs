@@ -55,8 +55,8 @@ fn surfaces_are_hatched_evenly_and_glass_is_not() {
     };
     assert_eq!(strokes("table1/lens"), 0);
     assert_eq!(strokes("table1/refraction_in"), 0);
-    // The segments of the drawn sphere are shorter than the distance from a segment's end to the
-    // first stroke of hatching.
+    // The segments of the drawn sphere are short: the first stroke of hatching is farther from a
+    // segment's end than the segment is long.
     assert!(strokes("table1/environment") > 20);
 }
 

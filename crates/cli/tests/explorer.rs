@@ -20,8 +20,8 @@ fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) 
     )
 }
 
-/// Returns the largest difference between the slices at azimuth 0, and between the pictures, each
-/// relative to the largest value.
+/// Returns the largest difference between the slices at azimuth 0, and the largest difference
+/// between the pictures. Each is divided by the largest value.
 fn apart(
     (slices, field): &(Slices, Projection),
     (command, picture): &(Array3<Complex>, Array2<f64>),

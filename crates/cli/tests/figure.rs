@@ -76,8 +76,8 @@ fn curves_have_a_table() {
     assert!((at_zero("3D").unwrap() - std::f64::consts::PI).abs() < 1e-9);
 }
 
-/// The bandwidths measured with photons lie on the lines of the corrected Eqs. 20 and 21, and off
-/// the lines of the printed equations.
+/// Bandwidths that photons measure lie on the lines of the corrected Eqs. 20 and 21. They do not
+/// lie on the lines of the printed equations.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn photons_tell_the_criteria_from_their_print() {
@@ -119,8 +119,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // The error of the lines' nearest points is 0.12, and the error of the criteria is 1
-            // %. If the bandwidth is below 2, the window determines the spectrum.
+            // A line consists of points, which causes an error of 0.12, and the criteria have an
+            // error of 1 %. If the bandwidth is below 2, the window determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");

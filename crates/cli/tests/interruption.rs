@@ -1,5 +1,5 @@
-//! Tests that signals end a run even if its standard error is closed or full, and that lack of
-//! memory ends a run with a message.
+//! Tests that signals end a run, even if its standard error is closed or full. Also tests that a
+//! run without enough memory ends with a message.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -17,7 +17,7 @@ fn refused(arguments: &[&str]) -> Output {
     output
 }
 
-/// Settings with which predictions use nets of rays instead of closed forms; such predictions
+/// Settings that make predictions use nets of rays instead of closed forms. Predictions by nets
 /// keep the spectra of all replicates in memory.
 const FINE: [&str; 6] = [
     "--set",

@@ -284,8 +284,7 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// If a process dies while it moves its files, the next process completes the moves from any
-/// step.
+/// If a process dies at any step while it moves its files, the next process completes the moves.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();

@@ -1,5 +1,5 @@
-//! Tests a ray file as a light: photons against the sum over its rays, planted faults, and
-//! refusals.
+//! Tests a light that is a ray file: photons agree with the sum over its rays, planted faults are
+//! detected, and unsuitable planes are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -61,8 +61,8 @@ fn folder() -> TempDir {
     folder
 }
 
-/// Returns the scene of the repository with some of its text replaced, and with enough photons
-/// for a noise of a few per cent.
+/// Returns the scene of the repository with some of its text replaced. The scene has so many
+/// photons that the noise is a few per cent.
 fn text(edits: &[(&str, &str)]) -> String {
     let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();
     let edits = [
@@ -89,8 +89,8 @@ fn resolved(folder: &Path, edits: &[(&str, &str)]) -> Result<Scene, SceneError> 
     )
 }
 
-/// Returns the verdicts on the photons of the scene `traced` against the prediction of the scene
-/// `predicted`.
+/// Compares the photons of the scene `traced` with the prediction of the scene `predicted`; returns
+/// the verdicts.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -240,8 +240,8 @@ fn what_makes_no_light_is_refused() {
     }
 }
 
-/// The command refuses planes at which no verdict is possible, warns of rays that go back, and
-/// writes the same bytes on any number of threads.
+/// The command refuses planes that can have no verdict, and warns of rays that go back. It writes
+/// the same bytes on any number of threads.
 #[test]
 fn the_command_knows_what_it_can_judge() {
     let folder = folder();

@@ -118,8 +118,7 @@ fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
 }
 
 /// A light of radiance 1 emits a flux of π times its area. The received flux is the emitted flux
-/// times the form factor, and the form factor is computed independently of the flux in the NPY
-/// file.
+/// times the form factor. The test computes the form factor without the flux in the NPY file.
 #[test]
 fn saved_rays_have_the_flux_of_their_plane() {
     let folder = tempfile::tempdir().unwrap();

@@ -7,8 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Returns a folder with the runs `a` and `b`. Run `a` is of the small scene, and run `b` is of the
-/// same scene with another pitch and a name that would close the page's data tag.
+/// Returns a folder with the runs `a` and `b`. Run `a` has the small scene. Run `b` has the same
+/// scene with another pitch, and with a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
@@ -95,7 +95,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
         let code = call(path, &run).status.code();
-        // With so few photons, the verdict may be undecided instead of the expected verdict.
+        // With so few photons, the verdict may be undecided.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
         let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));

@@ -187,8 +187,8 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    // A part of a batch takes about a second of one thread; the limit is higher in case the
-    // machine is busy.
+    // One thread takes about a second for a part of a batch. The limit is higher, because the
+    // machine may be busy.
     let mut by_itself = true;
     while by_itself && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(20));

@@ -1,5 +1,5 @@
-//! Tests the stages of a run, which exchange files: together they write the same files as `run`,
-//! and parts that do not fit together are refused.
+//! Tests the stages of a run, which exchange files. Together they write the same files as `run`,
+//! and they refuse parts that do not fit together.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

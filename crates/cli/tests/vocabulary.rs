@@ -1,5 +1,5 @@
-//! Tests, from the command line, other methods of measurement, export to other programs, meshes
-//! and the 4D light field.
+//! Tests parts of the command line: methods of measurement, export to other programs, meshes and
+//! the 4D light field.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -46,8 +46,8 @@ fn backward_rays_agree_and_keep_no_ledger() {
     assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
 }
 
-/// Backward rays find a point light if nothing deflects its light, but not behind a mirror that
-/// reflects the light first.
+/// Backward rays find a point light if nothing deflects its light. Behind a mirror, they do not
+/// find it.
 #[test]
 fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
     let beyond = ("at: Emission", "at: Distance(0.5)");
@@ -129,7 +129,7 @@ fn the_light_field_is_written_on_its_grid() {
     let slices: ndarray::Array3<etendue_field::Complex> =
         array(&plane.join("slices.npz"), "measured");
     let [_, rho, nu] = [0, slices.shape()[1] / 2, slices.shape()[2] / 2];
-    assert!((sum / slices[[0, rho, nu]].re - 1.0).abs() < 1e-6); // 2e-7 of the weights, of the slices
+    assert!((sum / slices[[0, rho, nu]].re - 1.0).abs() < 1e-6); // relative errors are 2e-7
     let [power, predicted]: [Array2<f64>; 2] =
         ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
     let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");

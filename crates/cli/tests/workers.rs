@@ -46,7 +46,7 @@ impl Workers for Member {
 }
 
 /// Runs the command lines `lines`, each in its own process. Returns the exit code of the first
-/// process, and for each other process the number of messages that it has sent.
+/// process, and how many messages each other process has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();
@@ -122,8 +122,8 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // The first process that is ready takes the next piece of work. On a busy machine the
-        // other processes may get no work; the test then repeats the run.
+        // The next piece of work goes to the first process that is ready. On a busy machine, some
+        // processes may get no work; the test then repeats the run.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
             // A process reports its presence with one message, and answers each order with one

@@ -1,11 +1,11 @@
 //! The computations of `docs/explorer.html`: a page with interactive light, blockers, travel and
 //! receiver, which shows each light field and spectrum along the path.
 //!
-//! A [`Setup`] holds the settings, and a [`PathPlace`] is a place on the path, whose light field
-//! and spectrum [`etendue_theory`] predicts. Between parallel planes, light fields and spectra
-//! equal the results of `etendue predict` for the scene that [`scene`] writes. On a curved glossy
-//! receiver, light fields and spectra are first-order predictions without the cosine. Exact rays
-//! reflected by the sphere are traced on request.
+//! A [`Setup`] holds the settings, and a [`PathPlace`] is a place on the path. [`etendue_theory`]
+//! predicts the light field and spectrum at each place. Between parallel planes, light fields and
+//! spectra equal the results of `etendue predict` for the scene that [`scene`] writes. On a curved
+//! glossy receiver, light fields and spectra are first-order predictions without the cosine. Exact
+//! rays reflected by the sphere are traced on request.
 //!
 //! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 

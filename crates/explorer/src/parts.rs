@@ -34,7 +34,7 @@ pub fn lobe(setup: &Setup) -> PlanarLobe {
     }
 }
 
-/// Position of a blocker along an axis, in pitches from the centre.
+/// Returns the position of a blocker along an axis, in pitches from the centre.
 pub(crate) fn place(i: u32, count: u32) -> f64 {
     f64::from(i) - 0.5 * (f64::from(count) - 1.0)
 }

@@ -53,7 +53,7 @@ impl PathPlace {
         }
     }
 
-    /// Whether the computation is too slow for interaction, so that it runs in the background.
+    /// Returns whether the computation is slow, so that it must run in the background.
     #[must_use]
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Irradiance | Self::Diffuse)

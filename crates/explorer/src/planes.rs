@@ -115,8 +115,8 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
     }
 }
 
-/// Returns the chain of the light that arrives at the receiver, after `times` · curvature ·
-/// position has been added to its slopes.
+/// Returns the chain of the light that arrives at the receiver; the last step of the chain adds
+/// `times` · curvature · position to the slopes.
 fn imaged(setup: &Setup, times: f64) -> Chain {
     let chain = PathPlace::Arrived.chain(setup);
     let power = times * setup.get(SettingKey::Curvature);
@@ -125,7 +125,7 @@ fn imaged(setup: &Setup, times: f64) -> Chain {
         .expect("an even light and opaque blockers")
 }
 
-/// In the frame of the surface, positions are reversed and directions are not: S(ρ, ν) is the
+/// Returns slices in the frame of the surface, in which only positions are reversed: S(ρ, ν) is the
 /// previous S(−ρ, ν).
 fn on_the_surface(before: &Slices) -> Slices {
     let mut after = before.clone();

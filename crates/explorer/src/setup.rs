@@ -266,7 +266,7 @@ impl Setup {
         self.values[key as usize]
     }
 
-    /// Whether a setting that is either 0 or 1 has the value 1.
+    /// Returns whether a setting that is either 0 or 1 has the value 1.
     #[must_use]
     pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5

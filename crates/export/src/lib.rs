@@ -1,10 +1,10 @@
 //! Exports Étendue scenes to other renderers, for viewing and for checks.
 //!
-//! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
-//! 3](https://www.mitsuba-renderer.org): the light, the blockers, and the surfaces with their
-//! BRDFs. The export also holds the virtual planes, so that a script can record the same local
-//! light fields with an independent tracer (`docs/mitsuba.md`). The export fails if Mitsuba cannot
-//! represent a part of the scene; the error names this part.
+//! [`mitsuba`] writes the light, the blockers and the surfaces of a [`Scene`](etendue_scene::Scene)
+//! for [Mitsuba 3](https://www.mitsuba-renderer.org). The export also holds the virtual planes.
+//! With them, a script can record the same local light fields by an independent tracer
+//! (`docs/mitsuba.md`). The export fails if Mitsuba cannot represent a part of the scene; the error
+//! names this part.
 
 mod mitsuba;
 

@@ -260,8 +260,8 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// Returns the largest coordinate, across the central ray, of light that goes straight to a window
-/// or a surface.
+/// Returns the largest distance from the central ray, along X or Y, of light that goes straight to
+/// a window or a surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends

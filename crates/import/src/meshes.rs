@@ -39,11 +39,11 @@ impl MeshParts {
             .retain(|corners| across(vertices, *corners) != DVec3::ZERO);
     }
 
-    /// Computes vertex normals as sums of the normals of adjacent triangles, weighted by the angles
-    /// of the triangles at the vertex (Thürmer and Wüthrich 1998).
+    /// Computes each vertex normal as a sum over the adjacent triangles (Thürmer and Wüthrich
+    /// 1998). The weight of a triangle's normal is the angle of the triangle at the vertex.
     ///
-    /// Angles are measured after the map `linear`, the linear part of the mesh's placement, is
-    /// applied.
+    /// Angles are measured after the map `linear` is applied, which is the linear part of the
+    /// mesh's placement.
     pub(crate) fn smooth(&mut self, linear: DMat3) {
         let placed: Vec<DVec3> = self.vertices.iter().map(|v| linear * *v).collect();
         let mut sums = vec![DVec3::ZERO; placed.len()];

@@ -6,10 +6,11 @@
 //!
 //! # Light
 //!
-//! The value of a light is the value of a pixel in which pbrt shows the light, with the default
-//! sensor and an imaging ratio of 1. The program pbrt divides each light by an integral over the
-//! eye's sensitivity ȳ times the spectrum of the light or, for an `rgb`, times the white of the
-//! colour space. The sensor of pbrt does not divide again. The values of lights are therefore:
+//! The value of a light is the value of a pixel that shows the light in a picture by pbrt, with the
+//! default sensor and an imaging ratio of 1. The program pbrt divides each light by an integral.
+//! This integral is over the product of the eye's sensitivity ȳ and the spectrum of the light; for
+//! an `rgb`, the white of the colour space replaces the spectrum. The sensor of pbrt does not
+//! divide again. The values of lights are therefore:
 //!
 //! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`. The colour (1, 1, 1)
 //!   shows 1 in each channel, and has luminance 1.

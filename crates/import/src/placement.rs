@@ -42,9 +42,8 @@ pub(crate) fn is_similarity(map: DMat3) -> bool {
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns the similarity that is closest to a regular map in these respects. Both map X to the
-/// same vector. Both map Y to the same half-plane beside the mapped X. The similarity mirrors if
-/// the map mirrors.
+/// Returns a similarity that replaces a regular map. Both maps take X to the same vector, and Y to
+/// the same side of this vector in the same plane. The similarity mirrors if the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);
     let along = x.normalize();

@@ -101,8 +101,7 @@ fn the_front_is_where_corners_run_counterclockwise() {
     // The corners are counterclockwise with X to the right and Y up, so the front is towards Z.
     let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
     assert!((b - a).cross(c - a).z > 0.0);
-    // A mirrored surface keeps its front, because its normals are transformed by the inverse
-    // transpose.
+    // A mirrored surface keeps its front, because the inverse transpose transforms its normals.
     let mirrored = &world.shapes[1];
     assert!(!mirrored.is_flipped && mirrored.to_world.matrix3.determinant() < 0.0);
     let etendue_world::Geometry::Mesh(second) = &mirrored.geometry else {

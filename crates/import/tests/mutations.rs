@@ -72,8 +72,8 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
     );
 }
 
-/// In each round, damages one of the files (in every second round the first file), and imports
-/// the scene.
+/// In each round, damages one of the files and imports the scene. In every second round, this is
+/// the first file.
 fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);

@@ -80,8 +80,8 @@ fn lenses_focus_on_a_plane() {
     let lens = "Scale 0.5 0.5 0.5 Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3";
     let camera = camera(lens);
     let [middle, edge] = [[0.0, 0.0], [0.6, -0.8]].map(|lens| camera.look([4.0, 6.0], lens));
-    // The scale of one half doubles the size of the camera, so its plane of focus is at a distance
-    // of 6.
+    // The scale of one half doubles the size of the camera, so the camera focuses at a distance of
+    // 6.
     let at = |look: Look| look.from + look.along * (6.0 / look.along.z);
     assert_close(&(at(middle) - at(edge)).to_array(), &[0.0; 3], 1e-12);
     assert_close(&[edge.from.length()], &[0.2], 1e-12);

@@ -211,8 +211,8 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // If a spot has the size of a pixel, the means over pixels conserve its light to a few per
-    // cent.
+    // The spot has the size of a pixel, so the means over pixels conserve its light only to a few
+    // per cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
     // The centre of the pixel is at u = 9/16 and v = 1/16 in coordinates from −1 to 1, so r =

@@ -15,8 +15,8 @@ fn mesh(shape: &Shape) -> &Triangles {
     }
 }
 
-/// Returns the front normal of a shape at the point where a ray from its origin along `own` leaves
-/// the shape. For a mesh, returns the front normal of the first triangle.
+/// Returns the front normal of a shape at a point. At this point, a ray from the shape's origin
+/// along `own` leaves the shape. For a mesh, returns the front normal of the first triangle.
 fn front(shape: &Shape, own: DVec3) -> DVec3 {
     let side = if shape.is_flipped { -1.0 } else { 1.0 };
     let normal = match &shape.geometry {

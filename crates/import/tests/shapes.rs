@@ -121,8 +121,8 @@ fn spheres_and_cylinders_are_placed() {
     );
 }
 
-/// Mitsuba 3.9 makes a sphere whose radius is the length of the placed X axis, as its bounding
-/// boxes show.
+/// The bounding boxes of Mitsuba 3.9 show that the radius of its sphere is the length of the placed
+/// X axis.
 #[test]
 fn uneven_spheres_are_those_of_mitsuba() {
     for (scales, radius) in [
@@ -260,8 +260,8 @@ fn shapes_without_a_material_are_grey_or_black() {
     assert!(world.shapes[0].emission.is_none());
 }
 
-/// Returns a mesh file of version 4 with two meshes of one triangle each; the second triangle lies
-/// higher by 1.
+/// Returns a mesh file of version 4. It has two meshes of one triangle each, and the second
+/// triangle is higher by 1.
 fn serialized() -> Vec<u8> {
     let mut file = Vec::new();
     let mut offsets = Vec::new();

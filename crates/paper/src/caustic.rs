@@ -7,7 +7,7 @@ use etendue_pipeline::table::spaced;
 use etendue_report::pictures::spectrum_quantity;
 use etendue_store::Failure;
 
-/// Fig. 11: the steps at normal incidence, and below them spectra at 40°.
+/// Draws Fig. 11: the steps at normal incidence, and below them spectra at 40°.
 pub(crate) fn caustic(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let normal = taken.strip()?;
     let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[1]).collect();

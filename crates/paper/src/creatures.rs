@@ -172,7 +172,7 @@ impl CreatureRow<'_> {
     }
 }
 
-/// Fig. 16.
+/// Draws Fig. 16.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let scene = CreatureScene::new(taken.quality)?;
     let layers = scene.rendered(SampleMethod::Predicted, false).layers;
@@ -271,7 +271,7 @@ impl ComparedPictures {
     }
 }
 
-/// Fig. 17.
+/// Draws Fig. 17.
 pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     const HEADS: [&str; 3] = [
         "(a) uniform",

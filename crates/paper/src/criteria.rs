@@ -27,7 +27,8 @@ struct CriterionSweep {
 /// Number of points of a line.
 const POINTS: u32 = 40;
 
-/// Curves over curvature and distance without a blocker, and over curvature behind an edge.
+/// Draws curves over curvature and over distance without a blocker, and over curvature behind an
+/// edge.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let curvature = |title, values| CriterionSweep {
         title,

@@ -20,7 +20,8 @@ impl Flat {
         DiffuseStep::Reflection,
     ];
 
-    /// Widths along X, and distances along the central ray, of a scene with a rectangular light, one array of squares and a floor.
+    /// Takes widths along X and distances along the central ray from a scene. The scene must have a
+    /// rectangular light, one array of squares and a floor.
     pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
         let missing = || Failure::cannot_run(format!("{} has no flatland version", scene.name));
         let Light::Area {
@@ -52,7 +53,7 @@ impl Flat {
         }))
     }
 
-    /// |S|² of a step in the window and at the frequencies of a plane, [ρ, ν].
+    /// Returns |S|² of a step as an array [ρ, ν], in the window and at the frequencies of a plane.
     pub(crate) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
         let window = [&plane.window.x, &plane.window.u];
         let spectrum = self

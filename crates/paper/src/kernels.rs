@@ -16,7 +16,7 @@ const POINTS: u32 = 400;
 /// Number of cells of a picture along each axis.
 const CELLS: usize = 121;
 
-/// A function on an interval.
+/// Returns the curve of a function on an interval.
 fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f64) -> Curve {
     let point = |i: u32| {
         let x = from + (to - from) * f64::from(i) / f64::from(POINTS);

@@ -10,8 +10,8 @@ use etendue_report::pictures::spectrum_quantity;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 
-/// Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles. The
-/// paper states that treating slopes as angles causes no significant error.
+/// Draws Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles.
+/// The paper states that treating slopes as angles causes no significant error.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slopes = Seen::at(&taken.shots[0], "slopes")?;
     let angles = Seen::at(&taken.shots[0], "angles")?;
@@ -61,11 +61,12 @@ fn panels(
     [by_slopes.clone(), along_x, difference(slopes, angles)]
 }
 
-/// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
+/// Returns |S_θ − S_u|², averaged over azimuths, as an array [ρ, ν] with ρ along X. S_θ is the
+/// spectrum over angles, and S_u is the spectrum over slopes.
 ///
-/// T is opposite to X, and B is Y. Angles describe the direction from which light comes. Therefore
-/// the value over slopes at (ρ, ν) and azimuth φ is the value over angles at (−ρ, ν) and azimuth
-/// −φ, or at (ρ, −ν) and azimuth π − φ.
+/// The axis T of the surface is opposite to X, and its axis B is Y. Angles describe the direction
+/// from which light comes. Therefore the value over slopes at (ρ, ν) and azimuth φ is the value
+/// over angles at (−ρ, ν) and azimuth −φ, or at (ρ, −ν) and azimuth π − φ.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
     let (azimuths, columns, rows) = by_slopes.dim();

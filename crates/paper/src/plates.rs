@@ -12,7 +12,7 @@ use etendue_store::Failure;
 use etendue_theory::Operator;
 use ndarray::Array2;
 
-/// Fig. 4: light of a point and of a spot, at its source and after travel.
+/// Draws Fig. 4: the light of a point and the light of a spot, each at its source and after travel.
 pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "light")?,
@@ -32,7 +32,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 6: a scene step by step.
+/// Draws Fig. 6: a scene step by step.
 pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = [
         "light",
@@ -74,7 +74,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 7: occluders that together block all light.
+/// Draws Fig. 7: occluders that together block all light.
 pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken
         .shots
@@ -139,7 +139,7 @@ fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
     Some(etendue_theory::at(&chain, &plane.window, [0.0; 4]).re)
 }
 
-/// Fig. 9: blockers of three sizes.
+/// Draws Fig. 9: blockers of three sizes.
 pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().map(|shot| Seen::at(shot, "receiver"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;

@@ -14,7 +14,7 @@ use etendue_figures::Figure;
 use etendue_store::Failure;
 use std::path::Path;
 
-/// A figure of the paper, with the scenes in which it is measured and the function that draws it.
+/// A figure of the paper, with the scenes that are run for it and the function that draws it.
 #[derive(Debug)]
 pub(crate) struct Recipe {
     /// The number of the figure or table in the paper.

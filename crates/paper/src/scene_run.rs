@@ -73,8 +73,8 @@ pub(crate) fn resolved(
     machine::resolved(name, file, Path::new(""), name)
 }
 
-/// Returns the results as NPZ: for each plane its light field, its radial spectra and the slices at
-/// azimuth 0, with their axes. Names are SCENE.PLANE.ARRAY.
+/// Returns the results as NPZ. It holds the light field, the radial spectra and the slices at
+/// azimuth 0 of each plane, with all axes. Names are SCENE.PLANE.ARRAY.
 pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
     let mut npz = Npz::new();
     for shot in shots {

@@ -12,7 +12,7 @@ use etendue_store::Failure;
 use etendue_theory::shading::environment::{Glow, irradiance};
 use std::f64::consts::TAU;
 
-/// Fig. 14: a diffuse sphere in an environment.
+/// Draws Fig. 14: a diffuse sphere in an environment.
 pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["environment", "curvature", "cosine", "reflection"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
@@ -116,7 +116,7 @@ fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) ->
     rho.iter().map(at).collect()
 }
 
-/// |S| at azimuth 0 along ν = 0, as a function of ρ, relative to the value at zero.
+/// Returns |S| at azimuth 0 and ν = 0 as a function of ρ, divided by its value at ρ = 0.
 fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
     let full = slices.full();
     let (grid, peak) = (&slices.grid, slices.at_zero());
@@ -127,7 +127,7 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Fig. 15: the steps of section 6.2, and its criteria compared with photons.
+/// Draws Fig. 15: the steps of section 6.2, and the criteria of this section compared with photons.
 pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
     let heads = [

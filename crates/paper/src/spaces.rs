@@ -14,7 +14,8 @@ use etendue_report::pictures::{across, across_axes, light_field_quantity};
 use etendue_store::Failure;
 use ndarray::Array2;
 
-/// Fig. 3: stripes at equal angles, over slopes and over angles, at the light and after travel.
+/// Draws Fig. 3: stripes at equal angles, shown over slopes and over angles, at the light and after
+/// travel.
 pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["two_plane", "travel", "plane_sphere"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
@@ -39,7 +40,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[spaces, error]))
 }
 
-/// Fig. 13: directions by longitude and latitude about three equators.
+/// Draws Fig. 13: directions by longitude and latitude about three equators.
 pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let [mirror, copper] = [&taken.shots[0], &taken.shots[1]];
     let seen = [
@@ -111,7 +112,7 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
     Ok(found.collect())
 }
 
-/// Curves of first-order errors, and reference lines for an order of convergence.
+/// Returns curves of first-order errors, and reference lines for an order of convergence.
 fn orders(
     taken: &FigureData<'_>,
     title: &str,

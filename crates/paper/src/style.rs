@@ -37,7 +37,7 @@ pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
 const EXAMPLE: &str =
     "(titles: false, scene: false, verdicts: false, width: 3.33, floor: -40, palette: Viridis)";
 
-/// Bounds on the lower end of the colors of spectra, dB. Noise is above the lower bound for any
-/// number of photons. At the upper bound, the peak of a spectrum is still visible.
+/// Bounds, in dB, of the lowest level in the colors of spectra. For any number of photons, noise is
+/// above the lower bound. At the upper bound, the peak of a spectrum is still visible.
 const LOWEST: f64 = -200.0;
 const HIGHEST: f64 = -1.0;

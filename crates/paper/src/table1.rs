@@ -73,7 +73,7 @@ const PARTS: [(&str, [Step; 5]); 2] = [
 
 const NOTE: &str = "Measured. Formulas are corrected, without phases; *c* = cos *θ*.";
 
-/// Light fields and spectra before and after each operator.
+/// Draws light fields and spectra before and after each operator.
 pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let parts = PARTS.iter().enumerate().map(|(i, (title, steps))| {
         let sides = [0, 1].map(|side| {

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 /// Makes a failed plane undecided if too few of the photons aimed at its window reach it.
 ///
-/// The tracer aims an equal share of the photons at each window. If photons aimed at a window
-/// rarely reach it, for example behind a curved mirror, the measurement of this plane may contain
-/// only photons that were aimed at other windows. The estimated error of such a measurement is
-/// far too small.
+/// The tracer aims an equal share of the photons at each window. Photons aimed at a window may
+/// rarely reach it, for example behind a curved mirror. Then the measurement of this plane may
+/// contain only photons that were aimed at other windows. The estimated error of such a measurement
+/// is far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {

@@ -31,9 +31,9 @@ struct FieldIndex {
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of
-    /// the same photons, at shared frequencies up to half of Nyquist, with the values to compare
-    /// it with.
+    /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of the
+    /// same photons, and the values with which it is compared. The norms are over shared
+    /// frequencies up to half of Nyquist.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -118,8 +118,8 @@ impl Field {
     }
 }
 
-/// Traces the photons of a plane by a method: once if the grids of groups are kept, otherwise
-/// once for the sum and once for the groups.
+/// Traces the photons of a plane by a method. If the grids of groups are kept, the photons are
+/// traced once; otherwise they are traced once for the sum and once for the groups.
 fn on_grid(
     (case, method): (&MeasuredScene, Method),
     index: usize,
@@ -167,8 +167,8 @@ pub fn compare(
     Ok(())
 }
 
-/// The number of tests of each plane whose light field is saved: a test of the slices, and a test
-/// of the full radial spectrum.
+/// The number of tests of a plane if its light field is saved: a test of the slices, and a test of
+/// the full radial spectrum.
 pub const TESTS: usize = 2;
 
 /// The share of Nyquist up to which the grid is compared with the slices.

@@ -9,8 +9,8 @@ use etendue_store::Failure;
 use etendue_store::framing::{joined, split};
 use std::time::{Duration, Instant};
 
-/// Measures batches and predicts planes of a scene at the request of the leading process, until
-/// the leading process dismisses this process.
+/// Measures batches and predicts planes of a scene when the leading process requests them. Returns
+/// when the leading process dismisses this process.
 pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     let mut source: Option<Box<dyn PhotonSource>> = None;
     let mut done = |order: &Order, bytes: &[u8]| match order.task {
@@ -31,7 +31,7 @@ pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     obey(workers, &key([job.scene()]), &mut done)
 }
 
-/// Computes points of a sweep at the request of the leading process; `scenes` has the scene of
+/// Computes points of a sweep when the leading process requests them. `scenes` has the scene of
 /// each point, and `run` returns the bytes of a point.
 pub fn follow_points(
     workers: &dyn Workers,

@@ -10,8 +10,8 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// Uses the other method to measure planes that disagree with theory, and compares photons, the
-/// other method and theory.
+/// Measures planes that disagree with theory by the other method, and compares photons, the other
+/// method and theory.
 pub(crate) fn inquire(
     case: &MeasuredScene,
     planes: &[PlaneComparison],
@@ -58,8 +58,8 @@ impl Inquiry {
         Ok(Self::new(methods, failed, (&tracers, &theory), rays))
     }
 
-    /// `failed` is the comparison of a measurement with its prediction. Another tracer that has
-    /// traced `rays` rays is compared with the measurement and with the prediction.
+    /// Combines three comparisons. `failed` compares a measurement with its prediction. The other
+    /// two compare another tracer, with `rays` rays, with the measurement and with the prediction.
     fn new(
         methods: [Method; 2],
         failed: &PlaneReport,

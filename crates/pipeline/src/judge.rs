@@ -1,5 +1,5 @@
-//! Makes independent measurements by other methods, against which a measurement is tested plane
-//! by plane.
+//! Makes independent measurements by other methods. A measurement is tested against them, plane by
+//! plane.
 
 use crate::measure::measured;
 use crate::method::judge_of;

@@ -23,8 +23,8 @@ pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failu
     }
 }
 
-/// Fails if there is nothing with which a plane can be compared, because no theory applies to the
-/// plane and backward rays do not find the rays of a file.
+/// Fails if a plane cannot be compared with anything. This happens if the light is a ray file and
+/// no theory applies to the plane, because backward rays do not find the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     if !matches!(scene.light, Light::Rays { .. }) {
         return Ok(());

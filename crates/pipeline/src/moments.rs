@@ -4,7 +4,8 @@ use etendue_field::VirtualPlane;
 use etendue_spectrum::field::FieldOptions;
 use etendue_store::{Failure, machine};
 
-/// Returns the covariance, with the groups of batches from which errors are estimated.
+/// Returns the options with which a grid computes covariances, and groups of batches for their
+/// errors.
 fn options() -> FieldOptions {
     FieldOptions {
         covariance: true,

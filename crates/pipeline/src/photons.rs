@@ -52,8 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// Returns three properties of the file with the photons of a plane: the name of the file, the
-/// name of its format in commands, and the number of bytes of a photon.
+/// Describes the file with the photons of a plane: returns its name, the name of its format in
+/// commands, and its number of bytes per photon.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),

@@ -33,8 +33,8 @@ pub enum Work {
 
 /// Work in progress, which ends when this value is dropped.
 ///
-/// A program that wants to stop may unwind from `advance` and from [`Reporter::begin`]: both are
-/// called often, and never while a result is half written.
+/// A program that wants to stop may unwind from `advance` and from [`Reporter::begin`]. Both are
+/// called often, but not while a result is being written.
 pub trait Progress: Send + Sync {
     /// Reports that `steps` further photons or items are done; the number zero only shows that
     /// the work continues.

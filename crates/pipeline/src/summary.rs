@@ -53,16 +53,16 @@ pub struct Summary {
 pub struct Inquiry {
     /// Name of the plane.
     pub plane: String,
-    /// Verdict and p-value of the comparison of photons with the other tracer.
+    /// Verdict and p-value if photons are compared with the other tracer.
     pub tracers: (Verdict, Option<f64>),
-    /// Verdict and p-value of the comparison of the other tracer with the prediction.
+    /// Verdict and p-value if the other tracer is compared with the prediction.
     pub other: (Verdict, Option<f64>),
     /// The conclusion, in words.
     pub finding: String,
 }
 
 impl Summary {
-    /// Returns the settings from which the arrays of the result were computed.
+    /// Returns the settings that determine the arrays of the result.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,

@@ -215,8 +215,8 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     }
 }
 
-/// Aligns columns that are as wide as their widest cell and separated by two spaces; text is
-/// aligned to the left, and numbers to the right.
+/// Aligns columns, text to the left and numbers to the right. A column is as wide as its widest
+/// cell, and two spaces separate columns.
 pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());

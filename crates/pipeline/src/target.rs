@@ -16,8 +16,8 @@ use std::time::{Duration, Instant};
 const FIRST_PHOTONS: u64 = 1 << 20;
 /// The maximum number of photons of a measurement, unless the user sets another maximum.
 const MAX_PHOTONS: u64 = 1 << 40;
-/// The largest allowed ratio of the photons that the square-root law predicts to the maximum
-/// number of photons. With nets, fewer photons may suffice.
+/// The largest allowed ratio of two numbers of photons: the number that the square-root law
+/// predicts, and the maximum number. With nets, fewer photons may suffice.
 const MAX_FACTOR: f64 = 8.0;
 
 /// Measures all batches of a scene, with so many photons that the noise at each plane is at most
@@ -81,8 +81,8 @@ pub fn reached(
     }
 }
 
-/// Describes the noise of the run, and the noise of a run that lasts a hundred times as long;
-/// returns `None` if there is no light.
+/// Describes the noise of the run, and predicts the noise of a run that lasts a hundred times as
+/// long. Returns `None` if there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes

@@ -12,8 +12,8 @@ use std::fmt;
 /// content of a gzip file may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
-/// Bytes of memory that reading a file may take regardless of the length of the file. The free
-/// bytes are needed for at most 65,536 texts and 65,536 tables.
+/// Bytes of memory that reading any file may take, even a short one. They are needed for at most
+/// 65,536 texts and 65,536 tables.
 pub const MEMORY_FREE: usize = 16 << 20;
 
 /// The format of a file.

@@ -7,8 +7,8 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// A file may unpack to at most this multiple of its packed length, plus [`FREE`] bytes. Packing
-/// reduces files of rays to about half of their length, and test files with repeated rays to a
+/// A file may unpack to at most this multiple of its packed length, plus [`FREE`] bytes. A packed
+/// file of rays has about half of its original length; a packed test file with repeated rays has a
 /// tenth.
 pub const MOST_RATIO: usize = 64;
 

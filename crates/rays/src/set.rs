@@ -46,7 +46,7 @@ pub enum Wavelengths {
 /// through any plane that it crosses, so no cosine is included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaySet {
-    /// A point on each ray, in metres, from which the light continues.
+    /// A point on each ray, in metres. The light continues from this point.
     pub positions: Vec<[f64; 3]>,
     /// Unit direction of each ray.
     pub directions: Vec<[f64; 3]>,

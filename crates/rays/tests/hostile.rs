@@ -38,8 +38,8 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// Returns a file in which a few bytes, numbers or the length are changed, more often in the
-/// header than in rays.
+/// Returns a file with some changes: in a few bytes, in a few numbers, or in its length. Changes
+/// are more frequent in the header than in rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.below(4) {
@@ -94,7 +94,7 @@ fn read(bytes: &[u8]) -> bool {
             let set = file.rays();
             for direction in &set.directions {
                 let squared: f64 = direction.iter().map(|c| c * c).sum();
-                assert!((squared - 1.0).abs() < 1e-4); // what is read is sound
+                assert!((squared - 1.0).abs() < 1e-4); // directions that were read are unit vectors
             }
             true
         }
@@ -121,8 +121,8 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // The file is so large that the bound depends mostly on the length of the file, and not on
-    // the bytes that any file may take.
+    // The file is so large that its length determines most of the bound. The bytes that any file
+    // may take matter little.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());

@@ -3,8 +3,8 @@
 //! variable `ETENDUE_RAY_FILES` names a folder with these files; docs/rays.md explains how to get
 //! the files.
 //!
-//! Every file that is read and written again has the same bytes; for a packed file, its unpacked
-//! bytes are compared. Files that their makers mark as bad are refused.
+//! Each file is read and written again, and must then have the same bytes. The unpacked bytes of
+//! packed files are compared. Files that their makers mark as bad are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

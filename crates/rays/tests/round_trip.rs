@@ -1,5 +1,5 @@
-//! Tests that files of every kind are read and written again, and have the right rays. The first
-//! two files are written byte by byte from the formats' descriptions.
+//! Tests that files of every kind have the right rays after they are read and written again. The
+//! bytes of the first two files follow the descriptions of the formats.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -89,14 +89,14 @@ fn tm25_is_read_by_hand() {
 fn unusual_texts_and_fluxes_have_notes() {
     let mut bytes = tm25_by_hand();
     bytes[288 + 4 * 10] = b'x'; // after the end of the first text
-    bytes[288 + 4000 + 3] = 0xff; // the first character of the second is none
+    bytes[288 + 4000 + 3] = 0xff; // the first character of the second text is invalid
     bytes[16..20].copy_from_slice(&1.0_f32.to_le_bytes());
     let file = Tm25File::read(&bytes).unwrap();
     assert_eq!(file.notes().len(), 3, "{:?}", file.notes());
 }
 
-/// Files with every combination of the options of MCPL, packed or not, are read and written with
-/// the same bytes.
+/// Files with each combination of MCPL's options have the same bytes after they are read and
+/// written. This also holds for packed files.
 #[test]
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {

@@ -9,9 +9,9 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// Returns the cut through X with the given planes. The result also contains the cut through Y if
-/// it differs from the cut through X, and a drawing to scale if the path turns. The path is
-/// unfolded: each surface is cut in the frame of the light that arrives at it.
+/// Returns the cut through X with the given planes. If the cut through Y differs from it, the
+/// result also contains the cut through Y. If the path turns, the result also contains a drawing to
+/// scale. The path is unfolded: each surface is cut in the frame of the light that arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,

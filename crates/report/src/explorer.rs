@@ -11,11 +11,11 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// Returns the part after `#` in the address of the page that shows a scene; `None` if the explorer
-/// does not support the scene.
+/// Returns the part after `#` in the address at which the explorer shows a scene; `None` if the
+/// explorer does not support the scene.
 ///
-/// A scene is supported if the explorer saves the same scene after its controls are set to the
-/// numbers of this scene. Planes, names and the extent of surfaces may differ.
+/// A scene is supported if the explorer, with its controls set to the numbers of the scene, saves
+/// the same scene. Planes, names and the extent of surfaces may differ.
 pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     let setup = setup(file)?;
     let saved = SceneFile::parse(&scene(&setup)).ok()?;
@@ -52,8 +52,8 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// Returns the scene with fixed values in all fields that may differ in a scene saved by the
-/// explorer.
+/// Returns the scene with fixed values in some fields: the fields that may differ when the explorer
+/// saves the scene.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
         if let BlockersFile::JitteredSquares { name, .. } | BlockersFile::Shapes { name, .. } =

@@ -18,7 +18,7 @@ pub const NAME: &str = "report.html";
 /// The largest number of bytes of a page that is read.
 const MAX_PAGE_BYTES: u64 = 1 << 28;
 
-/// The text before and after the data of a run in a page.
+/// In a page, this text is before the data of a run, and the next text is after them.
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
@@ -51,8 +51,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     Ok(data.to_owned())
 }
 
-/// Returns a page with the data of several runs in JSON, each run with its folder relative to the
-/// page.
+/// Returns a page with the data of several runs. Each run has its data in JSON, and its folder
+/// relative to the page.
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");

@@ -111,7 +111,8 @@ fn primal(
 
 /// Returns the radial spectrum of a plane. If the window determines the values between the
 /// frequencies, the measured and the predicted spectrum are drawn without visible cells. The
-/// difference and the stored numbers are at the frequencies of the scene.
+/// difference is drawn at the frequencies of the scene, and the stored numbers are at these
+/// frequencies too.
 fn spectrum(
     (note, sides): (&str, [&str; 2]),
     at: &VirtualPlane,

@@ -1,9 +1,10 @@
-//! Defines how messages name arguments. The command and the Python package name them differently.
+//! Defines how messages name arguments, because the command and the Python package name arguments
+//! differently.
 
 use std::fmt::Display;
 
 /// The way in which messages name arguments. The command and the Python package call the same
-/// functions, but users write arguments differently in the two.
+/// functions, but their users write arguments differently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArgumentStyle {
     /// Options of the command, such as `--look-from`.

@@ -38,8 +38,8 @@ pub struct SliceArrays {
     pub predicted: Array3<Complex>,
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
-    /// Standard deviation of |measured| alone, which differs from `sigma` if the prediction also
-    /// has noise; `None` if both are equal.
+    /// Standard deviation of |measured| alone; `None` if it equals `sigma`. The two differ if the
+    /// prediction also has noise.
     pub measured_sigma: Option<Array3<f64>>,
     /// Frequencies ρ, cycles per metre.
     pub rho: Array1<f64>,

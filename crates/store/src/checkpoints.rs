@@ -1,11 +1,11 @@
 //! Stores batches of a run as they are measured, so that a run that ends early can be continued.
 //!
-//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. A
-//! file is moved into this folder when it is complete, and its name holds the hash of its content.
-//! Every process produces the same bytes for a batch, except that rounding errors differ between
-//! kinds of processors. Processes can therefore share the work without a lock, and a process that
-//! dies does not delay the others. The sum of the first parts of an unfinished batch is also stored
-//! as a file, which a later sum replaces.
+//! The folder of the results has a folder `batches/KEY`, where KEY is the key of the run. Each
+//! batch is a file in this folder. A file is moved there when it is complete, and its name holds
+//! the hash of its content. Every process produces the same bytes for a batch, except that rounding
+//! errors differ between kinds of processors. Processes can therefore share the work without a
+//! lock, and a process that dies does not delay the others. The sum of the first parts of an
+//! unfinished batch is also stored as a file, which a later sum replaces.
 
 use crate::Failure;
 use crate::Method;

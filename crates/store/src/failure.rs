@@ -15,7 +15,7 @@ pub struct Failure {
 
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of a run that is impossible on this machine because of a folder, the disk, the memory
+/// Exit code of a run that this machine cannot carry out: because of a folder, the disk, the memory
 /// or an interruption.
 pub const CANNOT_RUN: u8 = 3;
 

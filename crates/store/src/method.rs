@@ -35,7 +35,7 @@ impl Method {
         }
     }
 
-    /// Returns the rays or photons of the method, in words.
+    /// Returns the words for what the method traces.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {

@@ -19,7 +19,7 @@ pub trait Number: Copy {
     fn write(self, bytes: &mut Vec<u8>);
     /// Decodes a number. Returns `None` unless the number of bytes is exactly right.
     fn read(bytes: &[u8]) -> Option<Self>;
-    /// Checks whether the number is neither infinite nor NaN.
+    /// Checks whether the number is finite, so not infinite and not NaN.
     fn is_finite(self) -> bool;
 }
 

@@ -26,7 +26,8 @@ pub struct StoredPrediction {
     pub planes: Vec<PredictedPlane>,
 }
 
-/// The part of a prediction that is stored in the index; its numbers are in the arrays.
+/// The part of a prediction that is stored in the index. The numbers of the prediction are in the
+/// arrays.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PredictedPlane {
     name: String,
@@ -40,8 +41,8 @@ pub struct PredictedPlane {
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
     depth: Option<[f64; 2]>,
-    /// The number of independent replicates of the slices, and the number for the slices of the
-    /// chain of affine maps. A number is zero if the slices have no statistical error.
+    /// Two numbers of independent replicates: of the slices, and of the slices by the chain of
+    /// affine maps. A number is zero if its slices have no statistical error.
     replicates: [usize; 2],
 }
 

@@ -81,7 +81,8 @@ pub struct Results {
     left_out: &'static [&'static str],
     /// Whether the folder was newly created.
     is_new: bool,
-    /// Files that etendue did not write and that the files of a dead process replaced.
+    /// Files that etendue did not write. They were replaced when the moves of a dead process were
+    /// completed.
     replaced: Vec<String>,
     /// The lock, which is released before the folder is removed; `None` after its release.
     lock: Option<Lock>,
@@ -278,7 +279,7 @@ impl Results {
         self.folder.join(UNFINISHED).join(index)
     }
 
-    /// Returns the index whose files have begun to move.
+    /// Returns the index of the files that have begun to move, if there are any.
     fn ready_index(&self) -> Option<&'static str> {
         let mut indices = [
             SUMMARY,
@@ -332,8 +333,8 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Returns the files that an index lists, with their hashes; `None` unless the index is exactly as
-/// Étendue wrote it.
+/// Returns the files that an index lists, with their hashes. Returns `None` if the index was
+/// changed after Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;

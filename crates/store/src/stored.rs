@@ -201,8 +201,8 @@ impl<T> Stored<T> {
     }
 }
 
-/// Returns the file `name` of a folder. The hash of its bytes must be the hash that `files`, from
-/// the index called `index`, lists.
+/// Returns the file `name` of a folder. The hash of its bytes must equal the hash in `files`, which
+/// comes from the index called `index`.
 pub fn listed_bytes(
     folder: &Path,
     index: &str,
@@ -233,8 +233,8 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails if a folder holds a result of another scene, because a result must not replace the
-/// result of another scene with the same name. Settings of the measurement are ignored.
+/// Fails if a folder holds a result of another scene. Two scenes may have the same name, but the
+/// result of one must not replace the result of the other. Settings of the measurement are ignored.
 /// `arguments` is the style in which the message names `force`.
 pub fn check_earlier(
     folder: &Path,

@@ -1,5 +1,5 @@
-//! Keeps a list of files that are not yet part of a result, and removes these files if the process
-//! is asked to stop.
+//! Keeps a list of files that are not yet part of a result. If the process is asked to stop, these
+//! files are removed.
 
 use std::fs;
 use std::path::PathBuf;

@@ -78,7 +78,7 @@ pub fn bandwidths(
     planes.into_iter().map(row).collect()
 }
 
-/// Effects that the criteria do not cover.
+/// Returns the effects that the criteria do not cover.
 fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
     let Theory::Scattering(view) = &applicability.theory else {
         return Vec::new();
@@ -101,9 +101,9 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// Warns if the grid of frequencies limits a bandwidth. The bandwidth of a spectrum that is flat
-/// over the grid is 95 % of the frequency at which the last cell ends, half a step beyond the
-/// largest frequency.
+/// Warns if the grid of frequencies limits a bandwidth. The last cell ends half a step beyond the
+/// largest frequency. If a spectrum is flat over the grid, its bandwidth is 95 % of the frequency
+/// at which the last cell ends.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

@@ -100,8 +100,8 @@ impl SweepPoints {
 }
 
 /// Returns the seed of a point. The seed is derived from the point's scene and the seed of the
-/// sweep, and does not depend on the other points. The seed is small enough for every reader of
-/// JSON to represent it exactly.
+/// sweep, and does not depend on the other points. The seed is so small that every reader of JSON
+/// represents it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {

@@ -1,5 +1,5 @@
-//! The numbers of a sweep as one table in CSV, which has a row for each number of each plane at
-//! each point.
+//! Writes the numbers of a sweep as one table in CSV. Each row has one number of one plane at one
+//! point.
 
 use crate::values::SweepPoint;
 use etendue_store::Failure;

@@ -212,7 +212,7 @@ pub fn shown(point: &SweepPoint) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the shortest end of a path that still identifies the field, such as `Ggx` for
+/// Returns a short end of a path that still identifies the field: `Ggx` for
 /// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());

@@ -1,4 +1,4 @@
-//! Renders what a camera in another program's scene sees: pictures, with many samples or few, and
+//! Shows what a camera sees in a scene of another program: pictures with many samples or few, and
 //! the light field behind a pixel.
 
 #![allow(

@@ -110,8 +110,8 @@ pub fn render(
     })
 }
 
-/// Writes files of the radiance and its standard error for use in programs, and a picture to look
-/// at.
+/// Writes the radiance and its standard error to files for programs, and writes a picture for
+/// people.
 fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = picture.size;
     let errors: Vec<f64> = picture

@@ -10,7 +10,7 @@ pub struct PictureRequest {
     pub source: WorldSource,
     /// The camera.
     pub camera: CameraChoice,
-    /// The method by which few shading samples are placed; `None` requests a reference picture.
+    /// The method that places few shading samples; `None` requests a reference picture.
     pub method: Option<SampleMethod>,
     /// Paths for each pixel of a reference.
     pub samples: u32,
@@ -66,7 +66,7 @@ impl PictureRequest {
         }
     }
 
-    /// Returns the default method: a reference, unless a number of shading samples is given.
+    /// Returns the default method. If no number of shading samples is given, this is a reference.
     #[must_use]
     pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
         shading_samples.map(|_| SampleMethod::Auto)

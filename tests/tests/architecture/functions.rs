@@ -1,5 +1,5 @@
-//! Checks that functions of more than sixty lines have a stated reason. clippy finds such functions
-//! without a stated reason.
+//! Checks that each function of more than sixty lines has a reason, which the source states. If no
+//! reason is stated, clippy reports the function.
 
 use super::{crates, root};
 use std::fs;

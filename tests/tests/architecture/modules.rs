@@ -150,8 +150,8 @@ fn find_use(text: &str) -> Option<usize> {
     })
 }
 
-/// Returns the paths of an import tree such as `a::{b, c::d as e}`; the last name in each path is
-/// the local name.
+/// Returns the paths of an import tree, such as `a::{b, c::d as e}`. Each path ends with the local
+/// name.
 fn expanded(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {

@@ -33,8 +33,8 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "a bitmap of a scene, of a camera, and of a figure",
     ),
 ];
-/// Files whose types may share names with types of other files: tests, the second implementation,
-/// which is independent of the first, and the binding, which uses Python's names.
+/// Types in these files may share names with types in other files. The files are tests, the second
+/// implementation (which is independent of the first), and the binding (which uses Python's names).
 const APART: [&str; 3] = ["/src/tests/", "tests/src/second/", "python/src/"];
 
 /// Returns the names of the types that a source text defines outside its tests.

@@ -1,5 +1,5 @@
-//! Arguments of commands that run a scene for several values of its fields, and of the command
-//! for covariances.
+//! Arguments of the commands that run a scene for several values of its fields, and arguments of
+//! `etendue covariance`.
 
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;

@@ -329,7 +329,8 @@ impl ProbeArgs {
     }
 }
 
-/// Parses a number of rays or photons that gives at least one to each of 64 batches.
+/// Parses a number of rays or photons. There are 64 batches, and each needs at least one ray or
+/// photon.
 fn enough(text: &str) -> Result<u64, String> {
     let number = whole_number(text)?;
     if ranges::RAYS.contains(&number) {

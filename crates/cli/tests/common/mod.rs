@@ -63,8 +63,8 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557),
 )"#;
 
-/// Returns a folder with the scene as `small.ron`, its measurement in two parts `a` (batches
-/// 0..20) and `b` (20..64), and its prediction `p`.
+/// Returns a folder with the scene `small.ron`, its prediction `p`, and its measurement in two
+/// parts: `a` has the batches 0..20, and `b` has 20..64.
 pub fn stages() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -90,7 +90,7 @@ pub fn call(folder: &Path, arguments: &str) -> Output {
         .unwrap()
 }
 
-/// Checks that the command refuses bad input with one line that holds all `parts`, and does not
+/// Checks that the command refuses bad input. It must print one line with all `parts`, and must not
 /// write to `out`.
 pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     let output = call(folder, arguments);

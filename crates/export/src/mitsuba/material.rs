@@ -6,7 +6,7 @@ use super::{NotInMitsuba, Writer};
 use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
 
 impl Writer {
-    /// A mirror or an interface.
+    /// Returns the BSDF of a mirror or an interface.
     pub(super) fn specular(event: &Specular, name: &str) -> Result<String, NotInMitsuba> {
         match *event {
             Specular::Mirror => Ok(format!(
@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Writes `inside` within the edge of a picture and `outside` beyond the edge, because Mitsuba
-    /// itself can only continue the picture beyond its edge.
+    /// Writes `inside` where a picture is, and `outside` beyond its edge. Mitsuba itself can only
+    /// continue a picture beyond its edge.
     fn inside(
         &mut self,
         pattern: &Pattern,

@@ -1,7 +1,7 @@
 //! Writes pictures as PFM files (Debevec 1998), with one 32-bit number per pixel. Mitsuba keeps the
 //! same precision.
 
-/// Encodes rows from the top, each from the left; the file has the lowest row first.
+/// Encodes a picture. `values` begins with the top row, and the file begins with the lowest row.
 pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     let rows = values.len() / width;
     let mut bytes = format!("Pf\n{width} {rows}\n-1.0\n").into_bytes();
@@ -17,8 +17,8 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// Returns a picture that samples a function at pixel centres, given in pixels from the left and
-/// from the top.
+/// Returns a picture whose pixels are values of a function at their centres. The arguments of the
+/// function are distances from the left and from the top, in pixels.
 pub(super) fn sampled(
     [width, height]: [usize; 2],
     value: impl Fn(f64, f64) -> f64,
@@ -41,6 +41,6 @@ mod tests {
         let bytes = pfm(width, &values);
         let numbers = bytes.strip_prefix(b"Pf\n2 3\n-1.0\n").unwrap();
         let first = f32::from_le_bytes(numbers[..4].try_into().unwrap());
-        assert!((first - 25.5).abs() < 1e-9 && numbers.len() == 24); // the very number
+        assert!((first - 25.5).abs() < 1e-9 && numbers.len() == 24); // exactly this number
     }
 }

@@ -54,8 +54,8 @@ fn finer(width: usize) -> usize {
     if width >= AROUND / 2 { 1 } else { least | 1 }
 }
 
-/// Returns the direction at a fraction `around` of the full azimuth and a fraction `down` of the
-/// way from the upper to the lower pole.
+/// Returns a direction. `around` is its azimuth as a fraction of a full turn, and `down` is 0 at
+/// the upper pole and 1 at the lower pole.
 fn toward(around: f64, down: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(TAU * (0.5 - around));
     let (across, up) = libm::sincos(PI * down);

@@ -34,7 +34,7 @@ impl VariedTexture<'_> {
 }
 
 impl Writer {
-    /// A parameter of a material.
+    /// Returns a parameter of a material.
     ///
     /// Checkerboards are also pictures of four pixels, because Mitsuba 3.9.1 swaps the colours of
     /// a checkerboard that is used as a number.
@@ -81,7 +81,7 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// A picture that is 1 within another picture and 0 beyond its edge. The picture has nine
+    /// Returns a picture that is 1 in the area of another picture and 0 outside. It has nine
     /// pixels, and only the middle pixel is 1.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {

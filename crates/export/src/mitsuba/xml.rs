@@ -9,8 +9,8 @@ use glam::DVec3;
 pub(super) struct Xml(String);
 
 impl Xml {
-    /// The header: the placement of the coordinates in the world, the virtual planes, and the
-    /// integrator.
+    /// Returns a file with its header. The header states where the coordinates lie in the world,
+    /// and has the virtual planes and the integrator.
     pub(super) fn new(scene: &Scene) -> Self {
         let mut xml =
             Self("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n".into());
@@ -126,7 +126,7 @@ impl Xml {
     }
 }
 
-/// The emission of the light, on the front of its shape.
+/// Returns the emission of a light on the front of its shape.
 pub(super) fn emitter(radiance: f64) -> String {
     let radiance = spectrum("radiance", radiance);
     format!("<emitter type=\"area\">{radiance}</emitter>")
@@ -153,7 +153,7 @@ pub(super) fn picture(name: &str, file: &str) -> String {
     )
 }
 
-/// The matrix of the axes and origin of a shape.
+/// Returns the transform that gives a shape these axes and this origin.
 fn matrix([x, y, z, origin]: [DVec3; 4]) -> String {
     let row = |i: usize| format!("{:?} {:?} {:?} {:?}", x[i], y[i], z[i], origin[i]);
     let rows = [0, 1, 2].map(row).join(" ");
@@ -179,7 +179,7 @@ fn plane_text(plane: &VirtualPlane) -> String {
     )
 }
 
-/// Coordinates separated by spaces.
+/// Returns coordinates separated by spaces.
 fn spaced(v: DVec3) -> String {
     format!("({:?} {:?} {:?})", v.x, v.y, v.z)
 }

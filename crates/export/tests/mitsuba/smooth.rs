@@ -36,7 +36,7 @@ fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     value.expect("a value").parse().expect("a number")
 }
 
-/// Width and height of a picture, and its values, the lowest row first.
+/// Returns the width and height of a picture, and its values, which begin with the lowest row.
 fn picture(export: &Export, name: &str) -> ([usize; 2], Vec<f32>) {
     let bytes = file(export, name);
     let head = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n');
@@ -247,7 +247,7 @@ fn lights_shine_through_pictures() {
     assert_eq!(of_type(&xml, "directionalarea").len(), 1);
 }
 
-/// The sky is dark in directions from which light would travel against the central ray.
+/// The exported sky is black where its light would travel against the central ray.
 #[test]
 fn environments_become_maps() {
     let sky =

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Width of pictures in pixels, which is constant because glTF files do not state a resolution.
 const ACROSS: usize = 512;
 
-/// Range of aspect ratios for which the height is at least one pixel and at most the allowed
+/// Allowed aspect ratios. In this range, the height is at least one pixel and at most the allowed
 /// number.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
@@ -107,7 +107,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Width and height in pixels.
+/// Returns the width and height in pixels.
 fn size(aspect: f64) -> [usize; 2] {
     #[expect(
         clippy::cast_possible_truncation,

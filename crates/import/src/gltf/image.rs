@@ -19,8 +19,7 @@ fn extension(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl GltfReader<'_> {
-    /// Returns the pixels of an image as one number each, or `None` if a cause of refusal was
-    /// reported.
+    /// Returns one number for each pixel of an image, or `None` if a cause of refusal was reported.
     pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {

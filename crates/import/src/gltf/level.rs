@@ -5,7 +5,7 @@
 pub(super) enum TextureChannel {
     /// The three colour channels, linearised from sRGB, times the given factors.
     Color([f64; 3]),
-    /// The square of the product of the second channel and a factor.
+    /// The second channel is multiplied by a factor, and the product is squared.
     GreenSquared(f64),
     /// The third channel of the pixel times a factor.
     Blue(f64),

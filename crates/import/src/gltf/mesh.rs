@@ -145,8 +145,8 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// Returns the triangles, flipped and moved back by `gap`. Corners at the same position are moved
-/// to the same new position.
+/// Returns the triangles, flipped and moved back by `gap`. If several corners share a position,
+/// they also share the new position.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();

@@ -11,8 +11,8 @@ use etendue_world::{Geometry, Shape, Triangles};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Distance between the back and the front of a surface that emits on both sides, relative to the
-/// size of its mesh.
+/// If a surface emits on both sides, its back and front have this distance, relative to the size of
+/// the mesh.
 const GAP: f64 = 1e-5;
 
 /// Maximum number of characters of a name.

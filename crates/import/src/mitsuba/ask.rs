@@ -51,7 +51,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Reads a number in a range; a number outside is a cause of refusal, whose message states the
+    /// Reads a number. A number outside of the range is a cause of refusal; its message states the
     /// range.
     pub(super) fn number_within(
         &self,
@@ -144,8 +144,8 @@ impl<'a> MitsubaReader<'a> {
         self.objects.get(at)
     }
 
-    /// Returns all objects of a kind within an object, with the properties that hold them, in the
-    /// order of the file.
+    /// Returns all objects of a kind within an object, in the order of the file. Each is returned
+    /// with the property that holds it.
     pub(super) fn children(
         &self,
         object: &'a MitsubaObject,

@@ -32,8 +32,8 @@ const NAMED: [(&str, f64); 23] = [
 ];
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the ratio of the index of refraction inside to the index outside, where `inside`
-    /// names the default material inside.
+    /// Returns the index of refraction inside divided by the index outside. `inside` names the
+    /// default material inside.
     pub(super) fn relative_index(&self, object: &'a MitsubaObject, inside: &str) -> Option<f64> {
         let inside = self.one_index(object, "int_ior", inside);
         let outside = self.one_index(object, "ext_ior", "air");

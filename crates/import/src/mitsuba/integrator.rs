@@ -9,8 +9,8 @@ use crate::report::quoted;
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
-    /// Reads the depth from the integrator, whose other settings affect only how Mitsuba computes,
-    /// not the result.
+    /// Reads the depth from the integrator. The other settings of the integrator affect only how
+    /// Mitsuba computes, not the result.
     pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
         let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
             return;

@@ -152,7 +152,7 @@ impl<'a> MitsubaReader<'a> {
             to_world: rigid?,
             half: DVec2::new(half, half * size[1] as f64 / size[0] as f64),
             picture,
-            // Mitsuba's irradiance is that of a plane at distance 1 divided by π.
+            // Mitsuba states the irradiance of a plane at distance 1, divided by π.
             scale: PI * scale?,
         })
     }

@@ -110,7 +110,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Returns the complex index n and k of a conductor, or an inner `None` for a perfect
+    /// Returns the complex index of a conductor, n and k. The inner `None` means a perfect
     /// reflector. The outer `None` means that a cause of refusal was reported.
     fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {

@@ -62,8 +62,8 @@ impl<'a> MitsubaReader<'a> {
         Some(largest <= 0.0)
     }
 
-    /// Returns the index of refraction, which is given itself or by the reflectance at normal
-    /// incidence, 0.08 `specular`.
+    /// Returns the index of refraction. The file states either the index or `specular`; the
+    /// reflectance at normal incidence is then 0.08 `specular`.
     fn principled_index(&mut self, object: &'a MitsubaObject) -> Option<f64> {
         let has_specular = self.has(object, "specular");
         if !self.has(object, "eta") {

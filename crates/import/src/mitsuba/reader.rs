@@ -81,8 +81,8 @@ impl<'a> MitsubaReader<'a> {
         self.world
     }
 
-    /// Marks definitions at the top level, such as materials and textures, as read, because the
-    /// definitions are converted where the scene uses them.
+    /// Marks definitions at the top level as read. Definitions, such as materials and textures, are
+    /// converted where the scene uses them.
     fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)

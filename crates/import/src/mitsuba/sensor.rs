@@ -49,8 +49,8 @@ impl<'a> MitsubaReader<'a> {
         let (to_world, projection, clip) = match object.plugin.as_str() {
             "orthographic" => {
                 let (to_world, stretch) = self.orthographic(object)?;
-                // A scaling moves the origins of Mitsuba's rays, but does not change the distance
-                // from the near to the far clipping plane.
+                // If the camera is scaled, Mitsuba's rays begin elsewhere, but the distance between
+                // the two clipping planes does not change.
                 let [near, far] = clip?;
                 let clip = [near * stretch, near * stretch + far - near];
                 (to_world, Projection::Orthographic, clip)
@@ -119,7 +119,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns half of the width of the picture at distance 1, of a camera or a projector.
+    /// Returns half of the width that the picture of a camera or a projector has at distance 1.
     pub(super) fn half_width(
         &self,
         object: &'a MitsubaObject,
@@ -200,7 +200,7 @@ impl<'a> MitsubaReader<'a> {
         Some((map, stretch))
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     fn film(&self, object: &'a MitsubaObject) -> Option<[usize; 2]> {
         let Some(film) = self.child(object, ObjectKind::Film) else {
             return Some(SIZE);

@@ -252,7 +252,7 @@ impl<'a> MitsubaReader<'a> {
             .cause(self.place_of(object, "filename"), message);
     }
 
-    /// Reads one of several keywords, of which the first is the default; returns `None` if a cause
+    /// Reads one of several keywords; the first keyword is the default. Returns `None` if a cause
     /// of refusal was reported.
     pub(super) fn choice<T: Copy>(
         &self,

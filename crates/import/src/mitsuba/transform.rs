@@ -94,8 +94,8 @@ pub(super) fn is_rigid(map: DAffine3) -> bool {
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// Returns the map of a matrix. The matrix is given row by row, by 16 numbers, or by the 9 numbers
-/// of its linear part.
+/// Returns the map of a matrix. `numbers` has the matrix row by row: all 16 numbers, or the 9
+/// numbers of the linear part.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
         DMat4::from_cols_array(&all).transpose()

@@ -61,8 +61,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Reads a file: the file of the scene, or a file included in an object at the given nesting
-    /// depth.
+    /// Reads the file of the scene, or a file that an object at the given nesting depth includes.
     pub(super) fn file(
         &mut self,
         text: &str,

@@ -70,8 +70,8 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// Returns the emission scaled to the required power. As in pbrt, the area of the shape before
-    /// its transform is used. For triangles, the transformed area is used.
+    /// Returns the emission scaled to the required power. As in pbrt, the area of the shape is
+    /// taken before the transform, except that the area of triangles is taken after the transform.
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,

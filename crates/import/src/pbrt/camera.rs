@@ -168,7 +168,7 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     fn film(&self, whole: &SourcePlace) -> Read<[usize; 2]> {
         let Some(film) = self.scene.settings.get("Film") else {
             return Ok(SIZE);

@@ -152,7 +152,7 @@ impl Entity {
         Ok(self.float(report, name)?.unwrap_or(default))
     }
 
-    /// Reads a number in a range; a number outside is a cause of refusal, whose message states the
+    /// Reads a number. A number outside of the range is a cause of refusal; its message states the
     /// range.
     pub(super) fn float_within(
         &self,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// The rule by which (u, v) of a surface in pbrt follow from the surface's (u, v) in a world.
+/// The relation between the (u, v) of a surface in pbrt and its (u, v) in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
     /// Both are equal.
@@ -16,6 +16,6 @@ pub(super) enum Uv {
 /// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
-/// The key of a texture: the name of the texture, and the type and the coordinates for which it
-/// is read.
+/// The key of a texture. It consists of the texture's name, the type of its values, and the
+/// coordinates of its surface.
 pub(super) type TextureKey = (bool, String, u8, Uv);

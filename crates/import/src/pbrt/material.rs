@@ -125,8 +125,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// n and k. If a reflectance is given in place of n and k, it is the reflectance of a metal
-    /// with n = 1 at normal incidence.
+    /// Returns n and k. If the file states a reflectance instead, n is 1, and k gives this
+    /// reflectance at normal incidence.
     fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {

@@ -22,8 +22,8 @@ const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
 /// Default (u, v) at the corners of patches.
 const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
 
-/// The triangles of a mesh, with their area in the world if they form a single triangle or a
-/// single patch.
+/// The triangles of a mesh. If they form a single triangle or a single patch, their area in the
+/// world is also stored.
 pub(super) struct PbrtMesh {
     pub(super) triangles: Arc<Triangles>,
     pub(super) area: Option<f64>,

@@ -1,9 +1,9 @@
 //! Named spectra of pbrt-v4, as colours in linear sRGB.
 //!
-//! The colours are pbrt's tables of n and k by wavelength, converted by the rule stated at
-//! [`Color`](crate::Color) and weighted with D65. The colours of metals differ from the colours in
-//! Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and the tables
-//! of pbrt and Mitsuba contain different numbers.
+//! The colours were computed from pbrt's tables of n and k by wavelength, by the rule at
+//! [`Color`](crate::Color), with D65 as the weight. The colours of metals differ from the colours
+//! in Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and the
+//! tables of pbrt and Mitsuba contain different numbers.
 
 /// Returns red, green and blue of the spectrum of a glass or metal, or `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[f64; 3]> {

@@ -22,7 +22,8 @@ pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
     /// The map from the coordinates of the geometry to the coordinates of the shape.
     pub(super) placement: DAffine3,
-    /// The area by which pbrt divides a given power; `None` for a shape of several surfaces.
+    /// If a light has a required power, pbrt divides the power by this area. `None` for a shape of
+    /// several surfaces.
     pub(super) area: Option<f64>,
 }
 

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Number of samples along a side of a map, before the samples of a pixel are limited to between 3
-/// and 16 along a side. Larger maps use fewer samples per pixel, to bound the time.
+/// Number of samples along a side of a map. It bounds the time, because larger maps have fewer
+/// samples per pixel. A pixel has at least 3 and at most 16 samples along a side.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
@@ -74,8 +74,8 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// Returns the picture in longitude and latitude, from pole to pole, in which each pixel is the
-/// mean over its area.
+/// Returns the picture over longitude and latitude, from pole to pole. Each pixel is the mean over
+/// its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);

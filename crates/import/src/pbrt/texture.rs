@@ -189,7 +189,7 @@ impl PbrtReader<'_> {
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
     }
 
-    /// Returns a texture whose values are a function of the values of a parameter's texture.
+    /// Returns a texture with the function `of` applied to each of its values.
     pub(super) fn mapped(
         &self,
         entity: &Entity,

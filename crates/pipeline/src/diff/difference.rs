@@ -58,8 +58,8 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// Returns the significance level of each test. With this level, the probability that any
-    /// test finds a difference where there is none is α.
+    /// Returns the significance level of each test. If the results do not differ, some test finds a
+    /// difference with probability α.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))

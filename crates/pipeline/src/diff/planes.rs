@@ -40,7 +40,7 @@ pub(super) struct Compared {
     unresolved: Option<String>,
     /// The reason why the outcome of the tests cannot be trusted.
     invalid: Option<String>,
-    /// Whether the two results have the same numbers because they come from the same photons.
+    /// Whether the two results come from the same photons, and so have the same numbers.
     pub(super) is_identical: bool,
 }
 
@@ -67,16 +67,15 @@ pub(super) struct PredictionDiff {
 /// If the relative difference between two numbers is below this limit, they are assumed to differ
 /// only because their sums are rounded differently.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The largest accepted relative difference between the closed forms of two versions of the
-/// program, which may add terms in different orders. This difference allows for the rounding
-/// errors of the largest terms.
+/// The largest accepted relative difference between a closed form in two versions of the program.
+/// Two versions may add its terms in different orders, so the limit allows for rounding errors of
+/// the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
 /// The difference between two predictions counts as real if it exceeds this number of combined
 /// standard errors. The difference is a norm over all frequencies, so its random variation is
 /// small.
 const APART: f64 = 3.0;
-/// The probability, over all planes, that independent noise is mistaken for the noise of shared
-/// photons.
+/// The probability that independent noise of any plane is mistaken for the noise of shared photons.
 const SHARED: f64 = 1e-4;
 
 impl PlaneDiff {
@@ -314,9 +313,9 @@ impl ResultPair<'_> {
     }
 }
 
-/// Returns the number of photons of equal weight per batch whose sum would vary as much as the
-/// light of this sample. Returns `None` if this number is so large that no batch would be empty.
-/// `etendue_compare` applies the same rule to a single run.
+/// Returns a number of photons per batch. This many photons of equal weight would vary as much as
+/// the light of this sample. Returns `None` if this number is so large that no batch would be
+/// empty. `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];
     let batches = sample.batches as f64;

@@ -24,7 +24,8 @@ type Taken<'a> = dyn FnMut(&Piece, &[u8]) -> Result<(), Failure> + Send + 'a;
 type Given<'a> = dyn Fn(u32) -> Result<Packed, Failure> + Sync + 'a;
 
 /// The number of seconds after which other processes return unfinished batches: a minimum, and an
-/// addition for each process. The leading process has enough time to handle the returned batches.
+/// addition for each process. The addition gives the leading process enough time to handle the
+/// returned batches.
 const RETURN_SECONDS: [f64; 2] = [5.0, 0.05];
 
 /// The leading process, with the processes that it leads.
@@ -325,8 +326,8 @@ impl Left {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes pieces with `parts` parts in total from the end of the list, because the leading
-    /// process takes pieces from the front of the list.
+    /// Takes pieces with `parts` parts in total. They come from the end of the list, because the
+    /// leading process takes pieces from the front.
     fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
         let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));

@@ -40,8 +40,7 @@ fn inverse(z: f64) -> f64 {
 /// Returns the vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
-    // Computes the omitted component; in a valid unit vector, this component is not smaller than
-    // the other two.
+    // Computes the omitted component, which is the largest component of a valid unit vector.
     let missing = |c: f64, d: f64| {
         let squared = 1.0 - (c * c + d * d);
         if squared >= -SLACK {
@@ -60,8 +59,9 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Unpacks a direction of version 2. The direction is stored as a point of the octahedron |x| + |y|
-/// + |z| = 1, whose lower half is folded out into a square. `flat` means that z is 0.
+/// Unpacks a direction of version 2. The direction is stored as a point of an octahedron,
+/// |x| + |y| + |z| = 1. The lower half of the octahedron is folded out, which gives a square.
+/// `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
     // The numbers are coordinates in a square. Rounding to f32 may move a point outside the
     // square by up to 1e-6.

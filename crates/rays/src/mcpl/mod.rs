@@ -30,8 +30,8 @@ pub struct McplFile {
     header: McplHeader,
     count: usize,
     records: Vec<u8>,
-    /// The bytes after the last record, which are too few for another record. For example, a public
-    /// test file ends with a line feed.
+    /// The bytes after the last record. They are too few for another record: a public test file,
+    /// for example, ends with a line feed.
     rest: Vec<u8>,
 }
 

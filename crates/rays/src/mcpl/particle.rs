@@ -17,11 +17,12 @@ pub struct Particle {
     pub time_ms: f64,
     /// Weight, in an unspecified unit.
     pub weight: f64,
-    /// A vector to which programs may give any meaning; zero if a file has no such vector.
+    /// A vector without a fixed meaning, which programs may use. It is zero if a file has no such
+    /// vector.
     pub polarisation: [f64; 3],
     /// Kind of particle, as a code of the Particle Data Group.
     pub pdg: i32,
-    /// Bits to which programs may give any meaning.
+    /// Bits without a fixed meaning, which programs may use.
     pub user_flags: u32,
 }
 
@@ -94,10 +95,9 @@ impl Particle {
     /// Appends the record of a file with this header, packed as in version 3.
     ///
     /// # Errors
-    /// When the file cannot hold the particle. This is so if a number is not finite or cannot be
-    /// stored in the file's precision, if the energy is negative, or if the direction is not a unit
-    /// vector. It is also so if the weight or the PDG code differs from the universal value of the
-    /// file.
+    /// When the file cannot hold the particle. A file holds only finite numbers that its precision
+    /// can store, energies that are not negative, and directions that are unit vectors. If the file
+    /// has a universal weight or PDG code, the particle must have this value.
     pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header

@@ -1,4 +1,5 @@
-//! Sums stored as comments, `stat:sum:KEY:VALUE`, which are added when files are merged (MCPL 2.1).
+//! Sums in comments of the form `stat:sum:KEY:VALUE`. When files are merged, these sums are added
+//! (MCPL 2.1).
 
 use crate::Fault;
 use std::collections::BTreeSet;

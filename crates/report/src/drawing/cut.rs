@@ -92,8 +92,8 @@ impl CuttingPlane<'_> {
         pieces
     }
 
-    /// Returns the coordinates of a point in a leg's frame: the coordinate along the leg, the
-    /// coordinate across the leg within the cut, and the coordinate across the cut.
+    /// Returns three coordinates of a point in a leg's frame. The first is along the leg, the
+    /// second is across the leg within the cut, and the third is across the cut.
     fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
         let local = leg.frame.to_local(point);
         let [within, off] = if self.axis == 0 {
@@ -104,8 +104,8 @@ impl CuttingPlane<'_> {
         [leg.start + local.z, within, off]
     }
 
-    /// Returns the half-width of the drawing, which is slightly larger than the half-widths of the
-    /// light, of the bounded blockers and of the windows.
+    /// Returns the half-width of the drawing. It is slightly larger than the half-width of the
+    /// light, of each bounded blocker and of each window.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
         let light = self.light();
@@ -144,8 +144,8 @@ impl CuttingPlane<'_> {
         (0..path.legs.len()).find(ends).unwrap_or(0)
     }
 
-    /// Returns the segment (z, x) in which the cut of a leg meets a flat outline, where z is the
-    /// distance along the path.
+    /// Returns the segment that the cut of a leg has in common with a flat outline, as points (z,
+    /// x). z is the distance along the path.
     fn cut(&self, corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
         let corners: Vec<[f64; 3]> = corners.iter().map(|p| self.local(leg, *p)).collect();
         let mut points = Vec::new();

@@ -6,7 +6,7 @@ use etendue_figures::{DrawnObject, DrawnWorld, Segment};
 use etendue_scene::{Leg, Scene};
 use glam::DVec3;
 
-/// The length in metres at which infinite objects are cut off; it is larger than any drawn scene.
+/// Infinite objects are cut off at this length in metres, which is larger than any drawn scene.
 const ENDLESS_METRES: f64 = 1e4;
 /// Two legs of the path count as parallel if the modulus of the cosine between them differs from 1
 /// by less than this number.

@@ -7,8 +7,9 @@ use ndarray::Axis;
 /// The difference at which the range of colors ends, in standard deviations.
 const BEYOND: f64 = 4.0;
 
-/// Three numbers: the independent frequencies, the frequencies at which the difference exceeds 4 σ,
-/// and the number of such frequencies that noise alone would cause.
+/// Three numbers of frequencies. The first counts the independent frequencies. The second counts
+/// those with a difference above 4 σ. The third is the value that the second would have on average
+/// if there were only noise.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outliers {
     cells: usize,
@@ -57,8 +58,9 @@ impl Outliers {
     }
 }
 
-/// Returns the probability that a shifted gamma variable of mean 0, variance 1 and this skewness
-/// exceeds 4 in modulus, by the approximation of Wilson and Hilferty (1931).
+/// Returns the probability that the modulus of a shifted gamma variable exceeds 4. The variable has
+/// mean 0, variance 1 and this skewness. The function uses the approximation of Wilson and Hilferty
+/// (1931).
 fn beyond(skewness: f64) -> f64 {
     let shape = 4.0 / skewness.max(1e-6).powi(2);
     let tail = |z: f64| {

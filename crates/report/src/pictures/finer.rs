@@ -1,10 +1,10 @@
 //! Interpolates spectra between the frequencies of a scene, for pictures without visible cells.
 //!
 //! The window bounds the light field, so the spectrum between given frequencies is determined by
-//! these frequencies. Of all windowed light fields W ℓ with the given spectrum, the one with the
-//! least ∫ ℓ² is drawn. The spectrum of the drawn light field is a weighted sum of the given
-//! values. The weights follow from the covariance of the spectrum of white noise times the window,
-//! K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+//! these frequencies. Many windowed light fields W ℓ have the given values; the picture shows the
+//! one with the least ∫ ℓ². The spectrum of the drawn light field is a weighted sum of the given
+//! values. The weights follow from K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W². K is the covariance between
+//! frequencies of white noise that is multiplied by the window.
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 /// If an axis has more cells than this number, single cells are not visible.
 const SMOOTH: usize = 160;
-/// The given values may leave at most this share of the variance of an intermediate value
-/// undetermined.
+/// The given values must determine an intermediate value: at most this share of its variance may
+/// remain.
 const OPEN: f64 = 0.01;
 
 /// The weights of a plane's frequencies that give values at finer frequencies.
@@ -24,9 +24,9 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// Returns finer frequencies over the same range. Returns `None` if the scene's frequencies are
-    /// fine enough for the picture, or if they are too far apart to determine the values between
-    /// them.
+    /// Returns finer frequencies over the same range. Returns `None` in two cases: the scene's
+    /// frequencies are fine enough for the picture, or they are too far apart to determine the
+    /// values between them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,
@@ -115,7 +115,8 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 
 /// The covariance between frequencies of a slice, for white noise that is multiplied by a window.
 struct WindowCovariance {
-    /// Points of the squares of both profiles along the slice, with their weights.
+    /// For both profiles of the window, points along the slice; the weight of a point is the square
+    /// of the profile.
     profiles: [Vec<(f64, f64)>; 2],
 }
 

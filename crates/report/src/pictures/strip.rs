@@ -33,9 +33,9 @@ pub fn path(
     Ok(figure.svg)
 }
 
-/// Draws the planes in the order in which light meets them. If the strip is a figure, predicted
-/// spectra are below the measured ones. `photons` is the number of emitted photons, which is lower
-/// in a partial measurement than the scene requests.
+/// Draws the planes in the order in which light meets them. If the strip is a figure, it also shows
+/// the predicted spectra, below the measured spectra. `photons` is the number of emitted photons,
+/// which is lower in a partial measurement than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
@@ -317,9 +317,9 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
 
 /// Returns lines along which theory predicts the power of the spectrum. After light has travelled a
 /// distance d, its spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f,
-/// the spectrum also lies along parallel lines through (± f, ∓ h f), if the window and the
-/// frequencies resolve these lines. After a diffuse surface, only ν = 0 remains, and d is measured
-/// from this surface.
+/// the spectrum also lies along parallel lines through (± f, ∓ h f). These lines are returned if
+/// the window and the frequencies resolve them. After a diffuse surface, only ν = 0 remains, and d
+/// is measured from this surface.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -344,10 +344,10 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Returns lines along which the chain predicts the spectrum of a picture, in the plane of
-/// incidence and across it. At the light, the spectrum of a projector lies along ρ, and the
-/// spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω to
-/// A⁻ᵀ Ω.
+/// Returns lines for a picture, in the plane of incidence and across it. According to the chain,
+/// the spectrum lies along these lines. At the light, the spectrum of a projector lies along ρ, and
+/// the spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω
+/// to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
@@ -369,6 +369,6 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
 /// The relative difference of two slopes that coincide up to rounding.
 const NEAR: f64 = 1e-9;
 
-/// A line is left out if the modulus of its slope, in metres, is at least this limit, because the
-/// line would be vertical in any picture.
+/// A line with a slope of at least this modulus, in metres, is left out, because it would be
+/// vertical in any picture.
 const STEEPEST: f64 = 1e6;

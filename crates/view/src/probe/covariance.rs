@@ -1,5 +1,5 @@
-//! Computes covariances of the spectra along the ray of a pixel. They are measured, and the
-//! covariance at the first surface is also propagated to the camera by covariance tracing.
+//! Measures covariances of the spectra along the ray of a pixel. Covariance tracing also propagates
+//! the covariance at the first surface to the camera.
 
 use super::scene::{BATCHES, FREQUENCIES};
 use etendue_compare::AXES;
@@ -24,8 +24,8 @@ pub(super) struct FoundCovariance {
     band: [f64; 4],
     pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
-    /// The covariance that covariance tracing computes at the camera from the light that leaves the
-    /// first surface; `None` at all other planes.
+    /// At the camera, the covariance by covariance tracing from the light that leaves the first
+    /// surface; `None` at all other planes.
     pub(super) propagated: Option<MatrixEstimate>,
 }
 

@@ -48,7 +48,7 @@ pub(super) fn verdict(found: &Found) -> Verdict {
 }
 
 impl Found {
-    /// Checks whether neither rays nor photons found light.
+    /// Checks whether the plane is dark: rays found no light, and photons found none.
     pub(super) fn is_dark(&self) -> bool {
         self.comparison.measured.is_dark() && self.comparison.predicted.is_dark()
     }

@@ -1,5 +1,5 @@
-//! Makes maps over a picture of how fast light changes with angle at the camera, as measured and by
-//! the criterion of Durand et al. 2005.
+//! Makes maps of a picture that show how fast the light at the camera changes with angle. The
+//! change is measured, and computed by the criterion of Durand et al. 2005.
 
 use super::picture::PictureBandwidth;
 use super::scene::{ProbeRequest, ProbedScene};
@@ -22,8 +22,8 @@ const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"]
 /// The results for a pixel. A number is NaN if there is no light or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    /// The bandwidth of the picture after its mean is subtracted, in cycles per slope, along the
-    /// direction in which the bandwidth is largest; `error` is its standard error.
+    /// The bandwidth, in cycles per slope, of the picture minus its mean. It is taken along the
+    /// direction in which it is largest; `error` is its standard error.
     measured: f64,
     error: f64,
     /// The direction of the largest bandwidth, radians from the right, counter-clockwise.
@@ -194,8 +194,8 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the expected measurement, which is the larger of two bandwidths: the bandwidth by the
-/// criterion, and the bandwidth of the window.
+/// Returns the bandwidth that the measurement should give. It is the larger of two bandwidths: the
+/// bandwidth by the criterion, and the bandwidth of the window.
 fn expected(point: &MapPoint) -> f64 {
     // This comparison is false for NaN, so NaN is returned.
     if point.criterion < point.window {

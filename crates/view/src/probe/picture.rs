@@ -22,9 +22,9 @@ const CLEAR: f64 = 3.0;
 const SMOOTH: f64 = 1.9;
 /// A picture is found to vary if the power of its variation exceeds this many standard errors.
 const FOUND: f64 = 5.0;
-/// The largest allowed ratio of the power of noise to the power of the variation. Beyond a
-/// bandwidth lies a twentieth of the power. The noise has about 450 independent frequencies, so
-/// noise with this share fluctuates by a 150th of the power.
+/// The largest allowed ratio of the power of noise to the power of the variation. Noise of this
+/// power has about 450 independent frequencies, so it fluctuates by a 150th of the power of the
+/// variation. This is little, because a twentieth of that power lies beyond the bandwidth.
 const MAX_NOISE: f64 = 0.1;
 /// A bandwidth with a larger relative standard error is not reported, because with few rays its
 /// jackknife is unreliable.
@@ -105,22 +105,23 @@ impl PictureBandwidth {
         SMOOTH * self.of_window()
     }
 
-    /// Returns an estimate of the largest bandwidth without the blur of the window. The variances
-    /// are subtracted. The estimate is exact for a Gaussian. For a single frequency, it is too high
-    /// by at most 0.84 bandwidths of the window.
+    /// Returns an estimate of the largest bandwidth without the blur of the window. The square of
+    /// the window's bandwidth is subtracted from the square of the measured bandwidth. The estimate
+    /// is exact for a Gaussian. For a single frequency, it is too high by at most 0.84 bandwidths
+    /// of the window.
     pub(super) fn unblurred(&self) -> Option<f64> {
         let Widest { azimuth, value } = self.widest()?;
         let own = self.window.at(azimuth);
         Some((value.value * value.value - own * own).sqrt())
     }
 
-    /// Returns the shading samples per pixel along a direction that a bandwidth requires: two for
+    /// Returns how many shading samples per pixel a bandwidth requires along a direction: two for
     /// each cycle.
     pub(super) fn samples(&self, bandwidth: f64) -> f64 {
         2.0 * bandwidth * self.pixel_slope
     }
 
-    /// Returns the distance of shading samples along a direction that a bandwidth requires, in words.
+    /// Returns, in words, the distance between shading samples that a bandwidth requires.
     pub(super) fn spacing(&self, bandwidth: f64) -> String {
         match self.samples(bandwidth) {
             dense if dense > 1.0 => format!("{dense:.2} in each pixel"),

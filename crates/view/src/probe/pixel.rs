@@ -17,8 +17,8 @@ use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
-/// For rays that find lights only by directions sampled from BSDFs, the number of backward rays is
-/// multiplied by this factor, because the noise of such rays is larger.
+/// Rays that find lights only by directions sampled from BSDFs have more noise than backward rays.
+/// Therefore their number is larger by this factor.
 const BSDF_RAYS: u64 = 4;
 /// The difference between the seed of these rays and the seed of the backward rays.
 const BSDF_SEED: u64 = 1 << 63;

@@ -23,8 +23,8 @@ fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// Returns the paper's criterion for light that leaves a surface, in cycles per radian at the
-/// camera (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
+/// Returns the paper's criterion for light that leaves a surface (Durand et al. 2005, Eq. 20,
+/// corrected), in cycles per radian at the camera. Returns `None` if the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
@@ -265,8 +265,8 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     lines
 }
 
-/// Returns, for each plane, the entries of the covariance along x, which lies in the plane of
-/// incidence. The camera also has a row with the propagated covariance.
+/// Returns a row for each plane with the entries of the covariance along x, where x lies in the
+/// plane of incidence. The camera has a second row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
     let row = |name: String, of: &MatrixEstimate| {
