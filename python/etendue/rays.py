@@ -54,6 +54,10 @@ class Spectrum:
     """95 % bandwidth along rho in the azimuth where it is largest, and its error."""
     bandwidth_nu: tuple[float, float] | None
     """95 % bandwidth along nu in the azimuth where it is largest, and its error."""
+    variation_rho: tuple[float, float] | None
+    """`bandwidth_rho` of the light less its mean in the window, which tells how fast the light changes. Sampling needs this bandwidth."""
+    variation_nu: tuple[float, float] | None
+    """`bandwidth_nu` of the light less its mean in the window."""
 
     def __repr__(self) -> str:
         return f"<etendue.Spectrum {self.slices.shape}: {self.in_window} rays in the window, slope {self.slope}>"

@@ -95,8 +95,8 @@ pub(crate) struct Spectrum {
     radial: RadialPower,
     projection: estimate::ProjectionEstimate,
     in_window: u64,
-    /// The slope and the two bandwidths, with their names.
-    numbers: [(&'static str, Option<Uncertain>); 3],
+    /// The slope and the bandwidths, with their names.
+    numbers: [(&'static str, Option<Uncertain>); 5],
 }
 
 /// Returns the spectrum of rays, with errors from the spread between batches.
@@ -116,6 +116,10 @@ pub(crate) fn spectrum(
     };
     let power = CrossPower::new(&measured, 0).map_err(few)?;
     let grid = &plane.grid;
+    let varying = measured.without_mean(0);
+    let varying = CrossPower::of_replicates(&varying, 0..grid.azimuths).map_err(few)?;
+    let along_rho = |power: &CrossPower<'_>| power.bandwidth(bandwidth_rho).map(|b| b.value);
+    let along_nu = |power: &CrossPower<'_>| power.bandwidth(bandwidth_nu).map(|b| b.value);
     Ok(Spectrum {
         slices: estimate::slices(&measured, 0).map_err(few)?,
         radial: power.radial(),
@@ -123,14 +127,10 @@ pub(crate) fn spectrum(
         in_window: measured.tally(0).inside,
         numbers: [
             ("slope", power.statistic(|p| shear_slope(p, grid))),
-            (
-                "bandwidth_rho",
-                power.bandwidth(bandwidth_rho).map(|widest| widest.value),
-            ),
-            (
-                "bandwidth_nu",
-                power.bandwidth(bandwidth_nu).map(|widest| widest.value),
-            ),
+            ("bandwidth_rho", along_rho(&power)),
+            ("bandwidth_nu", along_nu(&power)),
+            ("variation_rho", along_rho(&varying)),
+            ("variation_nu", along_nu(&varying)),
         ],
     })
 }

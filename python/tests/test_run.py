@@ -107,9 +107,12 @@ def test_own_photons_come_back():
     file = scene.file
     own = {"window": file["window"], "frequencies": file["frequencies"], "batch": light.batch}
     found = etendue.spectrum(x, y, u, v, weight / 2**16, **own)
-    slices = etendue.run(scene)["receiver"].slices
+    plane = etendue.run(scene)["receiver"]
+    slices = plane.slices
     # The transform is exact to 2e-7 of the sum of weights, twice.
     assert np.abs(found.slices - slices.measured).max() < 4e-7 * np.abs(slices.measured).max()
+    assert found.variation_nu is not None
+    assert np.isclose(found.variation_nu[0], plane.report["variation_95"]["nu"]["measured"], rtol=1e-4)  # interpolated in the same slices
     # Errors are from the same batches by the same estimator.
     assert np.allclose(found.slices_sigma, slices.sigma, rtol=1e-4)
     # Groups may have any numbers.

@@ -1,7 +1,8 @@
 //! Defines measurements: batches of photons at virtual planes.
 
 use crate::batch::{Batch, PlaneBatch};
-use etendue_field::{Ledger, PlaneTally, VirtualPlane};
+use crate::variation::WindowedMean;
+use etendue_field::{Ledger, PlaneTally, Slices, VirtualPlane};
 use std::collections::BTreeMap;
 
 /// A complete or partial measurement: some batches of photons at some virtual planes.
@@ -78,6 +79,19 @@ impl Measurement {
     /// If the measurement has no such plane, the use of the iterator panics.
     pub fn at_plane(&self, plane: usize) -> impl ExactSizeIterator<Item = &PlaneBatch> {
         self.batches.values().map(move |batch| &batch.planes[plane])
+    }
+
+    /// Returns the slices of each batch at plane `plane` without the mean of the light in the
+    /// window (see [`WindowedMean`]).
+    ///
+    /// # Panics
+    ///
+    /// Panics if the measurement has no such plane.
+    #[must_use]
+    pub fn without_mean(&self, plane: usize) -> Vec<Slices> {
+        let VirtualPlane { window, grid, .. } = &self.planes[plane];
+        let batches = self.at_plane(plane).map(|batch| &batch.slices);
+        WindowedMean::new(window, grid).removed_from_all(batches)
     }
 
     /// Returns the number of photons emitted in all batches.

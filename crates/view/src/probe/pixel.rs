@@ -6,12 +6,12 @@ use super::picture::PictureBandwidth;
 use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
 use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
-use etendue_field::{PhotonSource, VirtualPlane};
+use etendue_field::PhotonSource;
 use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
-use etendue_spectrum::{CrossPower, Measurement, WindowedMean, measure};
+use etendue_spectrum::{CrossPower, Measurement, measure};
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
@@ -96,7 +96,9 @@ fn written(
         let source = (note, ["backward rays", found.judge.word()]);
         pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
     }
-    let each = found.iter().map(|(found, _)| verdict(found));
+    let each = found
+        .iter()
+        .map(|(found, _)| found.comparison.report.verdict);
     let verdict = each.fold(Verdict::Pass, Verdict::and);
     let stops = probe.stops.iter();
     let stage = reporter.begin(Work::Stage("writing results"));
@@ -149,11 +151,8 @@ impl Comparisons<'_> {
         comparison: PlaneComparison,
         misses: Option<&'static str>,
     ) -> Result<Found, Failure> {
-        let VirtualPlane { window, grid, .. } = &self.probe.planes[i];
-        let mean = WindowedMean::new(window, grid);
-        let batches = self.backward.at_plane(i).map(|batch| &batch.slices);
-        let varying = mean.removed_from_all(batches);
-        let azimuths = 0..grid.azimuths;
+        let varying = self.backward.without_mean(i);
+        let azimuths = 0..self.probe.planes[i].grid.azimuths;
         let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
         Ok(Found {
             comparison,
@@ -218,6 +217,9 @@ fn measured(
             plane.judge = SecondEstimate::BsdfRays;
             *old = prediction;
         }
+    }
+    for (found, _) in &mut planes {
+        found.comparison.report.verdict = verdict(found);
     }
     if request.covariance {
         let all = covariance::measured(probe, budget(request.rays, request.seed), reporter)?;
