@@ -67,7 +67,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let cells = rows.iter().map(cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
-        "A bandwidth is the frequency below which 95 % of the energy lies. Its unit is cycles per radian for the lobe; for all other bandwidths, at a fixed point of the plane, the unit is cycles per unit slope.",
+        "A bandwidth is the frequency below which 95 % of the energy lies. The bandwidth of the lobe is in cycles per radian. All other bandwidths are at a fixed point of the plane, in cycles per unit slope.",
     );
     say(
         "B and B' are Eqs. 20 and 21 of Durand et al. 2005, corrected; the columns beside them use the equations as printed.\n",

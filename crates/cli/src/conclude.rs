@@ -53,7 +53,7 @@ pub(crate) fn conclude(
         if !gone.is_empty() {
             let names = gone.join(", ");
             say(&format!(
-                "these files of the earlier result were removed, and this run did not save them: {names}"
+                "this run removed files of the earlier result, and did not save them again: {names}"
             ));
         }
     }

@@ -53,7 +53,7 @@ fn a_window_seen_in_part_is_undecided() {
     };
     let (code, table) = of("photons");
     assert_eq!(code, Some(4), "{table}");
-    let said = "far: 0 of 100000 photons aimed at this window reach it";
+    let said = "far: 0 of 100000 photons that are aimed at this window reach it";
     assert!(table.contains(said), "{table}");
     assert_eq!(of("backward").0, Some(0));
 }
@@ -203,7 +203,7 @@ fn a_target_error_is_reached() {
         "{told}"
     );
     assert!(
-        told.contains("100 times as many photons, in about"),
+        told.contains("a run with 100 times as many photons takes about"),
         "{told}"
     );
     let output = run("same", &["--photons", "2^21", "--quiet"]);
@@ -291,7 +291,7 @@ fn saved_photons_are_the_ones_measured() {
 
     let output = run(folder.path(), &[]);
     let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.contains("did not save them: after_blockers/photons.npy, "));
+    assert!(told.contains("did not save them again: after_blockers/photons.npy, "));
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 

@@ -292,13 +292,13 @@ fn likely_mistakes_are_warned_of() {
         (
             "rho: (max: 16)",
             "rho: (max: 0.5)",
-            "frequencies.rho.max is 0.5, less than one step of the grid, 1/(2 · half-width of the window) = 1",
+            "frequencies.rho.max is 0.5, but a step of the grid is already 1/(2 · half-width of the window) = 1",
         ),
         (
             "count: (20, 20)",
             "count: (20, 2)",
-            "arrival: light that reaches this plane passes squares up to (0.3, 0.3) m from the central ray, \
-             beyond the edge of the array at (2, 0.2) m, where nothing blocks it",
+            "arrival: light that reaches this plane passes squares at up to (0.3, 0.3) m from the central ray. \
+             The array ends at (2, 0.2) m, so nothing blocks the light beyond its edge",
         ),
     ] {
         let output = check(from, to, &[]);

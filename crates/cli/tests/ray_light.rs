@@ -267,7 +267,7 @@ fn the_command_knows_what_it_can_judge() {
     for (arguments, part) in [
         (
             "check beyond.ron",
-            "plane left: the light is a ray file, for which there is no prediction at this plane",
+            "plane left: the light is a ray file, and there is no prediction at this plane",
         ),
         (
             "run beyond.ron --out out",

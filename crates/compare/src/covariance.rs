@@ -190,13 +190,13 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} grows over the outer half of the band, which contains replicas, tails of edges or other parts of the spectrum: the variance covers only the band",
+                "the variance along {} grows over the outer half of the band, which contains replicas, tails of edges or other parts of the spectrum. The variance covers only the band",
                 axes.join(", ")
             ));
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
-                "covariance tracing differs from the photons by {} of the variances, and noise is {}",
+                "the matrices of covariance tracing and of the photons differ by {} of the variances; the noise is {}",
                 percent(off, 1),
                 percent(error, 1)
             ));

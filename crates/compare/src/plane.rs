@@ -217,7 +217,7 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons or rays of the prediction carry most of the light: the noise is that of only {each:.1} equal photons or rays in each batch, too few for a test{needs}"
+                "a few photons, or a few rays of the prediction, carry most of the light: each batch is as noisy as a batch of only {each:.1} equal photons or rays, which are too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
@@ -509,7 +509,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum extends beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths cover only the frequencies below",
+                "the spectrum extends beyond |{name}| = {}: there it is only {:.0} dB below its peak. Bandwidths cover only frequencies up to this limit",
                 brief(max),
                 10.0 * libm::log10(peak / border)
             ));

@@ -47,7 +47,7 @@ impl fmt::Display for TooMuchWork {
         };
         write!(
             f,
-            "the prediction of {plane} takes {estimate}; the limit is {limit}; the work consists of {}",
+            "the prediction of {plane} takes {estimate}, but the limit is {limit}. The work consists of {}",
             work.drivers
         )
     }

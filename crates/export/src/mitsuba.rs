@@ -37,14 +37,14 @@ pub enum NotInMitsuba {
     #[error("Mitsuba has no light that consists of rays: the rays of a file cannot be exported")]
     Rays,
     /// A mask that is not opaque.
-    #[error("Mitsuba has semi-transparent masks only as pictures: {name:?} cannot be exported")]
+    #[error("in Mitsuba, semi-transparent masks must be pictures: {name:?} cannot be exported")]
     Mask {
         /// Name of the layer of blockers with this mask.
         name: String,
     },
     /// An object behind the plane in which an environment begins.
     #[error(
-        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block the light, so it cannot be exported"
+        "in Étendue, distant light starts in the plane of `center`; in Mitsuba, it surrounds the whole scene. {name:?} reaches behind that plane and would block the light in Mitsuba, so it cannot be exported"
     )]
     BehindTheSky {
         /// Name of the object.

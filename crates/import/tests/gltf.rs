@@ -69,7 +69,7 @@ fn matrices_are_columns_and_parts_are_scaled_first() {
         "",
     );
     assert!(
-        causes(&both)[0].contains("nodes[0]: has a matrix together with"),
+        causes(&both)[0].contains("nodes[0]: has a matrix, and also a translation"),
         "{:?}",
         causes(&both)
     );

@@ -198,7 +198,9 @@ fn unsound_meshes_are_refused() {
         assert!(found[0].contains(what), "{found:?}");
     }
     let many = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]";
-    assert!(notes(many)[0].contains("N is left out: the mesh has 3 vertices, but N gives 1"));
+    assert!(
+        notes(many)[0].contains("N is left out: the mesh has 3 vertices, but N has values for 1")
+    );
 }
 
 #[test]

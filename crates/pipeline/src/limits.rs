@@ -32,7 +32,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     let mut planes = scene.planes.iter().zip(theories);
     match planes.find(|(_, theory)| !theory.reasons.is_empty()) {
         Some((plane, theory)) => Err(Failure::bad_input(format!(
-            "{}: plane {}: the light is a ray file, for which there is no prediction at this plane ({}); allowed: planes that are orthogonal to the central ray and before the first surface, if all blockers before them are flat and orthogonal to the ray. `etendue measure` accepts any plane",
+            "{}: plane {}: the light is a ray file, and there is no prediction at this plane ({}); allowed: planes before the first surface that are orthogonal to the central ray. All blockers before such a plane must also be flat and orthogonal to the ray. `etendue measure` accepts any plane",
             scene.name,
             plane.name,
             theory.reasons.join(", ")

@@ -39,7 +39,7 @@ pub fn step(method: Method) -> String {
         Method::Photons | Method::Backward => "",
         // At this plane, backward rays would not find the light.
         Method::Even => {
-            "; after emission, these rays are traced in the same way as photons, so errors of this tracing are not detected"
+            "; after emission, the same code traces these rays and the photons, so the comparison does not detect errors in this code"
         }
     };
     format!("instead of theory  {}{shared}", method.words())

@@ -63,7 +63,7 @@ pub fn reached(
         }
         if photons == most || needed > MAX_FACTOR * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {} %: {now}, and falls as one over the square root of the number of photons or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
+                "--target-error {} %: {now}. With four times as many photons, noise falls to a half or less, so {needed:.1e} photons suffice; allowed: {}, or more with --photons",
                 tidy(100.0 * target),
                 grouped(most)
             )));
@@ -92,8 +92,8 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
     let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(Some(noise)));
     Some(format!(
-        "noise is {noise} at {plane}; 100 times as many photons, in about {longer}, reduce it to \
-         {less} or below"
+        "noise is {noise} at {plane}; a run with 100 times as many photons takes about {longer}, \
+         and has noise of {less} or less"
     ))
 }
 
@@ -106,7 +106,7 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
     let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
         Some((name, noise)) => format!(
-            "with the errors of predictions, noise is up to {} (at {name})",
+            "if the errors of predictions are included, the largest noise is {} (at {name})",
             percent(Some(noise))
         ),
         None => "all predictions are in closed form".to_owned(),

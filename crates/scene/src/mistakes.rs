@@ -129,7 +129,7 @@ fn coarse(
         let step = 0.5 / a.max(b);
         (axis.max < step).then(|| {
             format!(
-                "{of}.{name}.max is {}, less than one step of the grid, 1/(2 · half-width of the window) = {}",
+                "{of}.{name}.max is {}, but a step of the grid is already 1/(2 · half-width of the window) = {}",
                 brief(axis.max),
                 brief(step)
             )
@@ -147,7 +147,7 @@ fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let beyond = (0..2).any(|axis| reach[axis] > edges[axis]);
         beyond.then(|| {
             format!(
-                "{}: light that reaches this plane passes {} up to {} m from the central ray, beyond the edge of the array at {} m, where nothing blocks it",
+                "{}: light that reaches this plane passes {} at up to {} m from the central ray. The array ends at {} m, so nothing blocks the light beyond its edge",
                 plane.name,
                 layer.name,
                 pair(reach),

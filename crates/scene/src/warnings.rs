@@ -70,7 +70,7 @@ impl Scene {
         let (behind, flux) = (rays.behind(), rays.flux());
         (behind > 0.0).then(|| {
             format!(
-                "light: rays with {} W of the ray file's {} W do not go forward, along path.direction, and are omitted",
+                "light: rays that do not go forward, along path.direction, are omitted: they have {} W of the {} W of the ray file",
                 tidy(behind),
                 tidy(behind + flux)
             )

@@ -76,8 +76,8 @@ impl OutputFile {
                         match seal {
                             None => "the file exists; --force replaces it",
                             Some(_) => {
-                                "the file exists, and etendue did not write it or it was changed \
-                                 afterwards; --force replaces it"
+                                "the file exists; either etendue did not write it, or it was changed \
+                                 afterwards. --force replaces it"
                             }
                         },
                     ));

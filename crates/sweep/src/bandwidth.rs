@@ -94,7 +94,7 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     let is_about_normal = |term: &Term| !term.brdf.lobe.is_about_mirror();
     if reflectance.terms.iter().any(is_about_normal) {
         warnings.push(format!(
-            "{}: a lobe of {name} is centred on the normal; the criteria assume lobes about the mirror direction",
+            "{}: a lobe of {name} is centred on the normal, but the criteria assume that lobes are centred on the mirror direction",
             plane.name
         ));
     }
@@ -110,7 +110,7 @@ fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     let end = (NEAR * nu.max()).min(nu.max() - nu.spacing);
     (bandwidth >= end).then(|| {
         format!(
-            "{}: a bandwidth of {:.3} is at the end of the frequency range, and the spectrum may extend beyond it; frequencies.nu.max is {}",
+            "{}: a bandwidth of {:.3} is at the end of the range of frequencies (frequencies.nu.max is {}), so the spectrum may extend beyond this range",
             plane.name,
             bandwidth,
             nu.max()

@@ -60,7 +60,8 @@ alone; all others are measured and predicted. Each figure gets a folder with
                            contains your own scenes as they were run
 The exit code is that of run for the worst plane.")]
 pub(crate) struct FigureArgs {
-    /// Figures of the paper (1, 3 to 17, table1, or all), or scene files, drawn as one figure
+    /// Figures of the paper (1, 3 to 17, table1, or all), or scene files. All scene files make one
+    /// figure
     #[arg(value_name = "NAME|SCENE.ron", required = true)]
     pub(crate) names: Vec<String>,
 

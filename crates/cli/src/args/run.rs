@@ -278,11 +278,11 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         ),
         named(
             Save::Tm25,
-            "The same rays as an IES TM-25 file in single precision: photons.tm25ray, 28 bytes per photon",
+            "The same rays in single precision, in an IES TM-25 file: photons.tm25ray, 28 bytes per photon",
         ),
         named(
             Save::Field,
-            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), with prediction and comparison. The photons are traced once more for each plane, or twice if memory is short",
+            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz). The spectrum is also predicted and compared. The photons are traced once more for each plane, or twice if memory is short",
         ),
     ])
 }
@@ -290,8 +290,8 @@ fn saves() -> impl TypedValueParser<Value = Save> {
 /// The values of the option `--expect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
-    /// The photons must agree with exact predictions, and disagree with at least one first-order
-    /// prediction because its chain of operators is wrong.
+    /// The photons must agree with all exact predictions, and must show that the chain of operators
+    /// of at least one first-order prediction is wrong.
     Disagreement,
 }
 

@@ -76,7 +76,8 @@ pub(crate) struct ForceArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ThreadArgs {
-    /// Number of threads [default: one for each core]; the results do not depend on it
+    /// Number of threads [default: one for each core]. The results do not depend on this
+    /// number
     #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) count: Option<u16>,
 }

@@ -39,9 +39,9 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Use the same seed, that of the scene or of --seed, at all points: differences between points
-    /// have less noise, but the errors of the points are not independent. Without this option, each
-    /// point has its own seed, derived from the given seed and the point's values
+    /// Use the seed of the scene, or of --seed, at all points. Differences between points then have
+    /// less noise, but the errors of the points are not independent. Without this option, each
+    /// point has its own seed, which follows from that seed and the point's values
     #[arg(long)]
     pub(crate) common_seed: bool,
 

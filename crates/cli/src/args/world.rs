@@ -221,8 +221,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point to find the distance of blockers, and as many rays to find the distance of
-    /// lights; the paper uses 100
+    /// Rays per point that find the distance of blockers. The same number of rays finds the distance
+    /// of lights. The paper uses 100
     #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,
 
@@ -269,8 +269,8 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "map")]
     pub(crate) pixel: Option<[usize; 2]>,
 
-    /// Instead of probing one pixel, compute the bandwidths at the camera for this many pixels, spaced
-    /// evenly over the picture, by backward rays alone
+    /// Compute the bandwidths at the camera for this many pixels instead of probing one pixel. The
+    /// pixels are spaced evenly over the picture, and only backward rays are used
     #[arg(long, value_name = "WxH", value_parser = size, conflicts_with_all = ["pixel", "photons", "surfaces"])]
     pub(crate) map: Option<[usize; 2]>,
 

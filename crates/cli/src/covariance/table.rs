@@ -10,7 +10,7 @@ const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 /// Returns a table of covariances for each plane, with remarks.
 pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
-        "Covariance of the power spectrum, in cycles² per m², per m × slope and per slope²."
+        "Covariance of the power spectrum. The units are cycles² per m², cycles² per (m × slope) and cycles² per slope²."
             .to_owned(),
         "The column \"traced\" covers all frequencies; the other columns cover only the band."
             .to_owned(),

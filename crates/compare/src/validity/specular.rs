@@ -32,7 +32,7 @@ pub(crate) fn unforeseen_by_rays(
     found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
         let percent = 100.0 * apart;
         format!(
-            "a mesh whose light misses the light of its osculating patch by {percent:.3} % of the window"
+            "a mesh whose light arrives {percent:.3} % of the half-width of the window away from the light of its osculating patch"
         )
     }));
     (found, later)

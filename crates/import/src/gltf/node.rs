@@ -129,7 +129,7 @@ impl<'a> GltfReader<'a> {
             Some(_) if is_split => {
                 self.cause(
                     path,
-                    "has a matrix together with translation, rotation or scale; allowed: only one of the two forms",
+                    "has a matrix, and also a translation, rotation or scale; allowed: only one of the two forms",
                 );
                 None
             }

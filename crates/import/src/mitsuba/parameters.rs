@@ -100,5 +100,5 @@ fn undefined(after: &str) -> String {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let end = after.find(|c| !is_name(c)).unwrap_or(after.len());
     let name = quoted(&after[..end]);
-    format!("parameter {name} has no value: no <default> precedes it, and none is set from outside")
+    format!("parameter {name} has no value: no <default> precedes it, and the user sets no value")
 }

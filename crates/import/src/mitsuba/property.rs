@@ -44,7 +44,7 @@ impl Tree<'_> {
                 (None, Some(file)) => self.spectrum(file, source)?,
                 _ => {
                     return Err(
-                        "value and filename are both given, or neither; allowed: one of them"
+                        "either both value and filename are given, or neither of them; allowed: one of them"
                             .to_owned(),
                     );
                 }

@@ -174,7 +174,7 @@ impl<R: Read> UnpackedStream<R> {
                 *corner = u32::from_le_bytes(self.some()?);
                 if u64::from(*corner) >= vertices {
                     return Err(format!(
-                        "refers to vertex {corner} of {vertices} in triangle {i}"
+                        "refers to vertex {corner} in triangle {i}; allowed: numbers below {vertices}"
                     ));
                 }
             }

@@ -148,7 +148,7 @@ impl<'a> Tree<'a> {
                     format!("at most {MOST_ELEMENTS} elements, nested at most {MAX_DEPTH} deep");
                 self.report.cause(
                     &place,
-                    format!("the scene has too many elements; allowed: {most}"),
+                    format!("the scene has too many elements, or elements are nested too deeply; allowed: {most}"),
                 );
             }
             return;

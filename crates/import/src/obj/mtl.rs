@@ -42,7 +42,10 @@ pub(super) fn read(
         let Some((_, entry)) = &mut open else {
             report.note(
                 &place,
-                format!("{} stands before newmtl and is left out", quoted(word)),
+                format!(
+                    "{} is left out, because it stands before the first newmtl",
+                    quoted(word)
+                ),
             );
             continue;
         };

@@ -36,7 +36,7 @@ impl PbrtReader<'_> {
             false => pixels,
         };
         if ask == Ask::Float {
-            let message = "a coloured picture is converted to its luminance or one channel here, but to the mean of its channels in pbrt";
+            let message = "in Étendue, a coloured picture becomes its luminance or one of its channels; in pbrt, it becomes the mean of its channels";
             self.note_once(&entity.place, message);
         }
         Ok(Texture::Bitmap(Bitmap {

@@ -196,7 +196,7 @@ impl PbrtReader<'_> {
         if all.len() != vertices.len() && !all.is_empty() {
             let (found, count) = (all.len(), vertices.len());
             let message = format!(
-                "{name} is left out: the mesh has {count} vertices, but {name} gives {found}"
+                "{name} is left out: the mesh has {count} vertices, but {name} has values for {found}"
             );
             self.note_once(entity.place_of(name), &message);
             return Ok(None);

@@ -79,7 +79,7 @@ impl PbrtReader<'_> {
                 }
                 _ if named::is_illuminant(&name) => {
                     return Err(fault(
-                        "is a standard illuminant whose colour is not known; allowed: with colours converted to luminance only",
+                        "is a standard illuminant whose colour is not known; allowed only if colours are converted to luminance",
                     ));
                 }
                 _ => {

@@ -281,7 +281,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: the noise is that of only {each:.1} equal photons in each batch"
+                    "a few photons carry most of the light of {folder}: each batch is as noisy as a batch of only {each:.1} equal photons"
                 ));
             }
         }
@@ -308,7 +308,7 @@ impl ResultPair<'_> {
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
-            format!("noise is {noise} of the spectrum, above {resolution}, √2 times the resolution of the scene")
+            format!("noise is {noise} of the spectrum; the limit is {resolution}, which is √2 times the resolution of the scene")
         })
     }
 }

@@ -53,7 +53,7 @@ impl Outliers {
             expected,
         } = self;
         format!(
-            "{found} of {cells} frequencies differ by more than 4 *σ*; chance alone gives {expected:.1} on average; noise is correlated between neighbours."
+            "{found} of {cells} frequencies differ by more than 4 *σ*. Chance alone would give {expected:.1} such frequencies on average. The noise of neighbouring frequencies is correlated."
         )
     }
 }

@@ -107,8 +107,8 @@ pub fn strip_of(
 
 /// The note below a strip if the light at azimuth 0 differs from the light at 90°.
 const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
-    in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
-    at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
+    in (*y*, *v*) is the inverse transform of the spectrum at 90°. This spectrum ends at the highest \
+    frequencies of the grid, so edges have fringes (Gibbs phenomenon)";
 /// The warning in a figure that shows the mean over azimuths although the slices at 0 and 90°
 /// differ.
 const MIXED: &str = "; the light differs between azimuths 0 and 90°";
@@ -231,7 +231,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     match counts.iter().filter(|count| **count == 1).count() {
         0 => "means over azimuths",
         slices if slices == counts.len() => "slices at azimuth 0",
-        _ => "means over azimuths, or slices at azimuth 0 where there is only one azimuth",
+        _ => "means over azimuths; at planes with only one azimuth, slices at azimuth 0",
     }
 }
 

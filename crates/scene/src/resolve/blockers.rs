@@ -220,7 +220,7 @@ impl Resolver<'_> {
         if product > limits::PRODUCTS {
             let most = limits::PRODUCTS;
             let allowed = format!(
-                "at most {most:.0e} for the product of the numbers of shapes of the light and of each layer"
+                "at most {most:.0e}: the numbers of shapes of the light and of all layers are multiplied"
             );
             self.faults.add("blockers: count", number(product), allowed);
         }

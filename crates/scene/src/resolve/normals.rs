@@ -45,7 +45,7 @@ impl Resolver<'_> {
             let field = at.field(&format!("vertex {}", at.number(*first)));
             let left = share(&sums[*first as usize]);
             let value = format!(
-                "without a normal: the sum of its triangles' normals has only {left:.1e} of the sum of their lengths"
+                "without a normal: the normals of its triangles cancel. The length of their sum is only {left:.1e} of the sum of their lengths"
             );
             let allowed = format!(
                 "vertices of a smooth surface, where this share is at least {MIN_NORMAL}{}",

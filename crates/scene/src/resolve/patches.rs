@@ -70,7 +70,7 @@ impl Resolver<'_> {
                         .add(format!("{of}.along"), vector(along), allowed);
                 }
                 _ => {
-                    let allowed = "a direction, with `along` not parallel to it";
+                    let allowed = "a direction that is not parallel to `along`";
                     let field = format!("{of}.facing");
                     self.faults.add(field, vector(facing), allowed);
                 }
