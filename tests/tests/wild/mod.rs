@@ -1,0 +1,209 @@
+//! Tests scenes for which theory once was wrong, stated too small an error, or gave no prediction
+//! (results/wild.md).
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on should stop; what it prints is the table of results/wild.md"
+)]
+
+mod classes;
+mod light;
+mod obstacles;
+mod surfaces;
+
+use etendue_compare::{
+    Applicability, Class, PlaneReport, Prediction, Test, Verdict, compare, system,
+};
+use etendue_field::{PhotonSource, ProjectionGrid, Slices, VirtualPlane};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::{Measurement, measure};
+use etendue_theory::{Model, Observed, RayBudget, rays, scattering};
+use etendue_trace::{Backward, Tracer};
+use std::time::Instant;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/wild");
+
+/// Returns a scene of `scenes/wild`, with parts of its text replaced.
+fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
+    let mut text = std::fs::read_to_string(format!("{FOLDER}/{name}.ron")).unwrap();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from} is not in {name}");
+        text = text.replace(from, to);
+    }
+    let file = SceneFile::parse(&text).unwrap();
+    resolve(name, file, FOLDER.as_ref(), u64::MAX).unwrap()
+}
+
+/// Returns a scene of `scenes/wild`.
+fn scene(name: &str) -> Scene {
+    edited(name, &[])
+}
+
+/// The number of photons in a scene file, and a larger number that replaces it. With the larger
+/// number, many rays of each batch hit a bright pixel through the lobe.
+const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
+
+fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
+    measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
+}
+
+fn photons(scene: &Scene) -> Measurement {
+    measured(scene, &Tracer::new(scene))
+}
+
+fn backward(scene: &Scene) -> Measurement {
+    measured(scene, &Backward::new(scene).unwrap())
+}
+
+fn report(
+    scene: &Scene,
+    measurement: &Measurement,
+    plane: usize,
+    prediction: &Prediction,
+) -> PlaneReport {
+    // Noise of 50 % is low enough to detect predictions with an error of 50 %.
+    let test = Test {
+        resolution: 0.5,
+        ..Test::of(scene)
+    };
+    let compared = compare(measurement, plane, prediction, &test);
+    compared.unwrap().report
+}
+
+fn verdict(scene: &Scene, measurement: &Measurement, prediction: &Prediction) -> Verdict {
+    report(scene, measurement, 0, prediction).verdict
+}
+
+fn by_theory(scene: &Scene, plane: &VirtualPlane) -> Prediction {
+    Prediction::new(scene, plane, &Applicability::new(scene, plane))
+}
+
+fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Prediction {
+    let theory = Applicability::new(scene, &scene.planes[plane]);
+    Prediction::reference(scene, plane, &theory, reference, plane).unwrap()
+}
+
+/// Returns the prediction by exact rays, without the affine chain, whose verdict is separate.
+fn by_exact_rays(scene: &Scene, plane: usize) -> Prediction {
+    Prediction {
+        first_order: None,
+        ..by_theory(scene, &scene.planes[plane])
+    }
+}
+
+/// Returns the row of results/wild.md that describes a plane.
+fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport) {
+    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
+    println!(
+        "| {} | {} | {class} | {seconds:.1} | {} | {by} | {} / {} | {:?} | {} |",
+        scene.name,
+        report.name,
+        percent(report.quadrature_error),
+        percent(report.relative_error),
+        percent(report.noise_limit),
+        report.verdict,
+        report.p_value.map_or("–".to_owned(), |p| format!("{p:.4}")),
+    );
+}
+
+/// Checks that every plane of a scene has the expected class of theory, and that no verdict is a
+/// failure. Photons decide the verdict on each plane; if they are undecided and a backward tracer
+/// exists, backward rays decide.
+fn does_not_fail(name: &str, planes: &[(&str, Class)]) {
+    scene_does_not_fail(&scene(name), planes);
+}
+
+fn scene_does_not_fail(scene: &Scene, planes: &[(&str, Class)]) {
+    let name = &scene.name;
+    let by_photons = photons(scene);
+    let by_rays = Backward::new(scene).ok();
+    let by_rays = by_rays.map(|source| measured(scene, &source));
+    assert_eq!(scene.planes.len(), planes.len(), "{name}");
+    for (i, (plane, (called, class))) in scene.planes.iter().zip(planes).enumerate() {
+        assert_eq!(plane.name, *called);
+        let found = Applicability::new(scene, plane).class();
+        assert_eq!(found, *class, "{name}: {called}");
+        let begun = Instant::now();
+        let prediction = match class {
+            Class::Reference => by_reference(scene, i, by_rays.as_ref().unwrap()),
+            _ => by_theory(scene, plane),
+        };
+        let seconds = begun.elapsed().as_secs_f64();
+        let judged = report(scene, &by_photons, i, &prediction);
+        row(scene, found, "photons", seconds, &judged);
+        assert_ne!(judged.verdict, Verdict::Fail, "{name}: {called}, photons");
+        let undecided = judged.verdict == Verdict::Undecided;
+        if let Some(by_rays) = by_rays.as_ref().filter(|_| undecided) {
+            let judged = report(scene, by_rays, i, &prediction);
+            row(scene, found, "rays", seconds, &judged);
+            assert_ne!(judged.verdict, Verdict::Fail, "{name}: {called}, rays");
+        }
+    }
+}
+
+/// Checks that both tracers agree with each other. They must disagree with a prediction by
+/// `theory`, which does not apply.
+fn only_the_reference_is_right(
+    scene: &Scene,
+    plane: usize,
+    theory: impl Fn(&Scene, Prediction) -> Prediction,
+) {
+    let found = Applicability::new(scene, &scene.planes[plane]);
+    assert!(!found.reasons.is_empty() || !found.declined.is_empty());
+    let (photons, rays) = (photons(scene), backward(scene));
+    let reference = by_reference(scene, plane, &rays);
+    let judged = report(scene, &photons, plane, &reference);
+    assert_eq!(judged.verdict, Verdict::Pass);
+    let regardless = theory(scene, reference);
+    let wrong = report(scene, &photons, plane, &regardless);
+    assert_eq!(wrong.verdict, Verdict::Fail);
+}
+
+/// Budget with which a prediction has an error of half a per cent in each of these scenes.
+const BUDGET: RayBudget = RayBudget {
+    nodes: 1e6,
+    error: 5e-3,
+};
+
+fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
+    let view = system(scene, &scene.planes[plane]).unwrap();
+    by_rays(scene, plane, &view, like)
+}
+
+fn by_rays(
+    scene: &Scene,
+    plane: usize,
+    view: &Observed<rays::SpecularSystem>,
+    like: Prediction,
+) -> Prediction {
+    let plane = &scene.planes[plane];
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let over = (&plane.window, &plane.grid, &picture);
+    let found = view.predict(&[], over, BUDGET);
+    replaced(like, found.slices, found.replicates)
+}
+
+fn by_scattering(
+    scene: &Scene,
+    view: &Observed<scattering::ScatteringSystem>,
+    like: Prediction,
+) -> Prediction {
+    let grid = like.slices.grid;
+    let window = &scene.planes[0].window;
+    let picture = ProjectionGrid::new(window, 1);
+    let over = (window, &grid, &picture);
+    let found = view.predict(&[], over, BUDGET);
+    replaced(like, found.slices, found.replicates)
+}
+
+/// Returns a prediction with its slices replaced by others.
+fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Prediction {
+    Prediction {
+        quadrature_error: None,
+        mesh_error: None,
+        slices,
+        replicates,
+        ..like
+    }
+}

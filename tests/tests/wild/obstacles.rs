@@ -1,0 +1,166 @@
+//! Tests scenes in which obstacles once were missed.
+
+use super::{
+    by_exact_rays, by_rays, by_scattering, by_specular, by_theory, does_not_fail, edited, measured,
+    only_the_reference_is_right, photons, replaced, report, scene, scene_does_not_fail,
+};
+use etendue_compare::{Applicability, Class, Theory, Verdict, chain, scattered, system};
+use etendue_trace::Backward;
+
+/// A prediction tests whether occluders behind the mirror block its rays.
+#[test]
+fn a_blocker_in_a_later_leg_is_decided() {
+    obstacles_matter("blocker_in_later_leg", &["edge"]);
+}
+
+/// A disc that shadows a ten-thousandth of the window is detected.
+#[test]
+fn a_small_disc_in_a_later_leg_is_decided() {
+    obstacles_matter("corner_disc", &["disc"]);
+}
+
+/// If there is no gap between two half-planes, they are reported as the cause of a dark plane. If
+/// there is a gap, they are not reported.
+#[test]
+fn darkness_behind_two_occluders_is_decided() {
+    let scene = scene("projector_two_occluders");
+    let open = edited("projector_two_occluders", &[("edge: 0.02", "edge: -0.02")]);
+    let [dark, lit] = [&scene, &open].map(photons);
+    for (plane, at) in scene.planes.iter().enumerate() {
+        let reason = Applicability::new(&scene, at).dark.unwrap();
+        assert!(reason.contains("below and above"), "{reason}");
+        let prediction = by_theory(&scene, at);
+        let judged = report(&scene, &dark, plane, &prediction);
+        assert_eq!(judged.verdict, Verdict::Pass);
+        assert!(
+            Applicability::new(&open, &open.planes[plane])
+                .dark
+                .is_none()
+        );
+        let wrong = report(&open, &lit, plane, &prediction);
+        assert_eq!(wrong.verdict, Verdict::Fail);
+    }
+}
+
+/// If squares cover a window perpendicular to the path, they still let light through to a window of
+/// the same size on a surface.
+#[test]
+fn light_passes_beside_squares() {
+    let scene = scene("squares_before_the_glass");
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    assert_eq!(theory.dark, None);
+    assert!(photons(&scene).tally(0).inside > 1000);
+}
+
+/// In these scenes, only a few rays of the window meet the blockers, or meet a mesh that the path
+/// visits later.
+#[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
+fn rays_of_a_brdf_meet_obstacles() {
+    obstacles_matter("squares_on_the_way_back", &["squares"]);
+    let scene = scene("later_mesh");
+    scene_does_not_fail(&scene, &[("p", Class::FirstOrder)]);
+    only_the_reference_is_right(&scene, 0, |scene, reference| {
+        let view = scattered(scene, &scene.planes[0]).unwrap();
+        by_scattering(scene, &view, reference)
+    });
+}
+
+/// A part of a mirror is nearer to the light than the mask. The window is so narrow that no ray
+/// sampled from the light hits this part.
+#[test]
+fn a_sliver_of_slopes_is_decided() {
+    obstacles_matter("sliver_of_slopes", &["slit"]);
+}
+
+/// A wall beside the light extends behind the light, which emits only forward.
+#[test]
+fn a_wall_that_reaches_behind_the_light_is_decided() {
+    does_not_fail("beside_the_light", &[("p", Class::FirstOrder)]);
+}
+
+/// A surface that the path visits later stands before the first surface, in a corner of the
+/// window. Few of the projector's rays, which are sampled over all of a wide wall, reach the
+/// corner of the window.
+#[test]
+fn a_later_surface_beside_the_first_leg_is_decided() {
+    let scene = scene("beside_the_beam");
+    only_the_reference_is_right(&scene, 0, |scene, reference| {
+        by_specular(scene, 0, reference)
+    });
+}
+
+/// A mirror is so close to the light that a part of the mirror is before the mask. Few rays that
+/// are sampled from the light to the mirror hit this part.
+#[test]
+fn a_mirror_close_to_the_light_is_decided() {
+    obstacles_matter("close_to_the_mirror", &["mask"]);
+}
+
+/// A wall that the path visits later stands beside the first leg of the path.
+#[test]
+fn a_wall_in_the_way_is_decided() {
+    only_the_chain_is_wrong("wall_in_the_way", Class::Reference);
+}
+
+/// The chain after a floor uses the coordinates of the path, and not the coordinates of the wall to
+/// which the path leads.
+#[test]
+fn a_plane_on_the_next_wall_is_decided() {
+    only_the_chain_is_wrong("on_the_next_wall", Class::FirstOrder);
+}
+
+/// Checks that the prediction includes obstacles that only some rays meet, and that a prediction
+/// without these obstacles is wrong.
+fn obstacles_matter(name: &str, obstacles: &[&str]) {
+    let scene = scene(name);
+    let plane = scene.planes.len() - 1;
+    let backward = Backward::new(&scene).ok();
+    let backward = backward.map(|source| measured(&scene, &source));
+    let measured: Vec<_> = std::iter::once(photons(&scene)).chain(backward).collect();
+    let theory = Applicability::new(&scene, &scene.planes[plane]).theory;
+    let right = by_exact_rays(&scene, plane);
+    for measured in &measured {
+        let report = report(&scene, measured, plane, &right);
+        assert_ne!(
+            report.verdict,
+            Verdict::Fail,
+            "{name}: {:?}",
+            report.p_value
+        );
+    }
+    let (found, without) = match theory {
+        Theory::Specular(view) => {
+            let found = view.system.obstacles;
+            let mut view = system(&scene, &scene.planes[plane]).unwrap();
+            view.system.obstacles.clear();
+            (found, by_rays(&scene, plane, &view, right))
+        }
+        Theory::Scattering(view) => {
+            let found = view.system.obstacles;
+            let mut view = scattered(&scene, &scene.planes[plane]).unwrap();
+            view.system.obstacles.clear();
+            (found, by_scattering(&scene, &view, right))
+        }
+        other => panic!("{name}: {other:?}"),
+    };
+    let found: Vec<&str> = found
+        .iter()
+        .map(|obstacle| obstacle.name.as_str())
+        .collect();
+    assert_eq!(found, obstacles, "{name}");
+    let wrong = |measured| report(&scene, measured, plane, &without).verdict == Verdict::Fail;
+    assert!(measured.iter().any(wrong), "{name}");
+}
+
+/// Checks that the only plane has the expected class of theory, and that the chain between
+/// parallel planes is wrong.
+fn only_the_chain_is_wrong(name: &str, class: Class) {
+    let scene = scene(name);
+    scene_does_not_fail(&scene, &[("p", class)]);
+    only_the_reference_is_right(&scene, 0, |scene, reference| {
+        let plane = &scene.planes[0];
+        let slices = etendue_theory::slices(&chain(scene, plane), &plane.window, &plane.grid);
+        replaced(reference, slices, Vec::new())
+    });
+}

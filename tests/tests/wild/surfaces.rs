@@ -1,0 +1,191 @@
+//! Tests scenes whose surfaces once were followed wrongly.
+
+use super::{
+    FOLDER, MORE, backward, by_exact_rays, by_reference, by_scattering, by_specular, by_theory,
+    does_not_fail, edited, measured, only_the_reference_is_right, photons, report, scene,
+    scene_does_not_fail, verdict,
+};
+use etendue_compare::{Applicability, Class, Prediction, Verdict, scattered};
+use etendue_scene::{SceneFile, resolve};
+use etendue_trace::Tracer;
+use std::path::Path;
+
+/// A fine mesh deviates from the patch that osculates it by more than the noise of photon nets. The
+/// stated error of the prediction includes this deviation; without it, the scene fails.
+#[test]
+fn the_error_of_a_fine_mesh_is_stated() {
+    let folder = Path::new(FOLDER).join("../table1");
+    let text = std::fs::read_to_string(folder.join("mesh_mirror.ron")).unwrap();
+    let file = SceneFile::parse(&text).unwrap();
+    let scene = resolve("mesh_mirror", file, &folder, u64::MAX).unwrap();
+    let photons = photons(&scene);
+    for (i, plane) in scene.planes.iter().enumerate() {
+        let prediction = by_theory(&scene, plane);
+        let verdict = |p: &Prediction| report(&scene, &photons, i, p).verdict;
+        assert_eq!(verdict(&prediction), Verdict::Pass, "{}", plane.name);
+        let error = prediction.mesh_error.unwrap_or(0.0);
+        assert!(error < 1e-4, "{error:e} at {}", plane.name); // the error for photons is 10⁻⁵
+        let unaware = Prediction {
+            mesh_error: Some(1e-6),
+            ..prediction
+        };
+        let fails = verdict(&unaware) == Verdict::Fail;
+        assert_eq!(fails, i > 0, "{}", plane.name); // before the first plane, nothing is reflected
+    }
+}
+
+/// The stated error for the triangles of a mesh equals the deviation of photons.
+#[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
+fn the_stated_error_of_triangles_is_right() {
+    let scene = scene("coarse_paraboloid");
+    let photons = photons(&scene);
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    let judged = report(&scene, &photons, 0, &prediction);
+    assert_eq!(judged.verdict, Verdict::Pass);
+    let [stated, seen] = [prediction.mesh_error, judged.excess].map(Option::unwrap);
+    let ratio = stated / seen;
+    // The stated error is a sampled value plus its standard error. The observed error has a
+    // standard error of a fifth of its value.
+    assert!(
+        (1.0..1.3).contains(&ratio),
+        "{stated:e} stated, {seen:e} seen"
+    );
+    let unaware = Prediction {
+        mesh_error: Some(0.4 * stated),
+        ..prediction
+    };
+    let judged = report(&scene, &photons, 0, &unaware);
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
+/// In theory, a ray meets a surface only once. Therefore backward rays replace theory for light
+/// that meets the surface twice.
+#[test]
+fn a_hollow_met_twice_is_decided() {
+    let scene = edited("hollow_twice", &[MORE]);
+    for plane in 0..2 {
+        only_the_reference_is_right(&scene, plane, |scene, reference| {
+            by_specular(scene, plane, reference)
+        });
+    }
+}
+
+/// Backward rays also replace theory if one side of a surface blocks light of the other side.
+#[test]
+fn a_surface_in_its_own_shadow_is_decided() {
+    let scene = scene("self_shadow");
+    for plane in 0..2 {
+        only_the_reference_is_right(&scene, plane, |scene, reference| {
+            let view = scattered(scene, &scene.planes[plane]).unwrap();
+            by_scattering(scene, &view, reference)
+        });
+    }
+}
+
+/// In these scenes, rays that leave the triangles of a mesh meet the mesh again, or take another
+/// direction. Rays that leave the patch that osculates the mesh do not.
+#[test]
+fn meshes_unlike_their_patches_are_decided() {
+    let glass = scene("glass_star");
+    let theory = Applicability::new(&glass, &glass.planes[0]);
+    assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
+    assert_eq!(photons(&glass).tally(0).inside, 0);
+
+    for name in ["ball_beyond_its_patch", "somewhat_coarse_mesh"] {
+        let scene = scene(name);
+        let theory = Applicability::new(&scene, &scene.planes[0]);
+        assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
+        let measured = photons(&scene);
+        let reference = by_reference(&scene, 0, &self::measured(&scene, &Tracer::evenly(&scene)));
+        let judged = report(&scene, &measured, 0, &reference);
+        assert_eq!(judged.verdict, Verdict::Pass, "{name}");
+        let regardless = by_specular(&scene, 0, reference);
+        let wrong = report(&scene, &measured, 0, &regardless);
+        assert_eq!(wrong.verdict, Verdict::Fail, "{name}");
+    }
+}
+
+/// A surface that is convex towards a point light does not shadow its own tangent plane.
+#[test]
+fn a_plane_behind_its_surface_is_decided() {
+    let scene = scene("before_a_trough");
+    let reference = by_reference(&scene, 0, &backward(&scene));
+    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+}
+
+/// A surface may curve by more than a right angle. Photons are then recorded where they first meet
+/// the surface, and have the same coordinates there as backward rays.
+#[test]
+fn a_ridge_under_a_sky_is_decided() {
+    let scene = scene("ridge_under_a_sky");
+    let reference = by_reference(&scene, 0, &backward(&scene));
+    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+}
+
+/// If the line of a ray meets a hollow surface again, its light is not counted, even if a blocker
+/// stops it before the surface. Light that meets a floor inside the hollow surface continues from
+/// the floor.
+#[test]
+fn light_does_not_meet_its_surface_again() {
+    for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
+        let scene = edited(name, &[MORE]);
+        let reference = by_reference(&scene, 0, &backward(&scene));
+        let judged = verdict(&scene, &photons(&scene), &reference);
+        assert_eq!(judged, Verdict::Pass, "{name}");
+    }
+}
+
+/// A plane on the second surface of a path, after a surface with a BRDF, uses the coordinates of
+/// the second surface.
+#[test]
+fn a_plane_before_a_second_surface_is_decided() {
+    let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];
+    does_not_fail("before_second_after_brdf", &planes);
+}
+
+/// If light meets a mesh from behind, the ratio of the mesh's indices of refraction is inverted.
+#[test]
+fn a_mesh_met_from_behind_is_decided() {
+    let turned = edited(
+        "mesh_refraction_from_behind",
+        &[("front: 1, back: 1.5", "front: 1.5, back: 1")],
+    );
+    let scene = scene("mesh_refraction_from_behind");
+    let measured = photons(&scene);
+    assert_eq!(
+        verdict(&scene, &measured, &by_exact_rays(&scene, 0)),
+        Verdict::Pass
+    );
+    assert_eq!(
+        verdict(&scene, &measured, &by_exact_rays(&turned, 0)),
+        Verdict::Fail
+    );
+}
+
+/// Normals of a mesh are interpolated, so a coarse mesh is not a smooth surface.
+#[test]
+fn a_coarse_mesh_is_decided() {
+    let area = [
+        ("Beam(", "Rectangle("),
+        ("image: (width: (0.01, 0.01))", "size: (0.01, 0.01)"),
+    ];
+    scene_does_not_fail(
+        &edited("coarse_mesh_mirror", &area),
+        &[("p", Class::Reference)],
+    );
+}
+
+/// A plane on a thin lens has no affine chain, but a plane beyond the lens has one. Exact rays are
+/// correct on the lens and beyond it.
+#[test]
+fn a_plane_on_a_lens_is_decided() {
+    let scene = scene("on_a_lens");
+    let measured = photons(&scene);
+    for (plane, has_chain) in [(0, false), (1, true)] {
+        let prediction = by_theory(&scene, &scene.planes[plane]);
+        assert_eq!(prediction.first_order.is_some(), has_chain);
+        let judged = report(&scene, &measured, plane, &prediction);
+        assert_eq!(judged.verdict, Verdict::Pass, "{judged:?}");
+    }
+}
