@@ -1,4 +1,4 @@
-//! The computations of `docs/explorer.html`: a page with interactive light, blockers, travel and
+//! The computations of `explorer.html`: a page with interactive light, blockers, travel and
 //! receiver, which shows each light field and spectrum along the path.
 //!
 //! A [`Setup`] holds the settings, and a [`PathPlace`] is a place on the path. [`etendue_theory`]

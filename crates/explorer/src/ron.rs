@@ -26,7 +26,7 @@ pub fn scene(setup: &Setup) -> String {
         .map(|p| plane(p, setup))
         .collect();
     format!(
-        "// Set up in the explorer, docs/explorer.html#{fragment}
+        "// Set up in the explorer, explorer.html#{fragment}
 (
     light: Rectangle(center: ({x}, 0, 0), size: ({side}, {side}), radiance: 1),
 {blockers}    surfaces: [

@@ -15,26 +15,6 @@ use etendue_world::Camera;
 use ndarray::{Array2, Axis as Along};
 use std::fs;
 
-/// The scene file and the files it needs.
-const FILES: [(&str, &[u8]); 4] = [
-    (
-        "creatures.xml",
-        include_bytes!("../../../scenes/worlds/creatures.xml"),
-    ),
-    (
-        "hall.exr",
-        include_bytes!("../../../scenes/worlds/hall.exr"),
-    ),
-    (
-        "hunter.ply",
-        include_bytes!("../../../scenes/worlds/hunter.ply"),
-    ),
-    (
-        "grazer.ply",
-        include_bytes!("../../../scenes/worlds/grazer.ply"),
-    ),
-];
-
 /// Number of pixels per shading sample, as in the paper.
 const SPARSE: usize = 20;
 
@@ -57,10 +37,10 @@ impl CreatureScene {
     /// Returns the creatures scene, at the size for this quality.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
-        for (name, bytes) in FILES {
+        for (name, bytes) in etendue_scenes::CREATURES {
             fs::write(folder.path().join(name), bytes).map_err(Failure::cannot_run)?;
         }
-        let file = folder.path().join(FILES[0].0);
+        let file = folder.path().join(etendue_scenes::CREATURES[0].0);
         let world = import(&file, &Options::default())
             .map_err(Failure::bad_input)?
             .world;

@@ -22,7 +22,6 @@ mod recipe;
 mod request;
 mod rows;
 mod scene_run;
-mod scenes;
 mod shading;
 mod spaces;
 mod style;

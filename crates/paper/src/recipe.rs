@@ -4,7 +4,6 @@ use crate::caustic::caustic;
 use crate::parameterisations::parameterisations;
 use crate::plates::{blockers, lights, occluders, steps};
 use crate::scene_run::resolved;
-use crate::scenes::{TWIST, scene};
 use crate::shading::{adaptive, environment};
 use crate::spaces::{coordinates, directions};
 use crate::subject::{FigureData, Subject, Text};
@@ -60,7 +59,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "1",
         about: "spectra along a path, from the light to the light that leaves a diffuse receiver",
-        scenes: &[("fig1", scene!("fig1"))],
+        scenes: &[("fig1", etendue_scenes::FIG1)],
         also: &[],
         has_table: false,
         full_radial: true,
@@ -69,8 +68,8 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "3",
         about: "the two parameterisations, in slopes and in angles, and travel",
-        scenes: &[("fig3", scene!("fig3"))],
-        also: &[("fig8", scene!("fig8"))],
+        scenes: &[("fig3", etendue_scenes::FIG3)],
+        also: &[("fig8", etendue_scenes::FIG8)],
         has_table: true,
         full_radial: false,
         draw: coordinates,
@@ -79,9 +78,9 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "4",
         about: "a point light, and a spot with a bulb and a falloff",
         scenes: &[
-            ("fig4_source", scene!("fig4_source")),
-            ("fig4_point", scene!("fig4_point")),
-            ("fig4_spot", scene!("fig4_spot")),
+            ("fig4_source", etendue_scenes::FIG4_SOURCE),
+            ("fig4_point", etendue_scenes::FIG4_POINT),
+            ("fig4_spot", etendue_scenes::FIG4_SPOT),
         ],
         also: &[],
         has_table: false,
@@ -100,7 +99,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "6",
         about: "all steps of diffuse shading: computed in flatland, and measured and predicted in 3D",
-        scenes: &[("fig1", scene!("fig1"))],
+        scenes: &[("fig1", etendue_scenes::FIG1)],
         also: &[],
         has_table: false,
         full_radial: true,
@@ -110,9 +109,9 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "7",
         about: "two occluders, each alone and both together: each blocks light with another phase, and together they block all light",
         scenes: &[
-            ("fig7_one", scene!("fig7_one")),
-            ("fig7_other", scene!("fig7_other")),
-            ("fig7_two", scene!("fig7_two")),
+            ("fig7_one", etendue_scenes::FIG7_ONE),
+            ("fig7_other", etendue_scenes::FIG7_OTHER),
+            ("fig7_two", etendue_scenes::FIG7_TWO),
         ],
         also: &[],
         has_table: false,
@@ -122,7 +121,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "8",
         about: "the receiver by slopes and by angles: their difference, and bandwidths",
-        scenes: &[("fig8", scene!("fig8"))],
+        scenes: &[("fig8", etendue_scenes::FIG8)],
         also: &[],
         has_table: false,
         full_radial: false,
@@ -132,9 +131,9 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "9",
         about: "light behind blockers of three sizes, and the share of high frequencies that leaves the receiver",
         scenes: &[
-            ("fig9a", scene!("fig9a")),
-            ("fig9b", scene!("fig9b")),
-            ("fig9c", scene!("fig9c")),
+            ("fig9a", etendue_scenes::FIG9A),
+            ("fig9b", etendue_scenes::FIG9B),
+            ("fig9c", etendue_scenes::FIG9C),
         ],
         also: &[],
         has_table: true,
@@ -144,7 +143,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "10",
         about: "the seven steps of shading a curved glossy receiver",
-        scenes: &[("fig10", scene!("fig10"))],
+        scenes: &[("fig10", etendue_scenes::FIG10)],
         also: &[],
         has_table: false,
         full_radial: false,
@@ -154,8 +153,8 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "11",
         about: "a caustic: a beam on a hollow mirror, at incidences of 0° and 40°",
         scenes: &[
-            ("fig11", scene!("fig11")),
-            ("solar_oven", scene!("table1/solar_oven")),
+            ("fig11", etendue_scenes::FIG11),
+            ("solar_oven", etendue_scenes::TABLE1_SOLAR_OVEN),
         ],
         also: &[],
         has_table: false,
@@ -174,7 +173,10 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "13",
         about: "directions in 3D by longitude and latitude, and the error of treating these as flat",
-        scenes: &[TWIST, ("twisted_glossy", scene!("table1/twisted_glossy"))],
+        scenes: &[
+            ("twist", etendue_scenes::TABLE1_TWIST),
+            ("twisted_glossy", etendue_scenes::TABLE1_TWISTED_GLOSSY),
+        ],
         also: &[],
         has_table: true,
         full_radial: false,
@@ -183,7 +185,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "14",
         about: "diffuse shading under an environment map: convolution and restriction together are a product",
-        scenes: &[("fig14", scene!("fig14"))],
+        scenes: &[("fig14", etendue_scenes::FIG14)],
         also: &[],
         has_table: true,
         full_radial: false,
@@ -192,10 +194,10 @@ pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "15",
         about: "the bandwidth of a glossy reflection step by step, and the criteria of Eqs. 20 and 21 beside measurements",
-        scenes: &[("fig15", scene!("fig15"))],
+        scenes: &[("fig15", etendue_scenes::FIG15)],
         also: &[
-            ("bandwidth", scene!("bandwidth")),
-            ("bandwidth_edge", scene!("bandwidth_edge")),
+            ("bandwidth", etendue_scenes::BANDWIDTH),
+            ("bandwidth_edge", etendue_scenes::BANDWIDTH_EDGE),
         ],
         has_table: true,
         full_radial: false,
@@ -223,14 +225,14 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "table1",
         about: "each operator of Table 1: light field and spectrum before and after it",
         scenes: &[
-            ("travel", scene!("table1/travel")),
-            ("fig1", scene!("fig1")),
-            ("incidence", scene!("table1/incidence")),
-            ("fig10", scene!("fig10")),
-            ("glossy", scene!("table1/glossy")),
-            ("textured_glossy", scene!("table1/textured_glossy")),
-            ("fresnel_grazing", scene!("table1/fresnel_grazing")),
-            ("tiles", scene!("table1/tiles")),
+            ("travel", etendue_scenes::TABLE1_TRAVEL),
+            ("fig1", etendue_scenes::FIG1),
+            ("incidence", etendue_scenes::TABLE1_INCIDENCE),
+            ("fig10", etendue_scenes::FIG10),
+            ("glossy", etendue_scenes::TABLE1_GLOSSY),
+            ("textured_glossy", etendue_scenes::TABLE1_TEXTURED_GLOSSY),
+            ("fresnel_grazing", etendue_scenes::TABLE1_FRESNEL_GRAZING),
+            ("tiles", etendue_scenes::TABLE1_TILES),
         ],
         also: &[],
         has_table: false,

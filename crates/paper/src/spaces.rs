@@ -3,7 +3,6 @@
 
 use crate::rows::{Seen, compared, feet, lettered, row};
 use crate::scene_run::resolved;
-use crate::scenes::TWIST;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;
@@ -88,7 +87,10 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         bars: None,
         side: Some(76.0),
     })?;
-    let panels = shrunk(&TWIST, &["curvature", "back", "outgoing"])?;
+    let panels = shrunk(
+        &("twist", etendue_scenes::TABLE1_TWIST),
+        &["curvature", "back", "outgoing"],
+    )?;
     let error = orders(
         taken,
         "The error of a flat (*θ*, *φ*)",

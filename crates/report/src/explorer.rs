@@ -9,7 +9,7 @@ use etendue_scene::{
 /// The file name of the page, among the results of a run.
 pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
-pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
+pub(crate) const PAGE: &[u8] = include_bytes!("explorer.html");
 
 /// Returns the part after `#` in the address at which the explorer shows a scene; `None` if the
 /// explorer does not support the scene.

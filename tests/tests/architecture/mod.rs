@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 /// Each crate, with the list of crates that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("field", &[]),
+    ("scenes", &[]),
     ("transform", &["field"]),
     ("bvh", &[]),
     ("rays", &[]),
@@ -91,6 +92,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "pipeline",
             "report",
             "scene",
+            "scenes",
             "spectrum",
             "store",
             "theory",
