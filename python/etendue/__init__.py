@@ -13,6 +13,8 @@ per metre (rho) and in cycles per unit of slope (nu).
 
 from __future__ import annotations
 
+from importlib.metadata import version
+
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.rays import Spectrum, spectrum
@@ -38,6 +40,7 @@ __all__ = [
     "SceneError",
     "Slices",
     "Spectrum",
+    "__version__",
     "check",
     "compare",
     "figure",
@@ -52,3 +55,5 @@ __all__ = [
     "spectrum",
     "sweep",
 ]
+
+__version__ = version("etendue")

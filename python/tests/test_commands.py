@@ -134,6 +134,11 @@ def test_probes(alone, tmp_path):
             etendue.probe(GLOSSY, pixel, out=tmp_path / "none")
 
 
+def test_the_version_is_that_of_the_command():
+    done = subprocess.run([sys.executable, "-m", "etendue", "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout == f"etendue {etendue.__version__}\n"
+
+
 def test_imports(alone, tmp_path):
     scene = etendue.import_scene(GLOSSY)
     assert scene.counts["area lights"] >= 1 and scene.has_light
