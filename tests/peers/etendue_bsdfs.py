@@ -125,7 +125,9 @@ class Coat(mi.BSDF):
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
         number = lambda name, default: props[name] if name in props else default
-        self.eta = number("int_ior", 1.49) / number("ext_ior", 1.000277)
+        named = {"air": 1.000277, "bk7": 1.5046, "polypropylene": 1.49, "vacuum": 1.0}
+        index = lambda name, default: named.get(number(name, default), number(name, default))
+        self.eta = index("int_ior", 1.49) / index("ext_ior", 1.000277)
         alpha, is_ggx = number("alpha", 0.1), number("distribution", "beckmann") == "ggx"
         self.facets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX if is_ggx else mi.MicrofacetType.Beckmann, alpha, True)
         self.diffuse = props.get_texture("diffuse_reflectance", 0.5)

@@ -10,7 +10,7 @@ Both trace paths through at most 64 x 64 pixels, with a box for a filter, and co
 standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
 within 3.3 standard errors of 0, so that many small differences are seen too. Exit code 1 says it does not.
 """
-import argparse, json, math, pathlib, shlex, subprocess, sys
+import argparse, json, math, pathlib, shlex, subprocess, sys, tempfile
 import mitsuba as mi, numpy as np
 from statistics import NormalDist
 
@@ -63,11 +63,19 @@ def theirs(args, scene, made):
     return means.mean(0).reshape(h, w), (means.std(0, ddof=1) / np.sqrt(BLOCKS)).reshape(h, w)
 
 
-def load(path, has_coats):
+def load(path, has_coats, root):
     if not has_coats:
         return mi.load_file(str(path))
-    mi.file_resolver().prepend(str(path.parent))
-    return mi.load_string(path.read_text().replace('"roughplastic"', '"etendue_coat"'))
+    with tempfile.TemporaryDirectory() as folder:
+        for file in root.rglob("*"):
+            to = pathlib.Path(folder) / file.relative_to(root)
+            if file.suffix == ".xml":
+                to.write_text(file.read_text().replace('"roughplastic"', '"etendue_coat"'))
+            elif file.is_dir():
+                to.mkdir()
+            else:
+                to.symlink_to(file.resolve())
+        return mi.load_file(str(pathlib.Path(folder) / path.relative_to(root)))
 
 
 def main():
@@ -83,7 +91,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/pictures"))
     args = parser.parse_args()
     folder = args.out / pathlib.Path(args.scene).stem
-    scene = load(pathlib.Path(args.against or args.scene), args.coats)
+    path = pathlib.Path(args.against or args.scene)
+    scene = load(path, args.coats, pathlib.Path(args.root or path.parent))
     a, sa, made = ours(args, size_of(scene), folder)
     b, sb = theirs(args, scene, made)
     sigma = np.hypot(sa, sb)
