@@ -191,6 +191,10 @@ class Result(Mapping[str, Plane]):
     def __len__(self) -> int:
         return len(self._planes)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        job, outcome = self.scene._job, self._outcome  # pyright: ignore[reportPrivateUsage]
+        return _compared, (self.scene, job.packed(outcome.measurement()), job.packed_prediction(outcome.prediction()))
+
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Writes what `etendue run` writes: pictures, arrays, `report.html` and `summary.json`. Returns the folder.
 
@@ -212,6 +216,12 @@ class Result(Mapping[str, Plane]):
             f"<p><b>{escape(self.scene.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
             f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
         )
+
+
+def _compared(scene: Scene, batches: list[tuple[int, bytes]], planes: list[bytes]) -> Result:
+    """A result that was pickled as its measurement and its prediction."""
+    job = scene._job  # pyright: ignore[reportPrivateUsage]
+    return Result(scene, job.compare(job.unpacked(batches), job.unpacked_prediction(planes), None))
 
 
 def _row(report: Mapping[str, Any]) -> str:

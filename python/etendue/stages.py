@@ -47,9 +47,16 @@ class Prediction:
         self.scene = scene
         self._raw = raw
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _unpacked_prediction, (self.scene, self.scene._job.packed_prediction(self._raw))  # pyright: ignore[reportPrivateUsage]
+
 
 def _unpacked(scene: Scene, batches: list[tuple[int, bytes]]) -> Measurement:
     return Measurement(scene, scene._job.unpacked(batches))  # pyright: ignore[reportPrivateUsage]
+
+
+def _unpacked_prediction(scene: Scene, planes: list[bytes]) -> Prediction:
+    return Prediction(scene, scene._job.unpacked_prediction(planes))  # pyright: ignore[reportPrivateUsage]
 
 
 def check(scene: Scene | Source, *, set: Mapping[str, Value] | None = None) -> Scene:

@@ -8,7 +8,7 @@ use crate::scene::SceneArgument;
 use etendue_field::Crossing;
 use etendue_pipeline::Options;
 use etendue_spectrum::{Batch, Watch};
-use etendue_store::{Failure, Method};
+use etendue_store::{Failure, Method, predictions};
 use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -21,11 +21,11 @@ pub(crate) struct Job(Arc<etendue_pipeline::Job>);
 
 /// The measurement of some or all batches of a scene.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Measurement(etendue_spectrum::Measurement);
+pub(crate) struct Measurement(pub(crate) etendue_spectrum::Measurement);
 
 /// The prediction that a measurement is compared with.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
+pub(crate) struct Prediction(pub(crate) Vec<etendue_compare::Prediction>);
 
 #[pymethods]
 impl Job {
@@ -211,6 +211,32 @@ impl Job {
             all.insert(batch).map_err(|error| bad(py, &error))?;
         }
         Ok(Measurement(all))
+    }
+
+    /// Returns the prediction of each plane as bytes.
+    fn packed_prediction<'py>(
+        &self,
+        py: Python<'py>,
+        prediction: &Prediction,
+    ) -> PyResult<Vec<Bound<'py, PyBytes>>> {
+        let planes = self.0.scene().planes.iter();
+        let packed = planes.zip(&prediction.0).map(|(plane, prediction)| {
+            let bytes = predictions::packed(plane, prediction);
+            Ok(PyBytes::new(py, &bytes.map_err(|f| raised(py, f))?))
+        });
+        packed.collect()
+    }
+
+    fn unpacked_prediction(
+        &self,
+        py: Python<'_>,
+        planes: Vec<Bound<'_, PyBytes>>,
+    ) -> PyResult<Prediction> {
+        let pairs = self.0.scene().planes.iter().zip(&planes);
+        let unpacked = pairs.map(|(plane, bytes)| {
+            predictions::unpacked(plane, bytes.as_bytes()).map_err(|f| raised(py, f))
+        });
+        unpacked.collect::<PyResult<_>>().map(Prediction)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Provides the result of a comparison to Python.
 
 use crate::arrays::Arrays;
+use crate::job::{Measurement, Prediction};
 use crate::raised::raised;
 use etendue_compare::PlaneComparison;
 use etendue_field::ProjectionGrid;
@@ -36,6 +37,14 @@ impl Outcome {
 
     fn table(&self) -> String {
         self.0.table()
+    }
+
+    fn measurement(&self) -> Measurement {
+        Measurement(self.0.case().measurement.clone())
+    }
+
+    fn prediction(&self) -> Prediction {
+        Prediction(self.0.predictions().to_vec())
     }
 
     fn slices<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {

@@ -61,6 +61,14 @@ def test_parts_merge_to_the_whole(result):
         etendue.merge([parts[0], etendue.measure(scene.file | {"run": {"photons": 2**18, "seed": 2}}, batches=[1])])
 
 
+def test_results_are_pickled(result):
+    again = pickle.loads(pickle.dumps(result))
+    assert again.summary == result.summary
+    assert again["receiver"].slices.predicted.tobytes() == result["receiver"].slices.predicted.tobytes()
+    prediction = pickle.loads(pickle.dumps(etendue.predict(result.scene)))
+    assert etendue.compare(etendue.measure(result.scene), prediction).summary == result.summary
+
+
 def test_a_damaged_part_is_refused():
     part = etendue.measure(FIG9B, photons=2**16, batches=[3])
     whole = pickle.dumps(part)
