@@ -75,11 +75,11 @@ pub(crate) enum Command {
     Covariance(CovarianceArgs),
     /// Measure how fast first-order maps approach the real geometry.
     Converge(ConvergeArgs),
-    /// Show what a scene file of another program holds.
+    /// Show what a scene file of another program contains.
     Import(ImportArgs),
     /// Render a scene of another program, and estimate the errors.
     Render(RenderArgs),
-    /// Measure the light field behind a pixel of such a rendered scene.
+    /// Measure the light field behind one pixel of a rendered scene.
     Probe(ProbeArgs),
     /// Write a scene for Mitsuba 3.
     Export(ExportArgs),

@@ -19,7 +19,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "this scene has no plane whose light has met only mirrors, interfaces and lenses; this command skips planes behind BRDFs",
+            "this command needs a plane whose light has met only mirrors, interfaces and lenses, and no BRDF; this scene has no such plane",
         ));
     }
     say(&format!(

@@ -68,7 +68,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a b",
         0,
-        &[&seeds[..], &[same, "the same, with other settings"]].concat(),
+        &[&seeds[..], &[same, "the same scene, but"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
     // If two results share photons, either their bytes are identical or the comparison is

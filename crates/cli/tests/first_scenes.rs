@@ -287,7 +287,7 @@ fn likely_mistakes_are_warned_of() {
         (
             "size: (6, 6)",
             "size: (6000, 6000)",
-            "surfaces[0].size[1] is 6000 m, among lengths of about 1 m: are those millimetres?",
+            "surfaces[0].size[1] is 6000 m, but other lengths are about 1 m: is this length in millimetres?",
         ),
         (
             "rho: (max: 16)",

@@ -103,8 +103,8 @@ fn a_run_goes_on_where_it_was_killed_or_damaged() {
     }
     let mut left = batches(path, "parts");
     if left.is_empty() {
-        // On a slow machine the killed runs have finished no batch, so another run measures some
-        // batches.
+        // On a slow machine, the runs may be killed before they finish a batch. Then another run
+        // measures some batches.
         call(path, &format!("{RUN} --out parts --resume --time 300ms"));
         left = batches(path, "parts");
     }

@@ -20,7 +20,7 @@ pub struct Applicability {
     /// list is empty where a theory applies.
     pub reasons: Vec<String>,
     /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces. The list
-    /// is empty where it does not.
+    /// is empty where no theory is replaced.
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,

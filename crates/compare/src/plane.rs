@@ -222,7 +222,7 @@ impl ComparedSides<'_> {
         } else if agrees && error > test.resolution {
             let error = percent(error);
             let what = match (self.prediction.mesh_error, self.prediction.class) {
-                (None, _) => "the quadrature of the prediction may be off",
+                (None, _) => "because of its quadrature, the prediction may be wrong",
                 (Some(_), Class::Reference) => {
                     "because of the coarse mesh, photons and backward rays may differ"
                 }

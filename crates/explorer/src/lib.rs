@@ -2,10 +2,10 @@
 //! receiver, which shows each light field and spectrum along the path.
 //!
 //! A [`Setup`] holds the settings, and a [`PathPlace`] is a place on the path. [`etendue_theory`]
-//! predicts the light field and spectrum at each place. Between parallel planes, light fields and
-//! spectra equal the results of `etendue predict` for the scene that [`scene`] writes. On a curved
-//! glossy receiver, light fields and spectra are first-order predictions without the cosine. Exact
-//! rays reflected by the sphere are traced on request.
+//! predicts the light field and spectrum at each place. If all planes are parallel, light fields
+//! and spectra are the results of `etendue predict` for the scene that [`scene`] writes. On a
+//! curved glossy receiver, light fields and spectra are first-order predictions without the cosine.
+//! Exact rays reflected by the sphere are traced on request.
 //!
 //! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 

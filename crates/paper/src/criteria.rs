@@ -107,8 +107,8 @@ fn panel(
     })
 }
 
-/// Returns the bandwidth by the criterion, corrected and as printed. If the scene has an edge, the
-/// function returns the bandwidth behind the edge.
+/// Returns the bandwidth by the criterion in two versions: corrected, and as printed in the paper.
+/// If the scene has an edge, the function returns the bandwidth behind the edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
         [criterion.blocker(), criterion.printed_blocker()]

@@ -269,7 +269,8 @@ fn a_sky_is_where_its_pixels_are() {
         down.cos(),
         -down.sin() * turn.cos(),
     );
-    // Interpolation turns the pixel into a tent with the integral of one pixel.
+    // Interpolation turns the pixel into a tent function. Its integral is the value of the pixel
+    // times the solid angle of one pixel.
     let solid = 2.0 * PI / 64.0 * PI / 31.0 * down.sin();
     for turned in [
         DMat3::from_rotation_x(1.0),

@@ -36,7 +36,7 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
                 report.verdict = Verdict::Undecided;
             }
             report.undecided = Some(format!(
-                "{reach} of {photons} photons that are aimed at this window reach it, and photons aimed at other windows may cover only a part of it. Measure this plane alone, or use --method backward"
+                "{reach} of {photons} photons that are aimed at this window reach it, and photons aimed at other windows may cover only a part of this window. Measure this plane alone, or use --method backward"
             ));
         }
     }

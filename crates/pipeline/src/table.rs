@@ -72,7 +72,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
             percent(Some(chain.defect)),
         )),
         Verdict::Undecided => Some(format!(
-            "{name}: the first-order chain is off by {} here and does not describe this light field",
+            "{name}: the first-order chain has an error of {} here and does not describe this light field",
             percent(Some(chain.error)),
         )),
     }

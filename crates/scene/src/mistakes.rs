@@ -48,14 +48,14 @@ fn long(scene: &Scene) -> Option<String> {
     let (path, longest) = lengths.last()?;
     if *median >= MANY_METRES {
         return Some(format!(
-            "lengths are about {} m, up to {} m ({path}): are those millimetres?",
+            "lengths are about {} m, up to {} m ({path}): are these lengths in millimetres?",
             brief(*median),
             brief(*longest)
         ));
     }
     (*longest >= MANY_METRES && *median < NEAR).then(|| {
         format!(
-            "{path} is {} m, among lengths of about {} m: are those millimetres?",
+            "{path} is {} m, but other lengths are about {} m: is this length in millimetres?",
             brief(*longest),
             brief(*median)
         )

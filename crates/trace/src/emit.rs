@@ -70,8 +70,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A virtual plane on the surface that ends the leg sees only some slopes, but a
-            // virtual plane beyond this surface sees light of any slope.
+            // If a virtual plane lies on the surface at the end of the leg, it sees only some
+            // slopes. If it lies beyond this surface, it sees light of any slope.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {

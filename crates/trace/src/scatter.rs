@@ -149,8 +149,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A virtual plane on the surface that ends the leg sees only some slopes, but a
-                // virtual plane beyond this surface sees light of any slope.
+                // If a virtual plane lies on the surface at the end of the leg, it sees only some
+                // slopes. If it lies beyond this surface, it sees light of any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {

@@ -24,9 +24,10 @@ use std::ops::Range;
 /// continues from leg to leg. If a photon meets an obstacle other than the surface at the end of
 /// its leg, the photon ends.
 ///
-/// If light arrives at the front of a surface with a BRDF, the ledger counts it as stopped,
-/// because the reflected share has no closed form. The ledger does not count light that a surface
-/// scatters onwards, because scattered light is aimed at the windows of virtual planes.
+/// If light arrives at the front of a surface with a BRDF, the ledger counts it as stopped, because
+/// the reflected share has no closed form. The ledger leaves out light that a surface scatters
+/// onwards: this light is aimed at the windows of virtual planes, so its sum is not the total of
+/// the scattered light.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,

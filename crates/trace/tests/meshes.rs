@@ -220,7 +220,7 @@ fn assert_sound(scene: &Scene, what: &str) {
         source.emit(0, &mut record, &|_| ());
     }
     // Some random meshes are kilometres wide, for which the scene gives a warning about units.
-    let of_units = |warning: &String| warning.contains("are those millimetres?");
+    let of_units = |warning: &String| warning.contains("in millimetres?");
     let (units, others): (Vec<_>, Vec<_>) = scene.warnings().into_iter().partition(of_units);
     assert!(units.len() <= 1 && others.len() <= 1, "{what}");
 }

@@ -12,11 +12,11 @@ fn qualities() -> impl TypedValueParser<Value = Quality> {
     one_of([
         named(
             Quality::Draft,
-            "An eighth of the scenes' photons, and twice the scenes' number of frequencies along each axis",
+            "An eighth of the scenes' photons, and twice as many frequencies along each axis as the scenes",
         ),
         named(
             Quality::Print,
-            "The scenes' photons, and four times the scenes' number of frequencies along each axis",
+            "The scenes' photons, and four times as many frequencies along each axis as the scenes",
         ),
     ])
 }
@@ -47,8 +47,8 @@ pub(crate) struct ReportArgs {
                                                           along the path of your scene
   etendue figure a.ron b.ron --plane receiver --out out   two scenes side by side at one plane
 
-Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels computed from theory \
-alone; all others are measured and predicted. Each figure gets a folder with
+Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels that are computed \
+from theory only; all other figures are measured and predicted. The folder of each figure contains
   figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a
                            journal)
   figure.npz               light fields and spectra of all planes
@@ -56,12 +56,12 @@ alone; all others are measured and predicted. Each figure gets a folder with
   figure.csv               the numbers of curves and bars
   figure.json              the verdict of each plane, and the command that
                            repeats the figure
-  NAME.ron                 the scenes of a figure of the paper; figure.json
-                           contains your own scenes as they were run
-The exit code is that of run for the worst plane.")]
+  NAME.ron                 the scenes of a figure of the paper; your own
+                           scenes are in figure.json, as they were run
+The worst plane determines the exit code, as in run.")]
 pub(crate) struct FigureArgs {
-    /// Figures of the paper (1, 3 to 17, table1, or all), or scene files. All scene files make one
-    /// figure
+    /// Figures of the paper (1, 3 to 17, table1, or all), or scene files. All scene files together
+    /// make one figure
     #[arg(value_name = "NAME|SCENE.ron", required = true)]
     pub(crate) names: Vec<String>,
 
@@ -69,9 +69,8 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Plane at which scene files are shown; a single scene file is then shown at this plane only
-    /// [default: all planes of a single scene file, or the last plane of each of several scene
-    /// files]
+    /// Show scene files only at this plane [default: all planes if there is one scene file,
+    /// otherwise the last plane of each scene file]
     #[arg(long, value_name = "NAME")]
     pub(crate) plane: Option<String>,
 
@@ -80,10 +79,9 @@ pub(crate) struct FigureArgs {
     pub(crate) out: PathBuf,
 
     /// Style file, in RON, such as (titles: false, scene: false, verdicts: false, width: 3.33,
-    /// floor: -40). Each field is optional. The field titles also controls the notes, and the field
-    /// scene controls the drawing above the planes. The field width is the page width in inches,
-    /// 3.3 to 7, and the field floor is the lowest level of spectra in dB. The field palette is
-    /// Inferno, Magma, Viridis or Cividis
+    /// floor: -40). Each field is optional. `titles` also controls the notes. `scene` controls the
+    /// drawing above the planes. `width` is the width of the page in inches, from 3.3 to 7. `floor`
+    /// is the lowest level of spectra, in dB. `palette` is Inferno, Magma, Viridis or Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

@@ -20,8 +20,8 @@ use std::time::Duration;
                                                                    (docs/rays.md)
   etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h   repeat until done
 
-Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or \
-2^23.
+Results are in out/NAME unless --out names another folder. Photon counts may be written as 10_000_000, 1e7 \
+or 2^23.
 Noise is lowest if the number of photons and the number of batches (such as 64) are powers of two.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
@@ -69,7 +69,7 @@ pub(crate) struct RunArgs {
   etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a    on one machine,
   etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b   on another
 
-Batches with the same scene, seed and photon count can be combined, on whichever machine they were measured.")]
+Batches with the same scene, seed and photon count can be combined, even if different machines measured them.")]
 pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -80,7 +80,8 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Batches to measure, from A up to but not including B [default: all]; --photons is the number of photons in all batches of the scene together
+    /// Measure only the batches from A to B, without B [default: all]; --photons is still the
+    /// number of photons in all batches of the scene together
     #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
     pub(crate) batches: Option<Range<u32>>,
 
@@ -94,8 +95,8 @@ pub(crate) struct MeasureArgs {
                                                              then predict and compare
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
 
-Parts may run in any order on any machine; the result is byte for byte that of a single run. The folders \
-of the parts are in the results folder, which is out/NAME unless --out names another.")]
+Parts may run in any order on any machine; the result has the same bytes as the result of a single run. \
+The results folder, which is out/NAME unless --out names another, contains the folders of the parts.")]
 pub(crate) struct SplitArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -120,7 +121,7 @@ pub(crate) struct SplitArgs {
   etendue predict scenes/fig9b.ron --out out/predicted
   etendue predict scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/narrow
 
-A prediction can be compared with measurements of the same scene for any seed and any number of photons.")]
+A prediction can be compared with any measurement of the same scene, whatever its seed and number of photons.")]
 pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -170,9 +171,9 @@ pub(crate) struct CompareArgs {
   etendue converge scenes/table1/concave_oblique.ron --set as_printed=true
       the error of the paper's printed formulas does not fall
 
-Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps is then \
-proportional to e, or to e² at normal incidence. No order is printed where the error is as small as that \
-of the quadrature.")]
+Light and windows are multiplied by e, and frequencies are divided by e. The error of first-order maps is \
+then proportional to e, or to e² at normal incidence. No order is printed where the error is as small as \
+the error of the quadrature.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -187,15 +188,16 @@ pub(crate) struct ConvergeArgs {
   etendue diff out/seed1 out/seed2        was a disagreement due to chance?
   etendue diff out/photons out/backward   two methods
 
-Tests two kinds of numbers at level α, over all planes together: the measured slices (χ²: squared \
-difference over the sum of both variances) and each parameter of the chain (difference over its standard \
-error). Both results must have independent noise, from different seeds or methods. Results with the same \
-seed share photons: they are either identical or undecided. Predictions of one scene must be equal within \
-their stated errors. A plane whose window or frequencies differ between the results is not compared.
+Tests two kinds of numbers at level α, over all planes together. The test of the measured slices is χ²: \
+the squared difference divided by the sum of both variances. The test of each parameter of the chain is \
+the difference divided by its standard error. The noise of both results must be independent, so their \
+seeds or methods must be different. Results with the same seed share photons: they are either identical or \
+undecided. If both results have the same scene, their predictions must be equal within the stated errors. \
+A plane whose window or frequencies differ between the results is not compared.
 
-The test assumes that each result is a mean of many independent batches, so that its noise is normal, and \
-that noise is correlated between frequencies in the same way in both results. If this does not hold, p is \
-too large rather than too small.
+The test makes two assumptions. Each result is a mean of many independent batches, so that its noise is \
+normal. Noise is correlated between frequencies in the same way in both results. If an assumption does not \
+hold, p is too large, not too small.
 
 Exit codes: 0 equal except for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {
@@ -282,7 +284,7 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         ),
         named(
             Save::Field,
-            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz). The spectrum is also predicted and compared. The photons are traced once more for each plane, or twice if memory is short",
+            "The light field on a 4D grid, in field.npy and field.json, and its full radial spectrum, in full_radial.npz. The spectrum is also predicted and compared. The photons are traced once more for each plane, or twice if memory is short",
         ),
     ])
 }

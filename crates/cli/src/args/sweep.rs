@@ -16,19 +16,20 @@ use std::path::PathBuf;
 
 Writes to out/NAME-sweep, or to the folder of --out:
   sweep.csv                            a row for each number at each plane and
-                                       point: the frequencies below which 95 %
-                                       of the power lies, the shear slope and
-                                       each parameter; measured, with standard
-                                       error, and predicted
+                                       each point. The numbers are the
+                                       frequencies below which 95 % of the power
+                                       lies, the shear slope and each parameter.
+                                       A row has the measured number, its
+                                       standard error and the predicted number
   bandwidth_rho, bandwidth_nu, slope   curves as functions of the first field:
                                        PNG, SVG and CSV (none if they would have
                                        more than 24 panels)
-  points/                              a run for each point. The same command
-                                       continues an interrupted sweep, and a
-                                       command with other values of the same
-                                       fields runs only the new points
-Values must be numbers. The exit code is that of run for the worst point; one correct point in a hundred \
-fails by chance.")]
+  points/                              the run of each point. The same command
+                                       continues an interrupted sweep. A command
+                                       with other values of the same fields runs
+                                       only the new points
+Values must be numbers. The worst point determines the exit code, as in run. One correct point in a \
+hundred fails by chance.")]
 pub(crate) struct SweepArgs {
     /// Scene file, in RON
     #[arg(value_name = "SCENE.ron")]
@@ -39,9 +40,10 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Use the seed of the scene, or of --seed, at all points. Differences between points then have
-    /// less noise, but the errors of the points are not independent. Without this option, each
-    /// point has its own seed, which follows from that seed and the point's values
+    /// Use the same seed at all points: the scene's seed, or the value of --seed. Differences
+    /// between points then have less noise, but the errors of the points are not independent.
+    /// Without this option, each point has its own seed, computed from the scene's seed (or --seed)
+    /// and the point's values
     #[arg(long)]
     pub(crate) common_seed: bool,
 
@@ -84,8 +86,9 @@ impl SweepArgs {
       values are tangents of the angle of incidence
   etendue bandwidth scenes/bandwidth_edge.ron --measure --csv edge.csv
 
-Prints a row for each value of the sweep, and for each plane that is orthogonal to the central ray after a \
-smooth surface with a BRDF. Several sweeps advance together.
+Prints a row for each value of the sweep and for each suitable plane. A plane is suitable if it is \
+orthogonal to the central ray and sees light that leaves a smooth surface with a BRDF. Several sweeps \
+advance together.
   k           curvature of the surface in the plane of incidence, in 1/m,
               positive if convex
   θ0, θ1      angles of incidence and of view, in degrees, with the same sign
@@ -98,10 +101,10 @@ smooth surface with a BRDF. Several sweeps advance together.
               slope: by Eq. 20 for distant light, and by Eq. 21 for an edge or a
               narrow light at distance d'
   exact       with --measure: bandwidth of the predicted spectrum, which
-              includes window and light; then the measured bandwidth with its
-              standard error
-The criteria ignore windows: the windows of the scene must contain the lobe, and its frequencies must \
-contain the spectrum.")]
+              includes window and light. The next column is the measured
+              bandwidth with its standard error
+The criteria ignore windows. Therefore the windows of the scene must contain the lobe, and the frequencies \
+of the scene must contain the spectrum.")]
 pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -132,17 +135,17 @@ pub(crate) struct BandwidthArgs {
   etendue covariance scenes/table1/glossy.ron
   etendue covariance scenes/fig9b.ron --plane receiver --photons 2^22 --out out/covariance
 
-Prints the covariance of the power spectrum P = |L|² over Ω = (ρx, ρy, νu, νv), which is ∫ P Ω Ωᵀ/∫ P, in \
-cycles² per product of the units of two coordinates:
-  traced      by covariance tracing (Belcour et al. 2013) along the chain of the
-              plane, with its window, over all frequencies
-  in band     of the same Gaussian restricted to the plane's frequencies, as are
-              exact and measured
-  exact       of the predicted spectrum: the complete spectrum between parallel
-              planes, only azimuth 0 for other planes
-  measured    by the photons, with standard errors; products of different groups
-              of batches remove the noise
-The moments of light fields with edges diverge; they are given within the band only, and a remark says so. \
+Prints the covariance ∫ P Ω Ωᵀ/∫ P of the power spectrum P = |L|² over Ω = (ρx, ρy, νu, νv). The units are \
+cycles² divided by the units of two coordinates. The columns are:
+  traced      computed by covariance tracing (Belcour et al. 2013) along the
+              chain of the plane, with its window, over all frequencies
+  in band     computed from the Gaussian of traced, within the plane's
+              frequencies; exact and measured also cover only these
+  exact       computed from the predicted spectrum: from the complete spectrum
+              between parallel planes, and from azimuth 0 for other planes
+  measured    measured by the photons, with standard errors. Products of
+              different groups of batches remove the noise
+The moments of light fields with edges diverge: they are given only within the band, and a remark says so. \
 Photons are traced once, and once or twice more for each plane to fill a 4D grid.
 Writes to out/NAME-covariance, or to the folder of --out: covariance.json, and for each plane \
 covariance.png, .svg and .csv, which show the spectrum at azimuth 0 with ellipses.")]

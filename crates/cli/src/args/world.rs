@@ -161,9 +161,9 @@ pub(crate) struct RenderMethod(Option<SampleMethod>);
   etendue import scenes/cbox/cbox.xml --root . --set res=64
   etendue import helmet.glb
 
-Prints the contents of the scene, and a note about everything that is left out or approximated, with its \
-line in the file. A scene that cannot be rendered is refused: all causes are printed, and the exit code is \
-2.")]
+Prints the contents of the scene, and a note about each thing that is left out or approximated. The note \
+gives the line in the file. A scene that cannot be rendered is refused: all causes are printed, and the \
+exit code is 2.")]
 pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -184,10 +184,10 @@ Writes to out/NAME, or to the folder of --out:
                  column]
   picture.png    for viewing; the brightest hundredth of the pixels is white
 OBJ, PLY and many glTF files have no camera or light: add them with --look-from, --look-at and --sky.
-With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain the \
-maps related to the samples (bandwidth, curvature, blockers, shadow, density, samples, variance), \
-picture.npz contains the positions of the samples (points), bandwidth.png and samples.png show two of the \
-maps, and timing.json contains the time of each stage in seconds. Methods:
+With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain maps \
+(bandwidth, curvature, blockers, shadow, density, samples, variance). picture.npz also contains the \
+positions of the samples (points). bandwidth.png and samples.png show two of the maps, and timing.json \
+contains the time of each stage in seconds. Methods:
   uniform     blue noise of even density
   predicted   density by the paper's criteria, Eqs. 20 and 21, corrected
   printed     density by the same criteria as printed in the paper
@@ -212,7 +212,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
-    /// Shading samples in the whole picture, at most 4 per pixel, for all methods except reference
+    /// Shading samples in the whole picture, at most 4 per pixel; not used by the method reference
     /// [default: one for each 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
@@ -221,8 +221,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point that find the distance of blockers. The same number of rays finds the distance
-    /// of lights. The paper uses 100
+    /// Rays per point that measure how far away the blockers are. The same number of rays measures
+    /// how far away the lights are. The paper uses 100
     #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,
 
@@ -250,14 +250,16 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --map 64x40
 
 Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
-direction. Measures the light field at the camera, and the light fields that leave and reach each surface, \
-in two ways: by rays traced back and by photons from the lights. The verdict compares the two. Where photons \
-are too few or miss light, the verdict compares the rays with rays that never sample a light.
-Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures \
-of `run`.
-Exit codes are those of run.
-With --map, writes map.exr and map.npz with the arrays measured, error, azimuth, across, criterion, window, \
-pixels (width of the window) and samples (per pixel along a direction), and map.png, .svg and .csv.")]
+direction. Measures the light field at the camera, and the light fields that reach and leave each surface. \
+Each light field is measured in two ways: by rays traced back, and by photons from the lights. The verdict \
+compares the two results. Where photons are too few or do not find all light, the verdict compares the rays \
+with other rays, which never sample a light.
+Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and the same arrays and pictures for each \
+plane as run.
+The exit codes are the same as for run.
+With --map, writes map.exr, map.npz, map.csv and the pictures map.png and map.svg. The arrays are measured, \
+error, azimuth, across, criterion, window, pixels (width of the window) and samples (per pixel along a \
+direction).")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,

@@ -32,7 +32,7 @@ pub(crate) fn unforeseen_by_rays(
     found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
         let percent = 100.0 * apart;
         format!(
-            "a mesh whose light arrives {percent:.3} % of the half-width of the window away from the light of its osculating patch"
+            "a mesh: its light and the light of its osculating patch arrive {percent:.3} % of the window's half-width apart"
         )
     }));
     (found, later)

@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns the emission that a picture states for a surface.
+    /// Returns the emission of a surface whose radiance is given by a picture.
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {

@@ -26,7 +26,7 @@ pub(crate) fn read_in(inside: &str, folder: &Path, color: Color) -> Result<Impor
     read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
 }
 
-/// Returns the world of a scene without files.
+/// Returns the world of a scene that names no files.
 pub(crate) fn world(inside: &str) -> World {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);

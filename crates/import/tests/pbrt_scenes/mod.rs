@@ -30,7 +30,7 @@ fn read(text: &str) -> Result<Imported, Vec<String>> {
     read_in(text, folder.path(), Color::Luminance)
 }
 
-/// Returns the world of a scene without files.
+/// Returns the world of a scene that names no files.
 pub(crate) fn world(inside: &str) -> World {
     read(&scene("", inside))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))

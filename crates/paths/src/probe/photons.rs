@@ -40,8 +40,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Returns the reason why photons miss light of a plane. The reason follows from the objects
-    /// that are seen through the window of the plane.
+    /// Returns the reason why photons do not find all light that reaches a plane. The reason
+    /// follows from the objects that are seen through the window of the plane.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
         self.windows.misses(plane)

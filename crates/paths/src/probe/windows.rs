@@ -144,7 +144,7 @@ impl<'a> WindowConnector<'a> {
         found
     }
 
-    /// Returns the reason why connections miss some light of a plane.
+    /// Returns the reason why connections do not find all light that reaches a plane.
     pub(super) fn misses(&self, plane: usize) -> Option<&'static str> {
         self.misses[plane]
     }

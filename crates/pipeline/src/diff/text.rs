@@ -56,7 +56,7 @@ fn scene(diff: &Diff) -> Vec<String> {
         return vec!["scene: the same".to_owned()];
     }
     let head = if changes.iter().all(is_of_run) {
-        "scene: the same, with other settings of the run"
+        "scene: the same scene, but with other settings of the run"
     } else {
         "scene: another"
     };

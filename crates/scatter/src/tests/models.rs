@@ -152,8 +152,8 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
         is_nonlinear,
     };
     let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
-    // The weight is the light of the coat or of the base divided by its share of the samples,
-    // which approximates its share of the light.
+    // A sample of the coat or of the base is weighted by the light of this layer, divided by the
+    // layer's share of the samples. This share approximates the layer's share of the light.
     model(name, 4.0, plastic)
 }
 

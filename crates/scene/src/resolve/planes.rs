@@ -82,7 +82,7 @@ impl Resolver<'_> {
         }
         let of = format!("{of}.orientation");
         if plane.orientation == Orientation::Mirrored && place.side == Side::After {
-            let allowed = "Mirrored only at a place Before(…) a surface: light after a surface is not mirrored";
+            let allowed = "Mirrored, if the place is Before(…) a surface: light that has left a surface is not mirrored";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let hit = match place.side {

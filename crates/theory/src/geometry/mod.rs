@@ -18,7 +18,7 @@
 //! | outgoing angle: off the surface | [`outgoing`](AffineMap::<2>::outgoing) | Eq. 10 |
 //! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
-//! In the frame of a light ray the last coordinates are slopes or angles to the central ray. These
+//! In the frame of a light ray, the last coordinates are slopes or angles to the central ray. These
 //! maps hold to first order, and to this order slopes and angles are equal ([`plane_sphere`] has
 //! the exact conversion). Lengths are in metres, angles in radians.
 //!

@@ -202,9 +202,9 @@ impl Polygon {
         cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
     }
 
-    /// Returns the transform by the divergence theorem with the field k exp(−2πi k·p): i/(2π|k|²)
-    /// Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward normals n =
-    /// (e_y, −e_x).
+    /// Returns the transform by the divergence theorem with the field k exp(−2πi k·p): i/(2π|k|²) Σ
+    /// (n·k) exp(−2πi k·c) sinc(k·e). The sum is over the edges e, with midpoints c and outward
+    /// normals n = (e_y, −e_x).
     fn edge_form(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for (a, b) in self.sides() {

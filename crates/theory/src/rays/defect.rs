@@ -12,7 +12,7 @@ use etendue_field::Window;
 /// these derivatives, the chain's error falls linearly or quadratically with the size of the
 /// neighbourhood, and the limit is zero except for 10⁻⁹ from finite differences and rounding
 /// errors. If any map has a wrong sign, cosine or factor, the limit is not zero. It is then the
-/// error of rays in half-widths of the window, or the relative error of radiance.
+/// error of rays, in units of the window's half-width, or the relative error of radiance.
 ///
 /// Returns `None` if the central ray does not arrive.
 #[must_use]

@@ -27,9 +27,9 @@ const FREQUENCY: f64 = 0.5;
 /// photons has an error of 2·10⁻⁷, so a smaller error of the rule cannot be detected with any
 /// number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// A bound on the error of the finer of two rules, divided by the difference between the two rules.
-/// Beyond the frequencies of a Hann window, the error falls as n⁻³. The error of the coarser rule
-/// is then (5/4)³ times, or about twice, the error of the finer rule.
+/// The bound on the error of the finer of two rules is this number times the difference between
+/// them. Beyond the frequencies of a Hann window, the error falls as n⁻³. The error of the coarser
+/// rule is then (5/4)³ times, or about twice, the error of the finer rule.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {

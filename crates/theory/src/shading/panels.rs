@@ -3,8 +3,8 @@
 use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
-/// Number of nodes of a panel. The error is below 10⁻¹⁵ if the panel contains at most two cycles,
-/// and poles are at least a panel's length away.
+/// Number of nodes of a panel. The error is below 10⁻¹⁵ if two conditions hold: the panel contains
+/// at most two cycles, and all poles are at least a panel's length away.
 const NODES: usize = 24;
 const CYCLES: f64 = 2.0;
 

@@ -393,8 +393,8 @@ impl Backward {
     /// Returns the radiance reflected at the end of a leg, estimated from one direction. On later
     /// legs, the direction is drawn by the lobe of the BRDF. On the first leg, half of the
     /// directions are drawn by the lobe, and half of them towards a point of the light. The
-    /// estimate divides by the density of this mixture, which is the balance heuristic of Veach and
-    /// Guibas (1995) for one sample.
+    /// estimate is divided by the density of this mixture. This weighting is the balance heuristic
+    /// of Veach and Guibas (1995) for one sample.
     fn reflected(
         &self,
         leg: usize,

@@ -173,7 +173,7 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "Measured: the largest bandwidth over directions, of the picture minus its mean, in {}; grey pixels are below the bandwidth of the window. Criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone if it is larger",
+            "Measured in {}: the bandwidth of the picture minus its mean, along the direction with the largest bandwidth. In grey pixels, this bandwidth is below the bandwidth of the window. Criterion: the bandwidth by Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window if that is larger",
             match case.request.window {
                 Some(pixels) => format!("windows {pixels} pixels wide"),
                 None => "the narrowest windows that show the bandwidth".to_owned(),
@@ -216,7 +216,7 @@ fn words(map: &Array2<MapPoint>) -> String {
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "bandwidths were measured at {seen} of {} pixels; the other pixels are dark, too noisy or below the bandwidth of the window; {all} of the measured pixels show surfaces with a lobe",
+        "bandwidths were measured at {seen} of {} pixels. The other pixels are dark or too noisy, or their bandwidth is below the bandwidth of the window. Of the measured pixels, {all} show surfaces with a lobe",
         map.len()
     )];
     if all > 0 {

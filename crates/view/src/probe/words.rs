@@ -251,7 +251,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
     lines.push(advice.unwrap_or_else(|| {
         if picture.variation.is_some() {
-            format!("the picture is smooth in this window; a wider one ({window}) shows its bandwidth")
+            format!("the picture is smooth in this window; a wider window ({window}) shows its bandwidth")
         } else if picture.varies {
             format!("the picture varies, but noise hides its bandwidth: more {rays} show the bandwidth")
         } else {

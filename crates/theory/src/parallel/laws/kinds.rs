@@ -96,7 +96,7 @@ fn masks_agree_with_brute_force() {
 #[test]
 fn differential_irradiance_agrees_with_brute_force() {
     assert_agrees("cosine", &with_cosine(bench(light(), None)));
-    assert_agrees("a cosine, lit by a point", &with_cosine(bench(POINT, None)));
+    assert_agrees("cosine, point light", &with_cosine(bench(POINT, None)));
 }
 
 /// Tests that a spot with the lobe cos⁴θ has the same spectrum as a chain with the factor G.
@@ -135,7 +135,7 @@ fn planted_faults_are_seen() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
     for (name, chain, power) in [
         (
-            "a point without the factor of the slope",
+            "a point light without the factor √(1 + u² + v²)",
             bench(POINT, None),
             0.0,
         ),

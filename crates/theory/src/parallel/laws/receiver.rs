@@ -57,8 +57,8 @@ fn exitant_radiance_is_what_arrives() {
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            // The tolerance is the error of the receiver's rule, which is of second order and has
-            // about 400 nodes.
+            // The tolerance is the error of the receiver's rule; this rule is of second order and
+            // has about 400 nodes.
             assert!(error < 1e-5, "{error:e}");
         }
     }
