@@ -325,8 +325,9 @@ impl Residuals {
             .step_by(LANES)
             .map(|first| {
                 let sums = signed_sums(&products, &signs_of_rounds(seed, first, r));
-                let drawn = &sums[..LANES.min((ROUNDS - first) as usize)];
-                drawn.iter().filter(|sum| **sum >= observed).count()
+                // The last block has fewer rounds than lanes.
+                let drawn = sums.iter().zip(first..ROUNDS);
+                drawn.filter(|(sum, _)| **sum >= observed).count()
             })
             .sum();
         Some((reached + 1) as f64 / (ROUNDS + 1) as f64)
