@@ -175,13 +175,14 @@ fn transmitted(facets: &Microfacets, index: f64, cosine: f64) -> f64 {
 
 /// Returns the reflectance of a rough interface for uniform light from all directions.
 fn rough_reflectance(facets: &Microfacets, index: f64) -> f64 {
+    /// Number of pairs of a direction and a normal.
     const COUNT: usize = 1 << 17;
     /// The steps of a sequence that fills the unit square evenly: 1/g and 1/g², where g³ = g + 1.
-    const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+    const SEQUENCE: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
     let one = |i: usize| {
         let cosine = ((i as f64 + 0.5) / COUNT as f64).sqrt();
         let wo = at_cosine(cosine);
-        let numbers = STEPS.map(|step| (i as f64 * step + 0.5).fract());
+        let numbers = SEQUENCE.map(|step| (i as f64 * step + 0.5).fract());
         let (normal, weight) = visible_normal(facets, wo, numbers);
         let wi = mirrored(wo, normal);
         let masking = if wi.z > 0.0 { facets.g1(wi) } else { 0.0 };
