@@ -3,7 +3,7 @@
 use super::{
     MORE, backward, by_exact_rays, by_reference, by_scattering, by_theory, does_not_fail, edited,
     only_the_reference_is_right, photons, replaced, report, row, scene, scene_does_not_fail,
-    verdict,
+    the_tracers_agree, verdict,
 };
 use etendue_compare::{Applicability, Class, Theory, Verdict, scattered};
 use etendue_field::{EnvironmentMap, LatLong, Light};
@@ -118,9 +118,7 @@ fn a_dim_part_of_the_sky_is_found() {
 /// Light of an environment starts in a plane, and both tracers find no light behind this plane.
 #[test]
 fn a_surface_behind_the_plane_of_the_sky_is_decided() {
-    let scene = scene("behind_the_sky_plane");
-    let reference = by_reference(&scene, 0, &backward(&scene));
-    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+    the_tracers_agree(&scene("behind_the_sky_plane"));
 }
 
 /// A discontinuous window cuts the light of a projector. For such light, two quadratures with few

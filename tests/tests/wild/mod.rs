@@ -142,6 +142,13 @@ fn scene_does_not_fail(scene: &Scene, planes: &[(&str, Class)]) {
     }
 }
 
+/// Checks that photons agree with backward rays at the first plane.
+fn the_tracers_agree(scene: &Scene) {
+    let reference = by_reference(scene, 0, &backward(scene));
+    let judged = verdict(scene, &photons(scene), &reference);
+    assert_eq!(judged, Verdict::Pass, "{}", scene.name);
+}
+
 /// Checks that both tracers agree with each other. They must disagree with a prediction by
 /// `theory`, which does not apply.
 fn only_the_reference_is_right(

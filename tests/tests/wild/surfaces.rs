@@ -1,9 +1,9 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    FOLDER, MORE, backward, by_exact_rays, by_reference, by_scattering, by_specular, by_theory,
+    FOLDER, MORE, by_exact_rays, by_reference, by_scattering, by_specular, by_theory,
     does_not_fail, edited, measured, only_the_reference_is_right, photons, report, scene,
-    scene_does_not_fail, verdict,
+    scene_does_not_fail, the_tracers_agree, verdict,
 };
 use etendue_compare::{Applicability, Class, Prediction, Verdict, scattered};
 use etendue_scene::{SceneFile, resolve};
@@ -109,18 +109,14 @@ fn meshes_unlike_their_patches_are_decided() {
 /// A surface that is convex towards a point light does not shadow its own tangent plane.
 #[test]
 fn a_plane_behind_its_surface_is_decided() {
-    let scene = scene("before_a_trough");
-    let reference = by_reference(&scene, 0, &backward(&scene));
-    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+    the_tracers_agree(&scene("before_a_trough"));
 }
 
 /// A surface may curve by more than a right angle. Photons are then recorded where they first meet
 /// the surface, and have the same coordinates there as backward rays.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
-    let scene = scene("ridge_under_a_sky");
-    let reference = by_reference(&scene, 0, &backward(&scene));
-    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+    the_tracers_agree(&scene("ridge_under_a_sky"));
 }
 
 /// If the line of a ray meets a hollow surface again, its light is not counted, even if a blocker
@@ -129,10 +125,7 @@ fn a_ridge_under_a_sky_is_decided() {
 #[test]
 fn light_does_not_meet_its_surface_again() {
     for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
-        let scene = edited(name, &[MORE]);
-        let reference = by_reference(&scene, 0, &backward(&scene));
-        let judged = verdict(&scene, &photons(&scene), &reference);
-        assert_eq!(judged, Verdict::Pass, "{name}");
+        the_tracers_agree(&edited(name, &[MORE]));
     }
 }
 

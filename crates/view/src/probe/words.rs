@@ -1,6 +1,6 @@
 //! The result of a probe, in words and in JSON.
 
-use super::found::{Found, SecondEstimate, verdict};
+use super::found::{Found, SecondEstimate};
 use super::picture::PictureBandwidth;
 use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
@@ -60,7 +60,7 @@ pub(super) fn of_plane(found: &Found) -> Value {
     let azimuth = |of: &Option<Widest<Uncertain>>| of.map(|of| of.azimuth);
     let mut tree = tree_of!({
         "report": found.comparison.report,
-        "verdict": verdict(found),
+        "verdict": found.comparison.report.verdict,
         "judge": found.judge.word(),
         "photons_miss": found.misses,
         "variation_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
@@ -98,7 +98,9 @@ pub(super) fn lines(
     lines.push(String::new());
     lines.extend(planes(found));
     lines.push(String::new());
-    let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
+    let open = found
+        .iter()
+        .filter(|found| found.comparison.report.verdict != Verdict::Pass);
     lines.extend(open.filter_map(|found| {
         let report = &found.comparison.report;
         // The comparison states only that there are too few photons, but there may also be too few
