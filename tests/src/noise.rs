@@ -3,7 +3,6 @@
 use crate::SEED;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use crate::rows::Line;
 use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
 use etendue_compare::{PlaneReport, Test, Verdict, compare};
 use etendue_scene::{Sampling, Scene};
@@ -13,14 +12,7 @@ use ndarray::Array3;
 /// Returns the section on every plane at one number of photons.
 pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
-    let row = |report: &PlaneReport| {
-        let line = match report.name.as_str() {
-            "before_blockers" => Some(Line::Travel),
-            "after_blockers" | "receiver" => Some(Line::Visibility),
-            _ => None,
-        };
-        row(&scene, report).of(line)
-    };
+    let row = |report: &PlaneReport| row(&scene, report);
     ReportSection {
         title: format!("Every plane at {:.0e} photons", photons as f64),
         text: "The measured spectrum of every plane is compared with its prediction. *Relative \
