@@ -216,6 +216,13 @@ fn damaged_folders_are_refused_by_name() {
     fs::write(&summary, sealed(tree.clone())).unwrap();
     refuses(path, &["b/summary.json: batches: 2"]);
     tree["batches"] = 64.into();
+    tree["format"] = 2.into();
+    fs::write(&summary, sealed(tree.clone())).unwrap();
+    refuses(
+        path,
+        &["b/summary.json: format is 2; this version of etendue"],
+    );
+    tree["format"] = 1.into();
     tree["files"]["light/slices.npz"] = "".into();
     fs::write(&summary, sealed(tree.clone())).unwrap();
     refuses(path, &["b/light/slices.npz is damaged"]);

@@ -91,6 +91,12 @@ const MISTAKES: &[[&str; 3]] = &[
         r#""floor""#,
         r#"line 12, column 61: path.visits is "floor"; allowed: a list of names of surfaces, such as ["floor"]"#,
     ],
+    // The format of a later version, before the fields of that version.
+    [
+        "(\n    light:",
+        "(\n    format: 2, later: 1, light:",
+        "line 2, column 13: format is 2; allowed: a format that this version reads, such as 1",
+    ],
     // A field spelt wrongly.
     [
         "pitch:",

@@ -74,6 +74,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
     }
     file.path.visits = vec!["receiver".to_owned(); file.path.visits.len()];
     let SceneFile {
+        format,
         light,
         blockers,
         surfaces,
@@ -94,6 +95,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
         axis.max = (axis.max / spacing - 1e-9).ceil() * spacing;
     }
     SceneFile {
+        format,
         description: String::new(),
         light,
         blockers,

@@ -33,8 +33,8 @@ pub use etendue_scenefile::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
     Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile,
     LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneError,
-    SceneFile, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, limits,
-    nearest, schema, shown, unit,
+    SceneFile, SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+    limits, nearest, schema, shown, unit,
 };
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};

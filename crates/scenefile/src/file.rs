@@ -29,6 +29,11 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Scene", deny_unknown_fields)]
 pub struct SceneFile {
+    /// The number of the format of this file. It stands first, so that a version that does not
+    /// know the format says so.
+    #[serde(default, skip_serializing)]
+    #[schemars(with = "u32", transform = told("a format that this version reads", "1"), transform = within(1.0, 1.0))]
+    pub format: SceneFormat,
     /// A description of the scene for the reader.
     #[serde(default)]
     #[schemars(transform = told("a text in quotes", r#""my first scene""#))]
@@ -398,6 +403,20 @@ impl<'de, T: TryFrom<u64>> Deserialize<'de> for Whole<T> {
         let count = deserializer.deserialize_any(Count)?;
         let refused = || D::Error::invalid_value(Unexpected::Unsigned(count), &Count);
         T::try_from(count).map(Self).map_err(|_| refused())
+    }
+}
+
+/// The format of scene files. Its number, 1, increases when a reader of the earlier format would
+/// misread a new file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneFormat;
+
+impl<'de> Deserialize<'de> for SceneFormat {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match count(deserializer)? {
+            1_u64 => Ok(Self),
+            other => Err(D::Error::invalid_value(Unexpected::Unsigned(other), &"1")),
+        }
     }
 }
 

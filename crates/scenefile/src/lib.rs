@@ -24,8 +24,8 @@ pub use fault::{Fault, SceneError, fault};
 pub use file::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
     FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
-    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
-    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, SceneFormat,
+    ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
 pub use hints::unit;
 pub use schema::schema;

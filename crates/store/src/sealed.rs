@@ -1,9 +1,16 @@
-//! Writes and checks JSON files that end with their own hash. Indices and timings are such files.
+//! Writes and checks JSON files that end with the number of their format and with their own hash.
+//! Indices and timings are such files.
 //!
 //! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. If a file was edited in
 //! any way, its hash no longer matches.
 
+use crate::stored::VERSION;
 use serde::Serialize;
+use serde_json::Value;
+
+/// The number of the format of these files and of the files that they list. It increases when a
+/// reader of the earlier format would misread a new file. A file without a number has format 1.
+pub const FORMAT: u64 = 1;
 
 /// Returns readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
@@ -19,11 +26,40 @@ const AFTER: &str = "\"\n}\n";
 /// The text with which a JSON object must end before it is sealed.
 const END: &str = "\n}\n";
 
-/// Appends the hash of a JSON object with at least one field, in readable form.
+/// Appends the format and the hash to a JSON object with at least one field, in readable form.
 pub fn sealed(json: &[u8]) -> Vec<u8> {
     let body = json.strip_suffix(END.as_bytes()).unwrap_or(json);
-    let hash = blake3::hash(body).to_hex();
-    [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
+    let format = format!(",\n  \"format\": {FORMAT}");
+    let body = [body, format.as_bytes()].concat();
+    let hash = blake3::hash(&body).to_hex();
+    [&body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
+}
+
+/// Fails if a JSON file has another format than this version reads.
+///
+/// # Errors
+/// The fault, in words.
+pub fn check_format(json: &[u8]) -> Result<(), String> {
+    let tree: Value = serde_json::from_slice(json).unwrap_or_default();
+    match tree.get("format") {
+        Some(format) if *format != FORMAT => Err(format!(
+            "format is {format}; this version of etendue, {VERSION}, reads format {FORMAT}"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Fails if a file does not end with its own hash.
+///
+/// # Errors
+/// The fault, in words.
+pub fn check_seal(bytes: &[u8]) -> Result<(), String> {
+    let changed = "the file was changed after it was written: its index_hash does not match the text before it";
+    if is_sealed(bytes) {
+        Ok(())
+    } else {
+        Err(changed.to_owned())
+    }
 }
 
 /// Checks whether bytes end with their own hash.
@@ -39,14 +75,14 @@ pub fn is_sealed(bytes: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_sealed, sealed};
+    use super::{FORMAT, is_sealed, sealed};
 
     #[test]
     fn every_changed_bit_breaks_the_seal() {
         let whole = sealed(b"{\n  \"a\": 1\n}\n");
         assert!(is_sealed(&whole));
         let json: serde_json::Value = serde_json::from_slice(&whole).unwrap();
-        assert_eq!(json["a"], 1);
+        assert_eq!([&json["a"], &json["format"]], [1, FORMAT]);
         for bit in 0..8 * whole.len() {
             let mut changed = whole.clone();
             changed[bit / 8] ^= 1 << (bit % 8);

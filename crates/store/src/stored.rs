@@ -96,10 +96,7 @@ impl<T: DeserializeOwned> Stored<T> {
                 "the file was written by version {version}, but this program is version {VERSION}: all stages must be of the same version"
             )));
         }
-        if !sealed::is_sealed(&bytes) {
-            let what = "the file was changed after it was written: its index_hash does not match the text before it";
-            return Err(fault(what.to_owned()));
-        }
+        sealed::check_seal(&bytes).map_err(fault)?;
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
         if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
             return Err(fault(

@@ -7,7 +7,7 @@ use super::{blockers, light};
 use etendue_field::{Frame, Orientation, Quantity};
 use etendue_scene::{
     CentralRay, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, Sampling, SceneFile,
-    SurfaceFile, resolve,
+    SceneFormat, SurfaceFile, resolve,
 };
 use glam::DVec3;
 use std::io;
@@ -55,6 +55,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
         Emission::Aimed
     };
     Ok(SceneFile {
+        format: SceneFormat,
         description: String::new(),
         light,
         blockers: Vec::new(),

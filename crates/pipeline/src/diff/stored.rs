@@ -107,12 +107,10 @@ impl StoredResult {
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        sealed::check_format(&bytes).map_err(fault)?;
         let index: ResultIndex = serde_json::from_slice(&bytes)
             .map_err(|e| fault(format!("the file is not a summary of a run: {e}")))?;
-        if !sealed::is_sealed(&bytes) {
-            let what = "the file was changed after it was written: its index_hash does not match the text before it";
-            return Err(fault(what.to_owned()));
-        }
+        sealed::check_seal(&bytes).map_err(fault)?;
         if index.batches < 3 {
             return Err(fault(format!(
                 "batches: {}; must be at least 3",
