@@ -3,11 +3,11 @@
 //!
 //! A criterion limits how fast light may change, but does not tell how much of the light changes.
 //! Therefore the first samples are evenly distributed. Planes are fitted to one half of these
-//! samples, and are compared with the other half. If the criterion is right up to a factor k, the
-//! squared error e² at a density n is k n_c²/n², where n_c is the density that the criterion gives.
-//! The factor k is measured for each object, and the best density is (k n_c²)^(1/3). Half of the
-//! remaining samples have this density. The other half follow the measured errors, which also show
-//! light that the criterion misses, such as shadows.
+//! samples, and are compared with the other half. Suppose that the criterion gives a density n_c,
+//! which is right except for a factor. At a density n, the squared error is then e² = k n_c²/n²,
+//! where k is constant. This k is measured for each object, and the best density is (k n_c²)^(1/3).
+//! Half of the remaining samples have this density. The other half follow the measured errors,
+//! which also show light that the criterion misses, such as shadows.
 
 use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};

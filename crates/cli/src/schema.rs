@@ -115,7 +115,9 @@ fn variant(node: &Value) -> String {
 fn holds(node: &Value) -> String {
     let many = node["prefixItems"].as_array();
     let each = many.map_or(node, |many| &many[0]);
-    let count = many.map_or(String::new(), |many| format!("{} numbers: ", many.len()));
+    let count = many.map_or(String::new(), |many| {
+        format!("{} numbers, each ", many.len())
+    });
     match (each["x-range"].as_str(), type_of(node)) {
         (Some(range), _) => format!(" The value in parentheses: {count}{range}."),
         (None, Some(name)) => format!(

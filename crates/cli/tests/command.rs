@@ -162,7 +162,7 @@ fn a_failing_chain_is_told_and_drawn() {
     // The share of the radiance that remains is cos² 37.24°.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
-    assert!(picture.contains("chain fails: 36.6") && picture.contains("off the chain"));
+    assert!(picture.contains("chain fails by 36.6") && picture.contains("off the chain"));
     assert!(page.contains("chain off by (computed)") && page.contains("gives the central ray"));
     let (told, picture, _) = run("corrected", &["--set", "as_printed=false"]);
     assert!(!told.contains("the first-order chain"), "{told}");

@@ -96,8 +96,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// Returns the error of the chain where several surfaces scatter. The error of the chain is
-/// computed as a difference of sums over the same paths, with an accuracy of a few per cent.
+/// Returns the error of the chain where several surfaces scatter. The same paths give the exact sum
+/// and the sum of the chain. Their difference gives the error of the chain to a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,

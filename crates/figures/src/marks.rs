@@ -1,5 +1,5 @@
-//! Draws marks that the cut and the drawing to scale share: plane numbers, segment lines,
-//! hatching.
+//! Draws the marks that appear both in the cut and in the drawing to scale: plane numbers, segment
+//! lines and hatching.
 
 use crate::section::SegmentKind;
 use crate::sizes::{FAINT, INK};

@@ -107,7 +107,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "7",
-        about: "two occluders, each alone and both together: each blocks light with another phase, and together they block all light",
+        about: "each of two occluders alone, and both together: the light that one blocks differs in phase from the light that the other blocks, and together they block all light",
         scenes: &[
             ("fig7_one", etendue_scenes::FIG7_ONE),
             ("fig7_other", etendue_scenes::FIG7_OTHER),

@@ -20,7 +20,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let spaces = taken.plate(&Plate {
-        title: "Two parameterisations, and travel",
+        title: "Two parameterisations, and the effect of travel",
         note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears the stripes along *x*; angles are measured along T, which is opposite to X.",
         heads: lettered(&["slopes", "slopes, after 0.5 m", "angles, there"]),
         rows: compared(&seen, false),

@@ -193,9 +193,9 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 
 /// Returns the measured value of a parameter, and the smallest change of the parameter that the
 /// photons can detect. If the parameter is not zero, this change is a share of the parameter;
-/// otherwise the change has the parameter's unit. If even a change as large as the parameter would
-/// be undetectable, both texts are “–”. If the error of the value is larger than the value, only
-/// the text of the value is “–”.
+/// otherwise the change has the parameter's unit. If the smallest detectable change is larger than
+/// the parameter, both texts are “–”. If the error of the value is larger than the value, only the
+/// text of the value is “–”.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {

@@ -193,13 +193,17 @@ fn to_mcpl(set: &RaySet, notes: &mut Vec<String>) -> Result<McplFile, Fault> {
     }
     match &set.wavelengths {
         Wavelengths::Unknown => {
-            notes.push("rays have no wavelength; their photons have the energy 0".to_owned());
+            notes.push("rays have no wavelength, so their photons have the energy 0".to_owned());
         }
         Wavelengths::Spectrum(_) => {
-            notes.push("the spectrum of all rays is dropped; photons have the energy 0".to_owned());
+            notes.push(
+                "the spectrum of all rays is dropped, so photons have the energy 0".to_owned(),
+            );
         }
         Wavelengths::Each(each) if each.iter().any(|w| w.is_nan()) => {
-            notes.push("some rays have no wavelength; their photons have the energy 0".to_owned());
+            notes.push(
+                "some rays have no wavelength, so their photons have the energy 0".to_owned(),
+            );
         }
         Wavelengths::One(_) | Wavelengths::Each(_) => {}
     }

@@ -113,7 +113,8 @@ impl NpyHeader {
     }
 }
 
-/// Returns the content of a Python string without escapes.
+/// Returns the content of a quoted Python string. Returns `None` if the text is not such a string,
+/// or if the string contains an escape.
 fn unquoted(text: &str) -> Option<&str> {
     let text = text.trim();
     let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;

@@ -444,8 +444,8 @@ impl Visitor<'_> for Count {
 pub enum Emission {
     /// Photons are aimed at the windows of the planes, by one distribution for each window.
     Aimed,
-    /// Photons leave as the light emits: uniformly over the area, and in proportion to the cosine
-    /// over directions.
+    /// Photons leave as the light emits: their origins are uniform over the area, and the density
+    /// of their directions is proportional to the cosine.
     Plain,
 }
 

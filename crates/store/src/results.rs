@@ -217,7 +217,7 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "this file was not planned: this is a bug in etendue",
+                "etendue did not plan to write this file; this is a bug in etendue",
             ));
         }
         let path = self.staged(name);

@@ -127,7 +127,7 @@ fn check(
                 "--set PATH=A..B:N or PATH=A,B,C gives a field several values, such as --set blockers.0.pitch=0.05..0.4:8"
             }
             ArgumentStyle::Python => {
-                "set gives a field several values, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
+                "give a field several values in the argument set, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
             }
         };
         let message = format!("nothing is swept: {}{several}", given.concat());

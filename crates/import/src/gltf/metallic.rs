@@ -84,7 +84,7 @@ impl GltfReader<'_> {
     fn metal(&self, draft: &Draft<'_>, reflectance: Texture, alpha: Texture) -> Material {
         let is_white = matches!(reflectance, Texture::Constant(v) if (v - 1.0).abs() < 1e-9);
         if !is_white {
-            let message = "approximated: a metal reflects its base colour at all angles, and is not white at grazing angles";
+            let message = "approximated: the metal reflects its base colour at all angles; in glTF, a metal is white at grazing angles";
             self.note(&format!("{}.{PBR}", draft.path), message);
         }
         Material::Conductor(Conductor {

@@ -43,10 +43,7 @@ impl Tree<'_> {
                 (Some(text), None) => value::spectrum(text)?,
                 (None, Some(file)) => self.spectrum(file, source)?,
                 _ => {
-                    return Err(
-                        "either both value and filename are given, or neither of them; allowed: one of them"
-                            .to_owned(),
-                    );
+                    return Err("exactly one of value and filename must be given".to_owned());
                 }
             },
             "point" | "vector" => match find(attributes, "value") {

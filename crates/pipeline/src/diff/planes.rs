@@ -267,7 +267,7 @@ impl ResultPair<'_> {
             } = &slices.sample;
             if noise_dof.is_none() && sigma.iter().any(|sigma| *sigma > 0.0) {
                 return Some(format!(
-                    "{folder} has no noise_dof because an older version wrote it: run it again"
+                    "{folder} has no noise_dof, because an older version of etendue wrote it; run its scene again"
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;

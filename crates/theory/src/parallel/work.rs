@@ -31,7 +31,8 @@ pub(crate) fn work(
     if let Some(receiver) = path.receiver() {
         return receiver.work(window, grid, picture, derivatives);
     }
-    // The cosine series of slopes are short, but their products with gratings may be long.
+    // The cosine series of a factor of slope has few terms, but its product with gratings may have
+    // many terms.
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     let of = |fineness: &DiscResolution| Expansion::within(&path, window, &fineness.0, MOST_PARTS);
     let Some(single) = of(&DiscResolution::single(&path)) else {
@@ -161,7 +162,8 @@ fn of_projection(
     };
     let polygons = &expansion.sections[0].polygons;
     let touched: f64 = polygons.iter().map(touched).sum();
-    // A polygon within a cell has two or a few triangles; three are assumed.
+    // The part of a polygon in one cell consists of two triangles or a few more. Three triangles
+    // are assumed.
     let each = 3.0 * nodes * nodes * (NODE + 2.0 * series + 10.0 * gratings);
     PredictionWork {
         steps: touched * each + expansion.terms.len() as f64 * 20.0 * slope.parts.len() as f64,

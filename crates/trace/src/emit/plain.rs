@@ -56,9 +56,9 @@ impl Plain {
     }
 
     /// Returns the density of [`Self::sample`]. The density is per du dv for a point light or a
-    /// projector, per dx dy for a beam, and per dx dy du dv for an area light. For rays of a file,
-    /// the density is 1, because the probability of each ray is its share of the flux and each
-    /// drawn ray represents the total flux.
+    /// projector, per dx dy for a beam, and per dx dy du dv for an area light. A ray of a
+    /// file is drawn with a probability equal to its share of the flux, and then represents the
+    /// total flux. Therefore its density is 1.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();

@@ -149,8 +149,8 @@ fn specular_steps_keep_etendue() {
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
     // An oblique surface is not perpendicular to the light, so the map onto the surface has a
-    // symplectic defect. A shear by M without the cosine also has a defect, because it is not a
-    // physical map.
+    // symplectic defect. The map of a curved surface has a defect too if its shear by M lacks the
+    // cosine, because then it is not a physical map.
     assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());
