@@ -17,14 +17,16 @@ from importlib.metadata import version
 
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
+from etendue.difference import Difference, difference
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
-from etendue.worlds import ImportedScene, Picture, Probe, import_scene, probe, render
+from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_scene, probe, render
 
 __all__ = [
     "CannotRun",
+    "Difference",
     "ImportedScene",
     "LightField",
     "Measurement",
@@ -34,6 +36,7 @@ __all__ = [
     "PlaneInfo",
     "Prediction",
     "Probe",
+    "ProbedPlane",
     "Radial",
     "Result",
     "Scene",
@@ -43,6 +46,7 @@ __all__ = [
     "__version__",
     "check",
     "compare",
+    "difference",
     "figure",
     "import_scene",
     "measure",

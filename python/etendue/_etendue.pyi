@@ -67,6 +67,10 @@ class Job:
     def packed_prediction(self, prediction: Prediction) -> list[bytes]: ...
     def unpacked_prediction(self, planes: list[bytes]) -> Prediction: ...
 
+def two_samples(
+    a: tuple[NDArray[np.complex128], Floats, float | None, int],
+    b: tuple[NDArray[np.complex128], Floats, float | None, int],
+) -> tuple[float | None, float | None, float, float]: ...
 def sweep(
     scene: SceneArgument,
     set: list[tuple[str, str | list[float]]],

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from etendue import types
+from etendue.difference import Sample
+from etendue.plot import plotted
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Scene
@@ -47,6 +49,10 @@ class Spectrum:
     """Standard error of `light_field`."""
     in_window: int
     """Rays inside the window."""
+    noise_dof: float | None
+    """Effective number of independent real numbers in the noise of `slices`; `None` without noise or with less than three batches."""
+    batches: int
+    """Number of groups of rays from which the errors are estimated."""
     slope: tuple[float, float] | None
     """Shear slope of the power, Σ power·rho·nu / Σ power·rho², in metres, and its error; `None` if no ray is in the window. The error is from
     the jackknife, and up to √2 too large if most frequencies contain only noise. The same holds for the bandwidths."""
@@ -58,6 +64,15 @@ class Spectrum:
     """`bandwidth_rho` of the light less its mean in the window, which tells how fast the light changes. Sampling needs this bandwidth."""
     variation_nu: tuple[float, float] | None
     """`bandwidth_nu` of the light less its mean in the window."""
+
+    @property
+    def sample(self) -> Sample:
+        """The slices with their noise, for `difference`."""
+        return Sample(self.slices, self.slices_sigma, self.noise_dof, self.batches)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws `power` in dB below its peak, on axes of matplotlib; returns the axes."""
+        return plotted(ax, self.rho[self.rho.size - self.power.shape[0] :], self.nu, self.power)
 
     def __repr__(self) -> str:
         return f"<etendue.Spectrum {self.slices.shape}: {self.in_window} rays in the window, slope {self.slope}>"

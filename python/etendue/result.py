@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from etendue import _etendue
+from etendue.difference import Sample
+from etendue.plot import plotted
 from etendue.scene import Scene
 
 if TYPE_CHECKING:
@@ -76,9 +78,10 @@ class LightField:
 class Plane:
     """A virtual plane: measurement, prediction and verdict. NumPy takes over the memory of the arrays without a copy."""
 
-    def __init__(self, outcome: _etendue.Outcome, number: int, report: Mapping[str, Any]) -> None:
+    def __init__(self, outcome: _etendue.Outcome, number: int, report: Mapping[str, Any], batches: int) -> None:
         self._outcome = outcome
         self._number = number
+        self._batches = batches
         self.report = report
         """All numbers of the plane, as in `summary.json`."""
 
@@ -117,6 +120,12 @@ class Plane:
         """The light field in (x, u)."""
         return LightField(**self._outcome.light_field(self._number))
 
+    @property
+    def sample(self) -> Sample:
+        """The measured slices with their noise, for `difference`."""
+        slices = self.slices
+        return Sample(slices.measured, slices.sigma_measured, self.report["noise_dof"], self._batches)
+
     def to_xarray(self) -> xarray.Dataset:
         """Slices and radial spectrum with their axes and units (needs xarray)."""
         import xarray
@@ -144,15 +153,8 @@ class Plane:
 
     def plot(self, ax: Any = None, what: Literal["measured", "predicted"] = "measured") -> Any:
         """Draws the radial spectrum, in dB below its peak, on axes of matplotlib; returns the axes."""
-        if ax is None:
-            import matplotlib.pyplot as plt
-
-            ax = plt.gca()
-        power: Floats = getattr(self.radial, what)
-        level = 10 * np.log10(np.maximum(power, 1e-12 * power.max()) / power.max())
-        image = ax.pcolormesh(self.radial.rho, self.radial.nu, level.T, vmin=-60, vmax=0, shading="nearest")
-        ax.set(xlabel="ρ [cycles/m]", ylabel="ν [cycles/slope]", title=f"{self.name}: {what}")
-        ax.figure.colorbar(image, ax=ax, label="dB")
+        ax = plotted(ax, self.radial.rho, self.radial.nu, getattr(self.radial, what))
+        ax.set(title=f"{self.name}: {what}")
         return ax
 
     def __repr__(self) -> str:
@@ -168,7 +170,7 @@ class Result(Mapping[str, Plane]):
         self.summary: Mapping[str, Any] = json.loads(outcome.summary())
         """`summary.json`, without the hashes of files."""
         reports = enumerate(self.summary["planes"])
-        self._planes = {report["name"]: Plane(outcome, i, report) for i, report in reports}
+        self._planes = {report["name"]: Plane(outcome, i, report, self.summary["batches"]) for i, report in reports}
 
     @property
     def verdict(self) -> Verdict:

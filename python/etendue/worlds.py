@@ -12,8 +12,9 @@ from typing import Any, Literal, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from etendue import _etendue
+from etendue import _etendue, types
 from etendue.commands import given
+from etendue.difference import Sample
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Value, field_texts
@@ -54,14 +55,43 @@ class Probe:
     """The folder of the arrays and pictures of all planes."""
     text: str
     """Surfaces, planes and bandwidths, as `etendue probe` prints them."""
+    batches: int
+    """Number of batches from which the errors of the planes are estimated."""
 
     def slices(self, plane: str) -> Mapping[str, NDArray[Any]]:
         """The slices of a plane: azimuth, measured (rays), predicted (photons), sigma, rho and nu, as in `slices.npz`."""
         with np.load(self.folder / plane / "slices.npz") as arrays:
             return dict(arrays)
 
+    def measured(self, plane: str) -> ProbedPlane:
+        """The spectrum that rays traced back measured at a plane, for `difference`, with the position and the window of the plane."""
+        names = [found["report"]["name"] for found in self.planes]
+        if plane not in names:
+            raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
+        found = self.planes[names.index(plane)]
+        arrays = self.slices(plane)
+        sigma = arrays.get("measured_sigma", arrays["sigma"])
+        sample = Sample(arrays["measured"], sigma, found["report"]["noise_dof"], self.batches)
+        return ProbedPlane(sample, found["report"]["frame"], found["report"]["distance"], found["window"], found["frequencies"])
+
     def __str__(self) -> str:
         return self.text
+
+
+@dataclass(frozen=True)
+class ProbedPlane:
+    """The measurement of a probe at a plane."""
+
+    sample: Sample
+    """The slices with their noise."""
+    frame: Mapping[str, Any]
+    """Origin O and axes X, Y and D of the plane in world coordinates. Light travels along D."""
+    distance: float
+    """From the last surface of the probe along the central ray, in metres."""
+    window: types.Window
+    """The window of the plane."""
+    frequencies: types.Frequencies
+    """The frequencies of the slices."""
 
 
 @dataclass(frozen=True)
@@ -251,4 +281,4 @@ def probe(
     with told(progress) as tell:
         lines = _etendue.probe(scene, pixel, out, arguments, threads, tell)
     found = json.loads((Path(out) / "probe.json").read_text(encoding="utf-8"))
-    return Probe(found["verdict"], found["surfaces"], found["planes"], found["picture"], Path(out), "\n".join(lines))
+    return Probe(found["verdict"], found["surfaces"], found["planes"], found["picture"], Path(out), "\n".join(lines), found["batches"])

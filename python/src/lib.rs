@@ -5,6 +5,7 @@
 
 mod arguments;
 mod arrays;
+mod difference;
 mod figure;
 mod import;
 mod job;
@@ -23,6 +24,8 @@ use pyo3::prelude::*;
 /// The native module of `etendue`.
 #[pymodule(gil_used = false)]
 mod _etendue {
+    #[pymodule_export]
+    use crate::difference::two_samples;
     #[pymodule_export]
     use crate::figure::figure;
     #[pymodule_export]

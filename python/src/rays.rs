@@ -3,6 +3,7 @@
 use crate::arrays::Arrays;
 use crate::live::Live;
 use crate::outcome::cells;
+use etendue_compare::noise_dof;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::moments::shear_slope;
@@ -95,6 +96,9 @@ pub(crate) struct Spectrum {
     radial: RadialPower,
     projection: estimate::ProjectionEstimate,
     in_window: u64,
+    /// Effective number of independent real numbers in the noise of the slices.
+    noise_dof: Option<f64>,
+    batches: usize,
     /// The slope and the bandwidths, with their names.
     numbers: [(&'static str, Option<Uncertain>); 5],
 }
@@ -125,6 +129,12 @@ pub(crate) fn spectrum(
         radial: power.radial(),
         projection: estimate::projection(&measured, 0).map_err(few)?,
         in_window: measured.tally(0).inside,
+        noise_dof: if rays.0.len() < 3 {
+            None
+        } else {
+            noise_dof(&measured, 0).map_err(few)?
+        },
+        batches: rays.0.len(),
         numbers: [
             ("slope", power.statistic(|p| shear_slope(p, grid))),
             ("bandwidth_rho", along_rho(&power)),
@@ -156,6 +166,8 @@ impl Spectrum {
             .add("light_field_sigma", self.projection.standard_error)?
             .finish();
         all.set_item("in_window", self.in_window)?;
+        all.set_item("noise_dof", self.noise_dof)?;
+        all.set_item("batches", self.batches)?;
         for (name, number) in self.numbers {
             all.set_item(name, number.map(|n| (n.value, n.error)))?;
         }

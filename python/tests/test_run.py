@@ -254,3 +254,19 @@ def test_a_result_of_another_scene_stays(result, tmp_path):
     with pytest.raises(etendue.CannotRun, match="another scene.*force=True"):
         other.save(tmp_path / "a")
     assert os.listdir(tmp_path) == ["a"]
+
+
+def test_two_measurements_differ_by_noise_alone(result):
+    """Photons of another seed agree, and rays of the user's too; light that is a fifth too bright does not."""
+    scene = etendue.Scene(FIG9B, photons=2**18, seed=2, set={"blockers.0.pitch": 0.1})
+    other = etendue.run(scene)["receiver"]
+    # One in a thousand, since the seeds are fixed.
+    assert etendue.difference(result["receiver"], other).p_value > 1e-3
+    light = etendue.photons(scene, "receiver")
+    x, y, u, v, weight = light.rays.T
+    own = {"window": scene.file["window"], "frequencies": scene.file["frequencies"], "batch": light.batch}
+    for factor, agrees in ((1.0, True), (1.2, False)):
+        found = etendue.spectrum(x, y, u, v, factor * weight / 2**18, **own)
+        assert (etendue.difference(found, result["receiver"]).p_value > 1e-3) == agrees
+    with pytest.raises(ValueError, match="same frequencies"):
+        etendue.difference(result["receiver"], result["leaving"])

@@ -108,7 +108,11 @@ fn written(
         made_from["surfaces"] = stops
             .map(|stop| of_stop(&scene.imported.world, stop))
             .collect();
-        made_from["planes"] = found.iter().map(|(found, _)| of_plane(found)).collect();
+        made_from["batches"] = tree_of!(BATCHES);
+        let planes = found.iter().zip(&probe.planes);
+        made_from["planes"] = planes
+            .map(|((found, _), plane)| of_plane(found, plane))
+            .collect();
         made_from["files"] = tree_of!(files);
         json(&made_from)
     })?;

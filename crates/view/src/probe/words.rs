@@ -4,7 +4,7 @@ use super::found::{Found, SecondEstimate};
 use super::picture::PictureBandwidth;
 use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
-use etendue_field::{Lobe, percent, uncertain};
+use etendue_field::{FrequencyAxis, Lobe, VirtualPlane, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_pipeline::table::aligned;
 use etendue_spectrum::Uncertain;
@@ -55,11 +55,15 @@ pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
     })
 }
 
-pub(super) fn of_plane(found: &Found) -> Value {
+pub(super) fn of_plane(found: &Found, plane: &VirtualPlane) -> Value {
     let number = |of: &Option<Widest<Uncertain>>| of.map(|of| [of.value.value, of.value.error]);
     let azimuth = |of: &Option<Widest<Uncertain>>| of.map(|of| of.azimuth);
+    let axis = |axis: &FrequencyAxis| tree_of!({ "max": axis.max(), "spacing": axis.spacing });
+    let grid = &plane.grid;
     let mut tree = tree_of!({
         "report": found.comparison.report,
+        "window": plane.window,
+        "frequencies": { "azimuths": grid.azimuths, "rho": axis(&grid.rho), "nu": axis(&grid.nu) },
         "verdict": found.comparison.report.verdict,
         "judge": found.judge.word(),
         "photons_miss": found.misses,

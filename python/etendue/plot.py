@@ -1,0 +1,23 @@
+"""Pictures of spectra, by matplotlib."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def plotted(ax: Any, rho: Floats, nu: Floats, power: Floats) -> Any:
+    """Draws a power spectrum [rho, nu] in dB below its peak, on axes of matplotlib; returns the axes."""
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        ax = plt.gca()
+    level = 10 * np.log10(np.maximum(power, 1e-12 * power.max()) / power.max())
+    image = ax.pcolormesh(rho, nu, level.T, vmin=-60, vmax=0, shading="nearest")
+    ax.set(xlabel="ρ [cycles/m]", ylabel="ν [cycles/slope]")
+    ax.figure.colorbar(image, ax=ax, label="dB")
+    return ax

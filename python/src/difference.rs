@@ -1,0 +1,61 @@
+//! The test of two spectra of the same light.
+
+use etendue_compare::{Sample, TwoSamples};
+use etendue_field::{Complex, FrequencyAxis, SliceGrid};
+use ndarray::{Array3, ArrayView3, Axis};
+use numpy::PyReadonlyArray3;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// A measured spectrum: the slices and their standard errors [azimuth, ρ, ν], the effective number
+/// of independent numbers in their noise, and the number of batches.
+type Measured<'py> = (
+    PyReadonlyArray3<'py, Complex>,
+    PyReadonlyArray3<'py, f64>,
+    Option<f64>,
+    usize,
+);
+
+/// Tests whether two spectra differ by more than noise. Returns p, χ²/dof, the relative difference
+/// and the relative difference from noise alone.
+#[pyfunction]
+pub(crate) fn two_samples(
+    a: Measured<'_>,
+    b: Measured<'_>,
+) -> PyResult<(Option<f64>, Option<f64>, f64, f64)> {
+    let shape = a.0.as_array().dim();
+    let (azimuths, rho, nu) = shape;
+    let shapes = [&a, &b].map(|one| [one.0.as_array().dim(), one.1.as_array().dim()]);
+    if shapes != [[shape; 2]; 2] || rho % 2 == 0 || nu % 2 == 0 || a.3.min(b.3) < 4 {
+        let what = "allowed: two spectra at the same frequencies, each of at least four batches";
+        return Err(PyValueError::new_err(what));
+    }
+    let axis = |count: usize| FrequencyAxis {
+        half: count / 2,
+        spacing: 1.0,
+    };
+    let grid = SliceGrid {
+        azimuths,
+        rho: axis(rho),
+        nu: axis(nu),
+    };
+    let [a, b] = [a, b].map(|(slices, sigma, noise_dof, batches)| Sample {
+        mean: half(slices.as_array()),
+        sigma: half(sigma.as_array()),
+        noise_dof,
+        batches,
+    });
+    let found = TwoSamples::new(&grid, &a, &b);
+    Ok((
+        found.p_value,
+        found.chi2_per_dof,
+        found.difference,
+        found.noise,
+    ))
+}
+
+/// Returns the half of the slices with ρ ≥ 0.
+fn half<T: Clone>(full: ArrayView3<'_, T>) -> Array3<T> {
+    let middle = full.len_of(Axis(1)) / 2;
+    full.split_at(Axis(1), middle).1.to_owned()
+}
