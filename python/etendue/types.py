@@ -589,6 +589,8 @@ class Scene(TypedDict):
     """The blockers"""
     description: NotRequired[str]
     """A description of the scene for the reader"""
+    format: NotRequired[int]
+    """The number of the format of this file. It stands first, so that a version that does not know the format says so. 1 to 1"""
     frequencies: "Frequencies"
     """The frequencies of every plane that has no frequencies of its own"""
     light: "Light"
