@@ -22,8 +22,8 @@ use etendue_scene::Scene;
 use etendue_spectrum::field::measure_field;
 use etendue_spectrum::{CrossPower, Measurement};
 use etendue_store::Failure;
+use etendue_store::VERSION;
 use etendue_store::sealed::json;
-use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 

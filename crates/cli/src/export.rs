@@ -4,8 +4,8 @@ use crate::args::ExportArgs;
 use crate::print::{say, say_replaced};
 use etendue_pipeline::load;
 use etendue_store::Failure;
+use etendue_store::VERSION;
 use etendue_store::sealed::json;
-use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, EXPORT, Plan, Results};
 use serde_json::json as tree_of;
 

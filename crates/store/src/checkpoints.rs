@@ -12,7 +12,7 @@ use crate::Method;
 use crate::batches::{Held, files, read_files};
 use crate::machine::available_memory;
 use crate::npz::NpzFile;
-use crate::stored::VERSION;
+use crate::version::VERSION;
 use crate::{LINKED, inside};
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};

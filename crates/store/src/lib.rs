@@ -29,6 +29,7 @@ mod results;
 pub mod sealed;
 pub mod stored;
 pub mod unfinished;
+mod version;
 
 pub use argument_style::ArgumentStyle;
 pub use failure::{CANNOT_RUN, Failure};
@@ -37,3 +38,4 @@ pub use results::{
     COVARIANCE, EXPORT, FIGURE, Finished, LINKED, MAX_INDEX_BYTES, MEASUREMENT, PICTURE,
     PREDICTION, PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, hash_of, inside,
 };
+pub use version::VERSION;

@@ -4,13 +4,9 @@
 //! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. If a file was edited in
 //! any way, its hash no longer matches.
 
-use crate::stored::VERSION;
+use crate::version::{FORMAT, VERSION};
 use serde::Serialize;
 use serde_json::Value;
-
-/// The number of the format of these files and of the files that they list. It increases when a
-/// reader of the earlier format would misread a new file. A file without a number has format 1.
-pub const FORMAT: u64 = 1;
 
 /// Returns readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
@@ -75,7 +71,8 @@ pub fn is_sealed(bytes: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{FORMAT, is_sealed, sealed};
+    use super::{is_sealed, sealed};
+    use crate::version::FORMAT;
 
     #[test]
     fn every_changed_bit_breaks_the_seal() {

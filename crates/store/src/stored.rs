@@ -7,6 +7,7 @@ use crate::machine;
 use crate::npz::NpzFile;
 use crate::sealed;
 use crate::sealed::json;
+use crate::version::VERSION;
 use crate::{ArgumentStyle, Failure};
 use crate::{Finished, MAX_INDEX_BYTES, Results, SUMMARY};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
@@ -23,9 +24,6 @@ pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
     format!("{stage}.inputs/{input}")
 }
-
-/// The version of this program; stages of different versions cannot be combined.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An index: the stage, its scene, and the hash of each file.
 #[derive(Debug, Serialize, Deserialize)]

@@ -10,8 +10,9 @@ use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Work, limits, load, method};
 use etendue_scene::{Scene, SceneFile, read_file};
+use etendue_store::VERSION;
 use etendue_store::sealed::json;
-use etendue_store::stored::{VERSION, check_earlier, summary_of};
+use etendue_store::stored::{check_earlier, summary_of};
 use etendue_store::{
     Failure, LINKED, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, inside, unfinished,
 };

@@ -2,7 +2,7 @@
 //! work.
 
 use etendue_scene::Scene;
-use etendue_store::stored::VERSION;
+use etendue_store::VERSION;
 
 /// Processes that work together, over any transport of bytes. Number 0 leads.
 pub trait Workers: Sync {

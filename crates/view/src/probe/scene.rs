@@ -3,7 +3,7 @@
 use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
 use etendue_paths::{Paths, Question};
-use etendue_store::stored::VERSION;
+use etendue_store::VERSION;
 use etendue_store::{Failure, PROBE, Plan, Results};
 use etendue_world::Camera;
 use serde_json::{Value, json as tree_of};
