@@ -62,7 +62,7 @@ def test_a_sweep(alone, tmp_path):
         ({"blockers.0.pitch": "0.1..x:3"}, r"in set, blockers.0.pitch: `x` is not a number; allowed: 'A..B:N'"),
         ({"blockers.0.pitch": []}, "in set, blockers.0.pitch: there are 0 values"),
         ({"blockers.0.pitch": [0.1, float("nan")]}, "in set, blockers.0.pitch: `NaN` is not a number"),
-        ({"blockers.0.pitch": 0.1}, "nothing is swept: blockers.0.pitch=0.1 is one value; set gives a field several"),
+        ({"blockers.0.pitch": 0.1}, "nothing is swept: blockers.0.pitch=0.1 is one value; give a field several values in the argument set"),
         ({}, "nothing is swept"),
         ({"nowhere": [1, 2]}, "nowhere"),
     ],
