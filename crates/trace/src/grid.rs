@@ -55,7 +55,17 @@ impl Grid {
             return None;
         }
         let cells = FINENESS * shapes.len() as f64;
-        let along = |axis: usize| (cells * sides[axis] / sides[1 - axis]).sqrt();
+        // Bars are as long as all bars together, so cells divide only the other axis.
+        let bars = [0, 1].map(|axis| {
+            let whole = bounds[axis].map(f64::to_bits);
+            let mut reaches = shapes.iter().map(|shape| reach(shape, axis));
+            reaches.all(|ends| ends.map(f64::to_bits) == whole)
+        });
+        let along = |axis: usize| match bars {
+            [false, false] => (cells * sides[axis] / sides[1 - axis]).sqrt(),
+            _ if bars[axis] => 1.0,
+            _ => cells,
+        };
         let mut grid = Self {
             distance,
             bounds,
