@@ -100,8 +100,7 @@ pub enum BlockersFile {
         #[schemars(transform = seed)]
         seed: u64,
     },
-    /// Opaque bars at equal distances. Each bar ends 10⁹ m from the central ray, which is the
-    /// largest number that a scene may contain.
+    /// Opaque bars at equal distances, which end 10⁹ m from the central ray.
     Bars {
         /// Name.
         #[schemars(transform = name_of_blockers)]

@@ -168,6 +168,26 @@ mod tests {
     }
 
     #[test]
+    fn bars_share_few_cells() {
+        for axis in 0..2 {
+            let bar = |i: u32| {
+                let (mut center, mut size) = ([0.0; 2], [2e9; 2]);
+                (center[axis], size[axis]) = (0.1 * f64::from(i), 0.07);
+                Shape::Rectangle(Rectangle { center, size })
+            };
+            let bars: Vec<Shape> = (0..1000).map(bar).collect();
+            let grid = Grid::new(1.0, &bars).unwrap();
+            assert_eq!(grid.counts[axis], 4000);
+            for i in 0..4000 {
+                let mut at = [1e6; 2];
+                at[axis] = 0.03 * f64::from(i) - 5.0;
+                let expected = bars.iter().any(|bar| bar.contains(at[0], at[1]));
+                assert_eq!(grid.contains(at[0], at[1]), expected, "{at:?}");
+            }
+        }
+    }
+
+    #[test]
     fn shapes_on_top_of_each_other_have_none() {
         assert!(Grid::new(1.0, &strewn(2000, 1.0)).is_none());
         assert!(Grid::new(1.0, &strewn(7, 0.1)).is_none());
