@@ -19,7 +19,7 @@ class Axis(TypedDict):
 
 
 class BlockersBars(TypedDict):
-    """Opaque bars at equal distances. Each bar ends 10⁹ m from the central ray, which is the largest number that a scene may contain."""
+    """Opaque bars at equal distances, which end 10⁹ m from the central ray."""
 
     Bars: "BlockersBarsFields"
 
