@@ -289,9 +289,8 @@ fn bars_stand_a_pitch_apart_about_their_center() {
                 } else {
                     [along, across]
                 };
-                let expected = if blocked { 0.0 } else { 1.0 };
-                let passed = scene.blockers[0].mask.transmittance(x, y);
-                assert!(passed == expected, "{count} along {axis}: ({x}, {y})");
+                let passed = scene.blockers[0].mask.transmittance(x, y) > 0.5;
+                assert_ne!(passed, blocked, "{count} along {axis}: ({x}, {y})");
             }
         }
     }
