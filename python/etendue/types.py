@@ -18,6 +18,27 @@ class Axis(TypedDict):
     """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the largest allowed. 1e-9 to 1e9"""
 
 
+class BlockersBars(TypedDict):
+    """Opaque bars at equal distances, which end 10⁹ m from the central ray."""
+
+    Bars: "BlockersBarsFields"
+
+
+class BlockersBarsFields(TypedDict):
+    axis: "AxisName"
+    """The axis across the bars"""
+    center: Sequence[float]
+    """Centre of the bars, in world coordinates"""
+    count: int
+    """Number of bars. 1 to 100000"""
+    fill: float
+    """Width of a bar as a share of the pitch. 1e-9 to 1"""
+    name: str
+    """Name"""
+    pitch: float
+    """Distance between the centres of neighbouring bars. 1e-9 to 1e9"""
+
+
 class BlockersGrating(TypedDict):
     """A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), where t is x or y."""
 
@@ -735,7 +756,7 @@ class Window(TypedDict):
 AxisName = Union[Literal["X"], Literal["Y"]]
 """An axis orthogonal to the central ray."""
 
-Blockers = Union["BlockersJitteredSquares", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
+Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
 """Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]

@@ -17,6 +17,7 @@ mod xml;
 
 use crate::Export;
 use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
+use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
 use id::id;
@@ -209,7 +210,7 @@ impl Writer {
         let (mut rectangles, mut discs) = (Vec::new(), Vec::new());
         for shape in shapes {
             match *shape {
-                Shape::Rectangle(rectangle) => rectangles.push(rectangle),
+                Shape::Rectangle(rectangle) => rectangles.push(shortened(rectangle, beyond)),
                 Shape::Disc(disc) => discs.push(disc),
             }
         }
@@ -258,6 +259,19 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     center[half_plane.axis] = 0.5 * (edge + end);
     size[half_plane.axis] = (end - edge).abs();
     Rectangle { center, size }
+}
+
+/// Returns the part of a bar that light can reach, and other rectangles unchanged. Light reaches no
+/// coordinate of modulus `beyond` or more.
+fn shortened(rectangle: Rectangle, beyond: f64) -> Rectangle {
+    let size = rectangle.size.map(|side| {
+        if side > MAX_NUMBER {
+            2.0 * beyond
+        } else {
+            side
+        }
+    });
+    Rectangle { size, ..rectangle }
 }
 
 /// Returns the largest distance from the central ray, along X or Y, of light that goes straight to

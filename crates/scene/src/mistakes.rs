@@ -163,18 +163,23 @@ fn pair([x, y]: [f64; 2]) -> String {
 }
 
 /// Returns the distances from the central ray to the edges of an array, along X and along Y. An
-/// edge of an array lies half a pitch beyond the centres of the outermost squares.
+/// edge of an array lies half a pitch beyond the centres of the outermost shapes, or at the ends
+/// of bars.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
     };
     let half = 0.5 * layer.pitch?;
     Some([0, 1].map(|axis| {
-        let centers = shapes.iter().map(|shape| shape.bounds().center[axis]);
-        let [low, high] = centers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-            [low.min(at), high.max(at)]
+        let halves = shapes.iter().map(|shape| {
+            let bounds = shape.bounds();
+            (bounds.center[axis], half.max(0.5 * bounds.size[axis]))
         });
-        high.min(-low) + half
+        let ends = halves.map(|(at, half)| [at - half, at + half]);
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
+            [low.min(a), high.max(b)]
+        });
+        high.min(-low)
     }))
 }
 

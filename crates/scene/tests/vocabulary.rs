@@ -263,6 +263,91 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
     }
 }
 
+/// Returns the scene with bars as its only blockers, of which some fields are given.
+fn with_bars(center: &str, axis: &str, fields: &str) -> Result<Scene, SceneError> {
+    let bars = format!(r#"Bars(name: "star", center: {center}, axis: {axis}, {fields})"#);
+    resolved(&text().replacen(BLOCKERS, &bars, 1))
+}
+
+#[test]
+fn bars_stand_a_pitch_apart_about_their_center() {
+    for (axis, count, middles) in [
+        ("X", 1, vec![0.3]),
+        ("X", 3, vec![0.1, 0.3, 0.5]),
+        ("Y", 4, vec![-0.5, -0.3, -0.1, 0.1]),
+    ] {
+        let fields = format!("count: {count}, pitch: 0.2, fill: 0.25");
+        let scene = with_bars("(0.3, -0.2, 1)", axis, &fields).unwrap();
+        assert_eq!(scene.blockers[0].pitch, Some(0.2));
+        for i in -1500..1500 {
+            // No point lies on an edge.
+            let across = 0.001 * (f64::from(i) + 0.5);
+            let blocked = middles.iter().any(|middle| (across - middle).abs() < 0.025);
+            for along in [-1e6, 0.0, 0.4, 1e8] {
+                let [x, y] = if axis == "X" {
+                    [across, along]
+                } else {
+                    [along, across]
+                };
+                let passed = scene.blockers[0].mask.transmittance(x, y) > 0.5;
+                assert_ne!(passed, blocked, "{count} along {axis}: ({x}, {y})");
+            }
+        }
+    }
+}
+
+#[test]
+fn bars_have_limits() {
+    for (fields, told) in [
+        (
+            "count: 0, pitch: 1, fill: 1",
+            "count is 0; allowed: 1 to 100000",
+        ),
+        (
+            "count: 100_001, pitch: 1, fill: 1",
+            "count is 100001; allowed: 1 to 100000",
+        ),
+        (
+            "count: 5, pitch: 1, fill: 0",
+            "fill is 0; allowed: 1e-9 to 1",
+        ),
+        (
+            "count: 5, pitch: 1, fill: 1.01",
+            "fill is 1.01; allowed: 1e-9 to 1",
+        ),
+        (
+            "count: 5, pitch: 1, fill: NaN",
+            "fill is NaN; allowed: 1e-9 to 1",
+        ),
+        (
+            "count: 5, pitch: inf, fill: 1",
+            "pitch is inf; allowed: 1e-9 to 1e9",
+        ),
+    ] {
+        let error = with_bars("(0, 0, 1)", "X", fields).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!("blockers[0].{told}")) && error.lines().count() == 1,
+            "{fields}: {error}"
+        );
+    }
+    let most = "count: 100_000, pitch: 1e-5, fill: 1";
+    assert!(with_bars("(0, 0, 1)", "X", most).is_ok());
+}
+
+/// Light passes beside the outermost bars, but not beyond the ends of bars.
+#[test]
+fn a_warning_names_bars_that_are_too_few() {
+    for (count, warns) in [(8, true), (20, false)] {
+        let fields = format!("count: {count}, pitch: 0.1, fill: 0.5");
+        let scene = with_bars("(0, 0, 1)", "Y", &fields).unwrap();
+        let told = scene
+            .warnings()
+            .iter()
+            .any(|told| told.contains("passes star"));
+        assert_eq!(told, warns, "{count}: {:?}", scene.warnings());
+    }
+}
+
 #[test]
 fn counts_are_written_as_people_write_them() {
     for (count, photons) in [

@@ -100,6 +100,27 @@ pub enum BlockersFile {
         #[schemars(transform = seed)]
         seed: u64,
     },
+    /// Opaque bars at equal distances, which end 10⁹ m from the central ray.
+    Bars {
+        /// Name.
+        #[schemars(transform = name_of_blockers)]
+        name: String,
+        /// Centre of the bars, in world coordinates.
+        #[schemars(transform = place)]
+        center: [f64; 3],
+        /// The axis across the bars.
+        axis: AxisName,
+        /// Number of bars.
+        #[serde(deserialize_with = "count")]
+        #[schemars(transform = told("a whole number", "5"), transform = within(1.0, 100_000.0))]
+        count: u32,
+        /// Distance between the centres of neighbouring bars.
+        #[schemars(transform = length)]
+        pitch: f64,
+        /// Width of a bar as a share of the pitch.
+        #[schemars(transform = told("a share of the pitch", "0.5"), transform = within(1e-9, 1.0))]
+        fill: f64,
+    },
     /// Individual opaque shapes, which must not overlap.
     Shapes {
         /// Name.
@@ -157,6 +178,7 @@ impl BlockersFile {
     pub fn name(&self) -> &str {
         match self {
             Self::JitteredSquares { name, .. }
+            | Self::Bars { name, .. }
             | Self::Shapes { name, .. }
             | Self::Grating { name, .. }
             | Self::Mesh { name, .. } => name,

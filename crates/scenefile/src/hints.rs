@@ -6,7 +6,12 @@ use serde_json::Value;
 
 /// Returns the description of the field at a path, and an example.
 fn field(path: &str) -> [&'static str; 2] {
-    let node = below(schema(), &steps(path)).unwrap_or(&Value::Null);
+    let nodes = below(schema(), &steps(path));
+    told(path, nodes.first().copied().unwrap_or(&Value::Null))
+}
+
+/// Returns the description of a node of the schema, and an example.
+fn told(path: &str, node: &'static Value) -> [&'static str; 2] {
     let words = |node: &'static Value| Some([node["title"].as_str()?, node["x-ron"].as_str()?]);
     match words(node).or_else(|| words(referred(node))) {
         Some(words) => words,
@@ -20,11 +25,11 @@ fn field(path: &str) -> [&'static str; 2] {
     }
 }
 
-/// Follows the steps of a path in the schema, also through variants, and returns the node at the
-/// end.
-fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
+/// Follows the steps of a path in the schema, also through variants, and returns the nodes at the
+/// end. Several variants may have the field.
+fn below(node: &'static Value, steps: &[&str]) -> Vec<&'static Value> {
     let [step, rest @ ..] = steps else {
-        return Some(node);
+        return vec![node];
     };
     let node = referred(node);
     let child = match step.parse() {
@@ -34,11 +39,10 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     if child.is_object() {
         return below(child, rest);
     }
-    let mut variants = node["oneOf"].as_array().into_iter().flatten();
-    variants.find_map(|variant| {
-        let mut contents = variant["properties"].as_object()?.values();
-        contents.find_map(|content| below(content, steps))
-    })
+    let variants = node["oneOf"].as_array().into_iter().flatten();
+    let contents = variants.filter_map(|variant| variant["properties"].as_object());
+    let contents = contents.flat_map(|content| content.values());
+    contents.flat_map(|content| below(content, steps)).collect()
 }
 
 /// Returns the unit of the number at a path such as `blockers.0.pitch`; empty if the schema
@@ -54,10 +58,28 @@ pub fn unit(path: &str) -> &'static str {
     }
 }
 
-/// Returns a description of the values that the field at a path accepts.
+/// Returns a description of the values that the field at a path accepts. A path does not name the
+/// variant, so each type that the field has in a variant is described.
 pub(crate) fn wanted(path: &str) -> String {
-    let [what, example] = field(path);
-    format!("{what}, such as {example}")
+    let each = kinds(path).into_iter();
+    let each = each.map(|[what, example]| format!("{what}, such as {example}"));
+    each.collect::<Vec<_>>().join(", or ")
+}
+
+/// Returns the description and the example of the first field of each type at a path.
+fn kinds(path: &str) -> Vec<[&'static str; 2]> {
+    let mut types = Vec::new();
+    let mut nodes = below(schema(), &steps(path));
+    nodes.retain(|node| {
+        let its = &referred(node)["type"];
+        let is_new = !types.contains(&its);
+        types.push(its);
+        is_new
+    });
+    if nodes.is_empty() {
+        return vec![field(path)];
+    }
+    nodes.into_iter().map(|node| told(path, node)).collect()
 }
 
 /// Returns an example of the field at a path.
@@ -72,7 +94,7 @@ pub(crate) fn has_fields(path: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::example;
+    use super::{kinds, wanted};
     use crate::SceneFile;
     use crate::place::find;
     use serde_json::Value;
@@ -128,8 +150,8 @@ mod tests {
         }
     }
 
-    /// Checks that each field written in a scene accepts the field's example, and that the error
-    /// for an impossible value names the field.
+    /// Checks that each field written in a scene accepts an example of the field, and that the
+    /// error for an impossible value names the field.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();
@@ -148,14 +170,19 @@ mod tests {
                 let start = place.value.as_ptr().addr() - text.as_ptr().addr();
                 let (before, after) = (&text[..start], &text[start + place.value.len()..]);
                 let changed = |value: &str| SceneFile::parse(&format!("{before}{value}{after}"));
-                let (example, is) = (example(&path), place.value);
-                if let Err(error) = changed(example) {
-                    panic!("{path} is {is}, not {example}: {error}");
-                }
+                let (examples, is) = (
+                    kinds(&path).into_iter().map(|[_, example]| example),
+                    place.value,
+                );
+                let errors: Vec<_> = examples.map(|example| changed(example).err()).collect();
+                assert!(
+                    errors.iter().any(Option::is_none),
+                    "{path} is {is}: {errors:?}"
+                );
                 let told = changed("{}").unwrap_err().to_string();
                 let named = format!("line {}, column {}: {path}", place.line, place.column);
                 assert!(told.starts_with(&named), "{path}: {told}");
-                assert!(told.ends_with(example), "{path}: {told}");
+                assert!(told.ends_with(&wanted(&path)), "{path}: {told}");
                 tried.insert(path);
             }
         }

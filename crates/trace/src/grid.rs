@@ -55,7 +55,17 @@ impl Grid {
             return None;
         }
         let cells = FINENESS * shapes.len() as f64;
-        let along = |axis: usize| (cells * sides[axis] / sides[1 - axis]).sqrt();
+        // Bars are as long as all bars together, so cells divide only the other axis.
+        let bars = [0, 1].map(|axis| {
+            let whole = bounds[axis].map(f64::to_bits);
+            let mut reaches = shapes.iter().map(|shape| reach(shape, axis));
+            reaches.all(|ends| ends.map(f64::to_bits) == whole)
+        });
+        let along = |axis: usize| match bars {
+            [false, false] => (cells * sides[axis] / sides[1 - axis]).sqrt(),
+            _ if bars[axis] => 1.0,
+            _ => cells,
+        };
         let mut grid = Self {
             distance,
             bounds,
@@ -154,6 +164,26 @@ mod tests {
                 }
             }
             assert!(!grid.contains(f64::NAN, 0.5) && !grid.contains(f64::INFINITY, 0.5));
+        }
+    }
+
+    #[test]
+    fn bars_share_few_cells() {
+        for axis in 0..2 {
+            let bar = |i: u32| {
+                let (mut center, mut size) = ([0.0; 2], [2e9; 2]);
+                (center[axis], size[axis]) = (0.1 * f64::from(i), 0.07);
+                Shape::Rectangle(Rectangle { center, size })
+            };
+            let bars: Vec<Shape> = (0..1000).map(bar).collect();
+            let grid = Grid::new(1.0, &bars).unwrap();
+            assert_eq!(grid.counts[axis], 4000);
+            for i in 0..4000 {
+                let mut at = [1e6; 2];
+                at[axis] = 0.03 * f64::from(i) - 5.0;
+                let expected = bars.iter().any(|bar| bar.contains(at[0], at[1]));
+                assert_eq!(grid.contains(at[0], at[1]), expected, "{at:?}");
+            }
         }
     }
 

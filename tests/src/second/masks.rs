@@ -27,6 +27,12 @@ const SQUARES: &[&str] = &[
     "shifted by half a pitch",
     "sides as long as a pitch",
 ];
+const BARS: &[&str] = &[
+    "axes swapped",
+    "shifted by half a pitch",
+    "as wide as a pitch",
+    "from the central ray",
+];
 const SLIDE: &[&str] = &["widths swapped", "axes swapped", "no π"];
 const WINDOW: &[&str] = &[
     "cosine not squared",
@@ -48,6 +54,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     vec![
         check("mask of shapes", SHAPES, exact, shapes),
         check("mask of squares", SQUARES, exact, squares),
+        check("mask of bars", BARS, exact, bars),
         check("mask of a grating", GRATING, angle, masked_by_grating),
         check("slide of a projector", SLIDE, slide, slide_of_projector),
         check("window", WINDOW, slide, window),
@@ -161,6 +168,36 @@ fn squares(dice: &mut Dice, fault: &str) -> f64 {
             })
         };
         if within(0) && within(1) { 0.0 } else { 1.0 }
+    })
+}
+
+/// Checks bars. They are endless along one axis, and centred at the center of the layer.
+fn bars(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let (axis, count) = (dice.below(2), 1 + dice.below(8));
+    let (pitch, fill) = (between(dice, 0.1, 0.4), between(dice, 0.2, 0.9));
+    world.blockers = format!(
+        "Bars(name: \"b\", center: {}, axis: {}, count: {count}, pitch: {pitch:?}, fill: {fill:?})",
+        triple(origin),
+        ["X", "Y"][axis],
+    );
+    let scene = world.scene(Path::new("."));
+    against(dice, &scene, center, |at| {
+        let at = match fault {
+            "axes swapped" => at[1 - axis],
+            "shifted by half a pitch" => at[axis] + 0.5 * pitch,
+            "from the central ray" => at[axis] + center[axis],
+            _ => at[axis],
+        };
+        let width = if fault == "as wide as a pitch" {
+            pitch
+        } else {
+            fill * pitch
+        };
+        let first = -0.5 * (count as f64 - 1.0) * pitch;
+        let is_in = |i: usize| (at - first - i as f64 * pitch).abs() <= 0.5 * width;
+        if (0..count).any(is_in) { 0.0 } else { 1.0 }
     })
 }
 

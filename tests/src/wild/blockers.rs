@@ -48,6 +48,7 @@ pub(super) fn blockers(
 fn terms(layer: &BlockersFile) -> f64 {
     match layer {
         BlockersFile::JitteredSquares { count, .. } => count.map(f64::from).iter().product(),
+        BlockersFile::Bars { count, .. } => f64::from(*count),
         BlockersFile::Shapes { shapes, .. } => {
             let strips = |s: &ShapeFile| match s {
                 ShapeFile::Disc { .. } => STRIPS,

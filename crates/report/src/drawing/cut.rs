@@ -3,6 +3,7 @@
 use etendue_field::{Light, Mask, Patch, Shape, Specular, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_pipeline::table::spaced;
+use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, Leg, MeshObject, Object, Scene};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -117,9 +118,12 @@ impl CuttingPlane<'_> {
             _ => None,
         });
         let ends = layers.flat_map(|(shapes, half_planes)| {
+            // A bar along the cut is as endless as a half-plane.
             let shapes = shapes
                 .iter()
-                .flat_map(move |shape| shape.bounds().extent(axis));
+                .map(Shape::bounds)
+                .filter(move |bounds| bounds.size[axis] < MAX_NUMBER)
+                .flat_map(move |bounds| bounds.extent(axis));
             let halves = half_planes.iter().filter(move |half| half.axis == axis);
             shapes.chain(halves.map(|half| half.edge))
         });

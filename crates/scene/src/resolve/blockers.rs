@@ -42,6 +42,7 @@ impl Resolver<'_> {
     /// Returns the layer of blockers; `None` if the blockers are a mesh.
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
+        | BlockersFile::Bars { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
         | BlockersFile::Grating { name, center, .. }) = blockers
         else {
@@ -69,6 +70,17 @@ impl Resolver<'_> {
             BlockersFile::JitteredSquares { pitch, .. } => {
                 let shapes = self.squares(of, blockers, center);
                 Some((opaque(shapes, Vec::new()), Some(*pitch)))
+            }
+            &BlockersFile::Bars {
+                axis,
+                count,
+                pitch,
+                fill,
+                ..
+            } => {
+                let axis = axis.index();
+                let shapes = self.bars(axis, count, pitch, fill, center[axis]);
+                Some((opaque(shapes, Vec::new()), Some(pitch)))
             }
             BlockersFile::Shapes { shapes, .. } => Some((self.shapes(of, shapes, center), None)),
             BlockersFile::Grating {
@@ -126,6 +138,25 @@ impl Resolver<'_> {
         }
         let squares = jittered_squares(center, count, pitch, fill, jitter, seed);
         squares.into_iter().map(Shape::Rectangle).collect()
+    }
+
+    /// Returns bars as long rectangles, about the coordinate `center` along `axis`.
+    fn bars(&self, axis: usize, count: u32, pitch: f64, fill: f64, center: f64) -> Vec<Shape> {
+        // The count may be too large.
+        if !self.faults.all.is_empty() {
+            return Vec::new();
+        }
+        let middle = 0.5 * (f64::from(count) - 1.0);
+        let bar = |i: u32| {
+            let mut bar = Rectangle {
+                center: [0.0; 2],
+                size: [2.0 * limits::MAX_NUMBER; 2],
+            };
+            bar.center[axis] = center + (f64::from(i) - middle) * pitch;
+            bar.size[axis] = fill * pitch;
+            Shape::Rectangle(bar)
+        };
+        (0..count).map(bar).collect()
     }
 
     /// Returns the mask of the shapes, moved to `center`.
@@ -202,6 +233,7 @@ impl Resolver<'_> {
             BlockersFile::JitteredSquares { count, .. } => {
                 f64::from(count[0]) * f64::from(count[1])
             }
+            BlockersFile::Bars { count, .. } => f64::from(*count),
             BlockersFile::Shapes { shapes, .. } => shapes
                 .iter()
                 .map(|s| match s {

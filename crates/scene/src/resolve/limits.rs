@@ -53,6 +53,7 @@ impl Resolver<'_> {
 fn shapes(blockers: &BlockersFile) -> u64 {
     match blockers {
         BlockersFile::JitteredSquares { count, .. } => count.map(u64::from).iter().product(),
+        BlockersFile::Bars { count, .. } => u64::from(*count),
         BlockersFile::Shapes { shapes, .. } => shapes.len() as u64,
         _ => 0,
     }
