@@ -1,9 +1,11 @@
 //! Scene files as they are written.
 
 mod allowed;
+mod format;
 mod light;
 mod surface;
 
+pub use format::SceneFormat;
 pub use light::{
     BulbFile, EnvironmentFile, GratingFile, ImageFile, LightFile, SphericalGaussianFile,
 };
@@ -425,20 +427,6 @@ impl<'de, T: TryFrom<u64>> Deserialize<'de> for Whole<T> {
         let count = deserializer.deserialize_any(Count)?;
         let refused = || D::Error::invalid_value(Unexpected::Unsigned(count), &Count);
         T::try_from(count).map(Self).map_err(|_| refused())
-    }
-}
-
-/// The format of scene files. Its number, 1, increases when a reader of the earlier format would
-/// misread a new file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SceneFormat;
-
-impl<'de> Deserialize<'de> for SceneFormat {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match count(deserializer)? {
-            1_u64 => Ok(Self),
-            other => Err(D::Error::invalid_value(Unexpected::Unsigned(other), &"1")),
-        }
     }
 }
 
