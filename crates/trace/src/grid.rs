@@ -55,12 +55,7 @@ impl Grid {
             return None;
         }
         let cells = FINENESS * shapes.len() as f64;
-        // Bars are as long as all bars together, so cells divide only the other axis.
-        let bars = [0, 1].map(|axis| {
-            let whole = bounds[axis].map(f64::to_bits);
-            let mut reaches = shapes.iter().map(|shape| reach(shape, axis));
-            reaches.all(|ends| ends.map(f64::to_bits) == whole)
-        });
+        let bars = are_bars(shapes, &bounds);
         let along = |axis: usize| match bars {
             [false, false] => (cells * sides[axis] / sides[1 - axis]).sqrt(),
             _ if bars[axis] => 1.0,
@@ -118,6 +113,16 @@ impl Grid {
         let shapes = &self.shapes[self.starts[cell]..self.starts[cell + 1]];
         shapes.iter().any(|shape| shape.contains(x, y))
     }
+}
+
+/// Checks whether the shapes are bars along an axis: each reaches as far along it as all together.
+/// Cells then divide only the other axis.
+fn are_bars(shapes: &[Shape], bounds: &[[f64; 2]; 2]) -> [bool; 2] {
+    [0, 1].map(|axis| {
+        let whole = bounds[axis].map(f64::to_bits);
+        let mut reaches = shapes.iter().map(|shape| reach(shape, axis));
+        reaches.all(|ends| ends.map(f64::to_bits) == whole)
+    })
 }
 
 #[cfg(test)]
