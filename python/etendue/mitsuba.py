@@ -40,6 +40,7 @@ LARGEST = 1 << 19
 """The largest number of rays that Mitsuba traces at a time."""
 FREQUENCIES = 12
 """Default number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per width of the window."""
+CHANNELS = {"red": 0, "green": 1, "blue": 2}
 CELLS = 256
 """Number of cells in which positions and slopes are drawn, along each coordinate of a window."""
 
@@ -65,10 +66,11 @@ class Placement:
     this surface start at the plane."""
 
     @classmethod
-    def of(cls, plane: ProbedPlane, ahead: float = 0.0) -> Placement:
-        """The plane of a probe. A plane on which light leaves a surface needs `ahead`, the distance from the surface to where the light is seen."""
+    def of(cls, plane: ProbedPlane, ahead: float = 0.0, on_surface: bool = False) -> Placement:
+        """The plane of a probe. A plane on which light leaves a surface needs `ahead`, the distance from the surface to where the light is seen; a
+        plane on which light arrives at a surface needs `on_surface`."""
         frame = plane.frame
-        return cls(frame["O"], frame["D"], frame["X"], plane.window, plane.frequencies, ahead)
+        return cls(frame["O"], frame["D"], frame["X"], plane.window, plane.frequencies, ahead, on_surface)
 
 
 def record(
@@ -97,6 +99,9 @@ def record(
     mi = _mitsuba()
     loaded = _loaded(mi, scene)
     asked = _integrator(mi, loaded, integrator)
+    colors = ("luminance",) if mi.is_monochromatic else ("luminance", *CHANNELS)
+    if color not in colors:
+        raise ValueError(f"color is {color!r}; allowed for this variant of Mitsuba: {', '.join(colors)}")
     if batches != int(batches) or batches < 4 or not batches <= rays < 2**32:
         raise ValueError(f"batches is {batches} for {rays} rays; allowed: 4 to the number of rays, which is below 2**32")
     each = -(-int(rays) // batches)
@@ -220,8 +225,8 @@ def _integrator(mi: Any, scene: Any, asked: Any) -> Any:
 
 def _words(integrator: Any) -> Any:
     """The dictionary of an integrator whose parameter is its depth; any other integrator itself."""
-    names = {"PathIntegrator": "path", "VolumetricPathIntegrator": "volpath", "VolumetricMisPathIntegrator": "volpathmis"}
-    name = names.get(type(integrator).__name__ if integrator is None else integrator.class_name())
+    names = {"PathIntegrator": "path", "VolumetricPathIntegrator": "volpath", "VolpathMisIntegratorImpl": "volpathmis"}
+    name = None if integrator is None else names.get(integrator.class_name())
     depth = re.search(r"max_depth = (\d+),\s*rr_depth = (\d+)", str(integrator))
     if name is None or depth is None or "hide_emitters = true" in str(integrator):
         return integrator
@@ -302,19 +307,11 @@ def _radiance(mi: Any, scene: Any, integrator: Any, medium: Any, color: Color, s
     value, _, _ = integrator.sample(scene, sampler, ray, medium)
     value = mi.unpolarized_spectrum(value) * share
     if mi.is_monochromatic:
-        if color != "luminance":
-            raise ValueError(f"color is {color!r}; allowed for this variant of Mitsuba: 'luminance'")
-        return np.array(value[0], dtype=float) * np.ones(count)
-    if mi.is_spectral:
-        xyz = mi.spectrum_to_xyz(value, ray.wavelengths)
-        value = mi.xyz_to_srgb(xyz)
-    channels = {"red": 0, "green": 1, "blue": 2}
-    if color in channels:
-        one = value[channels[color]]
-    elif color == "luminance":
-        one = mi.luminance(mi.Color3f(value))
+        one = value[0]
     else:
-        raise ValueError(f"color is {color!r}; allowed: 'luminance', 'red', 'green' or 'blue'")
+        if mi.is_spectral:
+            value = mi.xyz_to_srgb(mi.spectrum_to_xyz(value, ray.wavelengths))
+        one = mi.luminance(mi.Color3f(value)) if color == "luminance" else value[CHANNELS[color]]
     return np.array(one, dtype=float) * np.ones(count)
 
 

@@ -111,6 +111,15 @@ def test_a_pixel_of_a_world_agrees_with_etendue(tmp_path):
     assert etendue.difference(theirs["arriving_1"], own.measured("arriving_1")).p_value > LEVEL / 3
 
 
+@pytest.mark.parametrize("kind", ["path", "volpath", "volpathmis"])
+def test_light_that_arrives_has_met_one_surface_less(kind):
+    """The depth of a scene's integrator is found in its description, and reduced by one unless it is unlimited."""
+    for depth, shorter in ((6, 5), (-1, -1)):
+        words = etendue.mitsuba._words(mi.load_dict({"type": kind, "max_depth": depth, "rr_depth": 7}))
+        assert words == {"type": kind, "max_depth": depth, "rr_depth": 7}
+        assert etendue.mitsuba._shorter(words)["max_depth"] == shorter
+
+
 @pytest.mark.parametrize("variant", ["llvm_ad_rgb", "llvm_ad_spectral", "llvm_ad_mono_polarized"])
 def test_every_kind_of_variant_sees_the_same_light(variant, scene, photons):
     try:
