@@ -1,6 +1,6 @@
 //! The step from padded fine grids to slices.
 
-use super::kernel::{Kernel, WIDTH};
+use super::kernel::Kernel;
 use super::spread::Placement;
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use ndarray::ArrayViewMut2;
@@ -16,6 +16,9 @@ const ROWS: usize = 4;
 /// frequencies, and divides by the transform of the spreading kernel.
 pub(crate) struct FineTransform {
     placement: Placement,
+    /// Number of cells before the cell of a ray over which the ray is spread. Cell [i, j] of the
+    /// padded grid is the cell [i − `before`, j − `before`] of the period.
+    before: usize,
     grid: SliceGrid,
     along_row: Arc<dyn RealToComplex<f64>>,
     along_column: Arc<dyn Fft<f64>>,
@@ -45,13 +48,18 @@ impl Workspace {
 
 impl FineTransform {
     /// Plans the transform of fine grids laid out as `placement`, at the frequencies of `grid`.
-    pub(crate) fn new(kernel: &Kernel, placement: Placement, grid: SliceGrid) -> Self {
+    pub(crate) fn new<const TAPS: usize>(
+        kernel: &Kernel<f64, TAPS>,
+        placement: Placement,
+        grid: SliceGrid,
+    ) -> Self {
         let correction = |axis: &FrequencyAxis, cells: usize| -> Vec<f64> {
             let value = |i: usize| 1.0 / kernel.transform(i as f64 / cells as f64);
             (0..=axis.half).map(value).collect()
         };
         Self {
             placement,
+            before: TAPS / 2 - 1,
             grid,
             along_row: RealFftPlanner::new().plan_fft_forward(placement.columns),
             along_column: FftPlanner::new().plan_fft_forward(placement.rows),
@@ -134,17 +142,16 @@ impl FineTransform {
     /// Computes row `index` of the period. Each cell of the row is the sum of the padded cells that
     /// map to it. Some of these padded cells are a period away from the cell.
     fn wrap(&self, fine: &[f64], index: usize, row: &mut [f64]) {
-        /// A point is spread over three cells before its own cell.
-        const BEFORE: usize = WIDTH / 2 - 1;
         let Placement { rows, columns, .. } = self.placement;
+        let before = self.before;
         let [padded, stride] = self.placement.padded();
         row.fill(0.0);
-        let at = (index + BEFORE) % rows;
+        let at = (index + before) % rows;
         for i in [at, at + rows].into_iter().filter(|i| *i < padded) {
-            let (start, rest) = fine[i * stride..][..stride].split_at(BEFORE);
+            let (start, rest) = fine[i * stride..][..stride].split_at(before);
             let (middle, end) = rest.split_at(columns);
             add(row, middle);
-            add(&mut row[columns - BEFORE..], start);
+            add(&mut row[columns - before..], start);
             add(row, end);
         }
     }
@@ -166,12 +173,13 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// Computes the plain sum over the cells of a padded grid at the frequencies m ≥ 0 and `nu`
-    /// modulo the period, row by row.
-    fn plain(fine: &[f64], placement: Placement, [m, nu]: [usize; 2]) -> Complex {
+    /// modulo the period, row by row. The first cell lies `before` cells before the period.
+    fn plain(fine: &[f64], placement: Placement, before: usize, [m, nu]: [usize; 2]) -> Complex {
         let Placement { rows, columns, .. } = placement;
         // The fraction of a cycle is exact up to one division.
-        let phase =
-            |k: usize, i: usize, n: usize| cis(-TAU * ((k * (i + n - 3) % n) as f64 / n as f64));
+        let phase = |k: usize, i: usize, n: usize| {
+            cis(-TAU * ((k * (i + n - before) % n) as f64 / n as f64))
+        };
         let along = |row: &[f64]| -> Complex {
             let terms = row.iter().enumerate();
             terms.map(|(j, value)| phase(nu, j, columns) * *value).sum()
@@ -182,7 +190,12 @@ mod tests {
 
     #[test]
     fn slices_are_the_plain_sum_over_cells() {
-        let kernel = Kernel::new();
+        compare_with_plain_sum::<8>();
+        compare_with_plain_sum::<6>();
+    }
+
+    fn compare_with_plain_sum<const TAPS: usize>() {
+        let kernel = Kernel::<f64, TAPS>::new();
         for [rows, columns] in [[16, 16], [18, 25], [20, 27], [25, 40], [30, 48]] {
             let placement = Placement {
                 rho: [0.0; 2],
@@ -211,7 +224,7 @@ mod tests {
                 let at = |k: f64, cells: usize| kernel.transform(k / cells as f64);
                 let scale = at(m as f64, rows) * at(nu, columns) / 2.0;
                 let period = (n + columns - grid.nu.half) % columns;
-                let off = found * scale - plain(&fine, placement, [m, period]);
+                let off = found * scale - plain(&fine, placement, TAPS / 2 - 1, [m, period]);
                 // The limit covers the rounding errors of sums of up to 56 numbers with a total of
                 // about 4, and of 38 numbers with a total of about 13.
                 assert!(modulus(off) < 5e-14, "{rows} × {columns}, {m}, {nu}: {off}");

@@ -1,96 +1,71 @@
 //! The kernel that spreads a ray over cells of the fine grid.
 
 use crate::gauss_legendre;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, prelude::*};
 use std::f64::consts::{PI, TAU};
 
-/// Number of cells of the fine grid that a point is spread over, along each axis.
+/// The largest number of cells of the fine grid that a point is spread over, along each axis.
 pub(crate) const WIDTH: usize = 8;
-
-/// Half of the width. The kernel is even, so four taps determine all eight taps.
-const HALF: usize = WIDTH / 2;
 
 /// Number of cells of a period for each frequency step from zero to the largest frequency. Five
 /// cells are an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// The parameter β of the kernel. At this upsampling, 2.35 per cell of width is the best of the
-/// values 2.30, 2.35, …. The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point;
-/// at an upsampling of 2 it would be 4·10⁻⁷.
-const BETA: f64 = 2.35 * WIDTH as f64;
+/// The parameter β of the kernel, divided by its width. At an upsampling of 2.5, this is the best of
+/// the values 2.30, 2.35, … for six and for eight taps.
+const BETA: f64 = 2.45;
 
-/// Number of coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
-const TERMS: usize = 4;
+/// Number of coefficients of a tap, which is a polynomial of degree 7.
+const TERMS: usize = 8;
 
 /// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, where z is
-/// the distance from the point in units of four cells (Barnett, Magland and af Klinteberg 2019,
-/// *SIAM Journal on Scientific Computing* 41(5)).
+/// the distance from the point in units of half the kernel's width (Barnett, Magland and af
+/// Klinteberg 2019, *SIAM Journal on Scientific Computing* 41(5)).
 ///
-/// A point is spread over eight cells. If the point lies a fraction f of a cell beyond a cell of
-/// the fine grid, the weight of cell j, called tap j, is the kernel at z = (j − 3 − f)/4. Each tap
-/// is a polynomial in t = 2f − 1 that interpolates the kernel at Chebyshev nodes, with an error
-/// below 5·10⁻⁸ of the kernel's peak. The spectrum is divided by the transform of these
-/// polynomials, so their deviation from the kernel does not matter, except where it makes them less
-/// smooth. A higher degree, or the kernel itself, gives the same error of the spectrum to two
-/// digits.
+/// A point is spread over an even number of cells. If the point lies a fraction f of a cell beyond
+/// a cell of the fine grid, the weight of cell j, called tap j, is the kernel at z = (j + 1 − f)/h −
+/// 1, where h is half the number of taps. Each tap is a polynomial in t = 2f − 1 that interpolates
+/// the kernel at Chebyshev nodes, with an error below 6·10⁻⁸ of the kernel's peak for
+/// eight taps, and 4·10⁻⁷ for six. The spectrum is divided by the transform of these polynomials,
+/// so their deviation from the kernel does not matter, except where it makes them less smooth. A
+/// higher degree, or the kernel itself, gives the same error of the spectrum to two digits.
 ///
-/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps determine all eight taps.
-/// Products and sums are rounded separately and never fused, so every SIMD level gives bitwise the
-/// same result.
+/// The error along each axis is at most 0.9·10⁻⁷ of the amplitude of a point with eight taps, and
+/// 6.4·10⁻⁶ with six.
+///
+/// The last tap at t is the first tap at −t, so the even and odd parts of half the taps determine
+/// all taps. Products and sums are rounded separately and never fused, so every SIMD level gives
+/// bitwise the same result.
 #[derive(Clone, Debug)]
-pub(crate) struct Kernel {
-    /// Coefficients of t⁰, t², t⁴… of taps 0 to 3.
-    even: [[f64; HALF]; TERMS],
-    /// Coefficients of t¹, t³, t⁵… of taps 0 to 3.
-    odd: [[f64; HALF]; TERMS],
+pub(crate) struct Kernel<T, const TAPS: usize> {
+    /// The coefficients of t⁰, t¹, … of each tap.
+    terms: [[T; TERMS]; TAPS],
 }
 
-impl Kernel {
+impl<const TAPS: usize> Kernel<f64, TAPS> {
     /// Fits the taps.
     pub(crate) fn new() -> Self {
-        let mut kernel = Self {
-            even: [[0.0; HALF]; TERMS],
-            odd: [[0.0; HALF]; TERMS],
-        };
-        for tap in 0..HALF {
-            let coefficients = fit(|t| exact(tap, 0.5 * (t + 1.0)));
-            for i in 0..TERMS {
-                kernel.even[i][tap] = coefficients[2 * i];
-                kernel.odd[i][tap] = coefficients[2 * i + 1];
-            }
+        Self {
+            terms: std::array::from_fn(|tap| fit(|t| exact::<TAPS>(tap, 0.5 * (t + 1.0)))),
         }
-        kernel
     }
 
-    /// Computes the eight taps of eight points. Each point lies a fraction `f` of a cell beyond its
-    /// cell, and lane i of each tap belongs to point i.
-    #[inline(always)]
-    pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64x8<S>) -> [f64x8<S>; WIDTH] {
-        let t = f * 2.0 - 1.0;
-        let square = t * t;
-        let mut taps = [t; WIDTH];
-        for tap in 0..HALF {
-            let mut even = f64x8::splat(simd, self.even[TERMS - 1][tap]);
-            let mut odd = f64x8::splat(simd, self.odd[TERMS - 1][tap]);
-            for i in (0..TERMS - 1).rev() {
-                even = even * square + self.even[i][tap];
-                odd = odd * square + self.odd[i][tap];
-            }
-            let odd = odd * t;
-            taps[tap] = even + odd;
-            taps[WIDTH - 1 - tap] = even - odd;
+    /// Returns the same kernel with coefficients in single precision.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the error of six taps is larger than that of f32"
+    )]
+    pub(crate) fn single(&self) -> Kernel<f32, TAPS> {
+        Kernel {
+            terms: self.terms.map(|terms| terms.map(|term| term as f32)),
         }
-        taps
     }
 
-    /// Computes tap `tap`, 0 to 3, for a single number. The plan and the tests use this function.
+    /// Computes a tap for a single number. The plan and the tests use this function.
     fn tap(&self, tap: usize, f: f64) -> f64 {
         let t = 2.0 * f - 1.0;
-        let horner = |terms: &[[f64; HALF]]| {
-            let last_first = terms.iter().rev();
-            last_first.fold(0.0, |sum, term| sum * (t * t) + term[tap])
-        };
-        horner(&self.even) + horner(&self.odd) * t
+        let last_first = self.terms[tap].iter().rev();
+        last_first.fold(0.0, |sum, term| sum * t + term)
     }
 
     /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
@@ -103,39 +78,61 @@ impl Kernel {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
             let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
-            for tap in 0..HALF {
-                // Taps 4 to 7 mirror taps 3 to 0, so each pair of taps contributes twice a cosine.
-                let phase = TAU * xi * (tap as f64 - 3.0 - f);
-                sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
+            for tap in 0..TAPS {
+                // The kernel is even, so the sines of its transform cancel.
+                let phase = TAU * xi * (tap as f64 + 1.0 - f - 0.5 * TAPS as f64);
+                sum += weight * self.tap(tap, f) * libm::cos(phase);
             }
         }
         sum
     }
 }
 
+impl<T: Copy, const TAPS: usize> Kernel<T, TAPS> {
+    /// Computes the taps of several points at t = 2f − 1. Lane i of each tap belongs to point i.
+    #[inline(always)]
+    pub(crate) fn taps<S: Simd, V: SimdFloat<S, Element = T>>(&self, simd: S, t: V) -> [V; TAPS] {
+        let square = t * t;
+        let mut taps = [t; TAPS];
+        for tap in 0..TAPS / 2 {
+            let terms = &self.terms[tap];
+            let mut even = V::splat(simd, terms[TERMS - 2]);
+            let mut odd = V::splat(simd, terms[TERMS - 1]);
+            for i in (0..TERMS / 2 - 1).rev() {
+                even = even * square + V::splat(simd, terms[2 * i]);
+                odd = odd * square + V::splat(simd, terms[2 * i + 1]);
+            }
+            let odd = odd * t;
+            taps[tap] = even + odd;
+            taps[TAPS - 1 - tap] = even - odd;
+        }
+        taps
+    }
+}
+
 /// Transposes eight rows of eight numbers by three perfect shuffles. The index of a number has six
 /// bits, and each shuffle moves the last bit to the front.
 #[inline(always)]
-pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {
+pub(crate) fn transposed<S: Simd, V: SimdBase<S>>(mut rows: [V; 8]) -> [V; 8] {
     for _ in 0..3 {
         let before = rows;
-        for i in 0..HALF {
-            (rows[2 * i], rows[2 * i + 1]) = before[i].interleave(before[i + HALF]);
+        for i in 0..4 {
+            (rows[2 * i], rows[2 * i + 1]) = before[i].interleave(before[i + 4]);
         }
     }
     rows
 }
 
-/// Computes tap `tap` from the kernel's formula.
-fn exact(tap: usize, f: f64) -> f64 {
-    let z = (tap as f64 - 3.0 - f) / HALF as f64;
-    libm::exp(BETA * ((1.0 - z * z).max(0.0).sqrt() - 1.0))
+/// Computes a tap from the kernel's formula.
+fn exact<const TAPS: usize>(tap: usize, f: f64) -> f64 {
+    let z = (tap as f64 + 1.0 - f) / (0.5 * TAPS as f64) - 1.0;
+    libm::exp(BETA * TAPS as f64 * ((1.0 - z * z).max(0.0).sqrt() - 1.0))
 }
 
 /// Returns the coefficients of t⁰, t¹, … of the polynomial that interpolates `function` at the
 /// Chebyshev nodes of [−1, 1].
-fn fit(function: impl Fn(f64) -> f64) -> [f64; 2 * TERMS] {
-    const N: usize = 2 * TERMS;
+fn fit(function: impl Fn(f64) -> f64) -> [f64; TERMS] {
+    const N: usize = TERMS;
     let node = |i: usize| PI * (i as f64 + 0.5) / N as f64;
     let values: [f64; N] = std::array::from_fn(|i| function(libm::cos(node(i))));
     let mut coefficients = [0.0; N];
@@ -160,48 +157,71 @@ fn fit(function: impl Fn(f64) -> f64) -> [f64; 2 * TERMS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch};
+    use fearless_simd::{Level, dispatch, f32x8, f64x8};
 
     #[test]
     fn taps_follow_the_kernel_and_one_another() {
-        let kernel = Kernel::new();
+        compare_taps::<8>(6e-8);
+        compare_taps::<6>(4e-7);
+    }
+
+    fn compare_taps<const TAPS: usize>(bound: f64) {
+        let kernel = Kernel::<f64, TAPS>::new();
+        let single = kernel.single();
         let mut worst: f64 = 0.0;
         for i in 0..=1000 {
             let f = f64::from(i) / 1000.0;
-            let [all, each] = dispatch!(Level::new(), simd => {
-                let lanes: [f64; 8] = std::array::from_fn(|i| f / (i + 1) as f64);
+            #[expect(clippy::cast_possible_truncation, reason = "f32 is tested")]
+            let (taps, short) = dispatch!(Level::new(), simd => {
+                let lanes: [f64; 8] = std::array::from_fn(|i| 2.0 * f / (i + 1) as f64 - 1.0);
                 let taps = kernel.taps(simd, f64x8::load_array(simd, lanes));
-                [taps, transposed(taps)].map(|taps| taps.map(|tap| tap.to_array()))
+                let short = lanes.map(|t| t as f32);
+                let short = single.taps(simd, f32x8::load_array(simd, short));
+                (taps.map(|tap| tap.to_array()), short.map(|tap| tap.to_array()))
             });
-            for (j, tap) in each[0].iter().enumerate() {
-                worst = worst.max((tap - exact(j, f)).abs());
+            for (j, (tap, short)) in taps.iter().zip(&short).enumerate() {
+                worst = worst.max((tap[0] - exact::<TAPS>(j, f)).abs());
+                // The limits are rounding errors of the fit, and of a polynomial of f32.
+                assert!((kernel.tap(j, f) - tap[0]).abs() <= 1e-14);
+                assert!((f64::from(short[0]) - tap[0]).abs() <= 3e-7);
             }
-            for (j, tap) in each[0][..HALF].iter().enumerate() {
-                // The formula computes the same sums, but starts from zero.
-                assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
-            }
-            let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));
-            assert_eq!(each, turned);
         }
-        assert!(worst < 5e-8, "{worst:e}"); // the bound stated at `Kernel`
+        assert!(worst < bound, "{worst:e}"); // the bound stated at `Kernel`
+    }
+
+    #[test]
+    fn rows_become_columns() {
+        let rows: [[f64; 8]; 8] =
+            std::array::from_fn(|i| std::array::from_fn(|j| (8 * i + j) as f64));
+        let turned = dispatch!(Level::new(), simd => {
+            transposed(rows.map(|row| f64x8::load_array(simd, row))).map(|row| row.to_array())
+        });
+        let expected: [[f64; 8]; 8] = std::array::from_fn(|i| rows.map(|row| row[i]));
+        assert_eq!(turned, expected);
     }
 
     #[test]
     fn transform_is_that_of_the_kernel() {
-        let kernel = Kernel::new();
+        compare_transform::<8>();
+        compare_transform::<6>();
+    }
+
+    fn compare_transform<const TAPS: usize>() {
+        let kernel = Kernel::<f64, TAPS>::new();
+        let width = TAPS as f64;
         for xi in [0.0, 0.11, 0.25, 0.5] {
-            // Applies the midpoint rule to the formula, over 8 cells.
+            // Applies the midpoint rule to the formula, over the width of the kernel.
             let n = 20_000;
             let sum: f64 = (0..n)
                 .map(|i| {
-                    let d = 8.0 * (f64::from(i) + 0.5) / f64::from(n) - 4.0;
-                    let semicircle = (1.0 - d * d / 16.0).sqrt();
-                    libm::exp(BETA * (semicircle - 1.0)) * libm::cos(TAU * xi * d)
+                    let z = 2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0;
+                    let semicircle = (1.0 - z * z).sqrt();
+                    libm::exp(BETA * width * (semicircle - 1.0)) * libm::cos(PI * xi * width * z)
                 })
                 .sum();
-            let expected = 8.0 * sum / f64::from(n);
-            // The limit is eight cells times the error of the taps, which is at most 5e-8.
-            assert!((kernel.transform(xi) - expected).abs() < 4e-7, "{xi}");
+            let expected = width * sum / f64::from(n);
+            // The limit is the width times the error of the taps, which is at most 4e-7.
+            assert!((kernel.transform(xi) - expected).abs() < 3e-6, "{xi}");
         }
     }
 }

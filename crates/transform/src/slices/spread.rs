@@ -1,4 +1,4 @@
-//! The positions of rays on the fine grid of an azimuth, and their spreading.
+//! The positions of rays on the fine grid of an azimuth, and their spreading in double precision.
 
 use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH, transposed};
@@ -22,11 +22,35 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Returns the numbers of rows and columns of the padded fine grid. Its cell [i, j] is the cell
-    /// [i − 3, j − 3] of the period. A ray reaches eight cells, and cells outside the period are
-    /// wrapped once, after all spreading.
+    /// Returns the numbers of rows and columns of the padded fine grid. A ray reaches at most eight
+    /// cells from its first cell, and cells outside the period are wrapped once, after all
+    /// spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
+    }
+
+    /// Returns the first padded cell of a ray, and 2f − 1 along rows and along columns, where f is
+    /// the fraction of a cell by which the ray lies beyond its own cell.
+    ///
+    /// A point outside the period is moved into it by whole periods. The sum does not change,
+    /// because at the frequencies m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in
+    /// p.
+    #[inline(always)]
+    pub(crate) fn place(&self, [x, y, u, v]: [f64; 4]) -> (u32, [f64; 2]) {
+        /// The number 2⁵². If 2⁵² is added to a smaller whole number, the low bits of the sum hold
+        /// the smaller number. This conversion is faster than a checked cast.
+        const WHOLE: f64 = 4_503_599_627_370_496.0;
+        let p = x * self.rho[0] + y * self.rho[1];
+        let q = u * self.nu[0] + v * self.nu[1];
+        let row = (p - p.floor()) * self.rows as f64;
+        let column = (q - q.floor()) * self.columns as f64;
+        let first = row.floor() * self.padded()[1] as f64 + column.floor();
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "the low bits hold the number"
+        )]
+        let start = (first + WHOLE).to_bits() as u32;
+        (start, [row, column].map(|at| (at - at.floor()) * 2.0 - 1.0))
     }
 }
 
@@ -36,10 +60,10 @@ const EIGHT: usize = 8;
 /// A group of rays on the fine grid.
 struct Group {
     /// The first padded cell of each ray.
-    start: [usize; GROUP],
-    /// The fraction of a cell by which each ray lies beyond its row.
+    start: [u32; GROUP],
+    /// The position of each ray between two rows, from −1 to 1.
     row: [f64; GROUP],
-    /// The fraction of a cell by which each ray lies beyond its column.
+    /// The position of each ray between two columns, from −1 to 1.
     column: [f64; GROUP],
     /// Weight times the taps of the rows, [tap, ray].
     down: [[f64; GROUP]; WIDTH],
@@ -54,7 +78,7 @@ struct Group {
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(
     simd: S,
-    kernel: &Kernel,
+    kernel: &Kernel<f64, WIDTH>,
     placement: &Placement,
     block: &Block,
     fine: &mut [f64],
@@ -76,42 +100,20 @@ pub(crate) fn spread<S: Simd>(
 /// Finds the cells of the rays starting at `from`.
 #[inline(always)]
 fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
-    let [stride, rays] = [placement.padded()[1], from + GROUP];
-    let (x, y) = (&block.x[from..rays], &block.y[from..rays]);
-    let (u, v) = (&block.u[from..rays], &block.v[from..rays]);
+    let rays = from..from + GROUP;
+    let (x, y) = (&block.x[rays.clone()], &block.y[rays.clone()]);
+    let (u, v) = (&block.u[rays.clone()], &block.v[rays]);
     for i in 0..GROUP {
-        let (row, f) = cell(x[i], y[i], placement.rho, placement.rows);
-        let (column, g) = cell(u[i], v[i], placement.nu, placement.columns);
-        group.start[i] = row * stride + column;
-        group.row[i] = f;
-        group.column[i] = g;
+        let (start, [row, column]) = placement.place([x[i], y[i], u[i], v[i]]);
+        group.start[i] = start;
+        group.row[i] = row;
+        group.column[i] = column;
     }
-}
-
-/// Returns the cell of a point, and the fraction of a cell by which the point lies beyond this
-/// cell. A period has `count` cells.
-///
-/// A point outside the period is moved into it by whole periods. The sum does not change, because
-/// at the frequencies m · spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p.
-#[inline(always)]
-fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// The number 2⁵². If 2⁵² is added to a smaller whole number, the low bits of the sum hold the
-    /// smaller number. This conversion is faster than a checked cast.
-    const WHOLE: f64 = 4_503_599_627_370_496.0;
-    let periods = a * along[0] + b * along[1];
-    let cells = (periods - periods.floor()) * count as f64;
-    let whole = cells.floor();
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the low bits hold the number"
-    )]
-    let cell = (whole + WHOLE).to_bits() as u32;
-    (cell as usize, cells - whole)
 }
 
 /// Computes the taps.
 #[inline(always)]
-fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
+fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel<f64, WIDTH>, weight: &[f64]) {
     for i in (0..GROUP).step_by(EIGHT) {
         let eight = i..i + EIGHT;
         let row = f64x8::from_slice(simd, &group.row[eight.clone()]);
@@ -132,7 +134,7 @@ fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
 fn add<S: Simd>(simd: S, group: &Group, stride: usize, fine: &mut [f64]) {
     for (i, across) in group.across.iter().enumerate() {
         let across = f64x8::from_slice(simd, across);
-        let start = group.start[i];
+        let start = group.start[i] as usize;
         let cells = &mut fine[start..start + (WIDTH - 1) * stride + WIDTH];
         for (j, down) in group.down.iter().enumerate() {
             let row = &mut cells[j * stride..j * stride + WIDTH];
