@@ -7,6 +7,7 @@ mod environments;
 mod fuzz;
 mod hostile;
 mod physics;
+mod precision;
 #[path = "../src/statistics.rs"]
 #[allow(dead_code, reason = "one of its functions is enough here")]
 mod statistics;

@@ -65,7 +65,7 @@ impl Memory {
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
-            threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
+            threads: busy * sum(&|plane, _| SliceTransform::reduced(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
                 let held = 3.0
                     + of.theory.parameters().len() as f64

@@ -89,6 +89,12 @@ pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
+    /// Returns whether errors of 10⁻⁷ of a spectrum's value at zero can be told from its noise. Only
+    /// light from a source with extent has so much noise that they cannot.
+    fn is_precise(&self) -> bool {
+        true
+    }
+
     /// Emits the photons of `batch`. Each call of `record` receives the index of a plane and a
     /// block of crossings of this plane. The order of the calls and of the crossings is always the
     /// same. `progress` receives the number of photons of each block.

@@ -53,7 +53,7 @@ const COSINE: [f64; TERMS] = {
 /// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
 /// evaluated for each photon, and this function is much faster than the cosine of a library. Its
 /// results are bitwise identical on every machine.
-#[inline]
+#[inline(always)]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
     let mut cosines = [0.0; N];
     for term in COSINE.iter().rev() {
@@ -61,7 +61,10 @@ fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
             *cosine = *cosine * (s * s) + term;
         }
     }
-    cosines.map(|c| c * c)
+    for cosine in &mut cosines {
+        *cosine *= *cosine;
+    }
+    cosines
 }
 
 impl Profile {
@@ -89,6 +92,20 @@ impl Profile {
             }
             Self::Box(_) => 1.0,
             Self::Gaussian { width, .. } => libm::exp(-std::f64::consts::PI * (t / width).powi(2)),
+        }
+    }
+
+    /// Returns the profile at several numbers inside the support.
+    #[inline(always)]
+    fn values<const N: usize>(&self, t: &[f64; N]) -> [f64; N] {
+        match *self {
+            Self::Hann(h) => {
+                let mut shares = *t;
+                shares.iter_mut().for_each(|share| *share /= h);
+                hann(shares)
+            }
+            Self::Box(_) => [1.0; N],
+            Self::Gaussian { .. } => t.map(|t| self.value(t)),
         }
     }
 
@@ -193,6 +210,20 @@ impl Window {
             [x, y, u, v] => [x.value(z.x), y.value(z.y), u.value(z.u), v.value(z.v)],
         };
         x * y * u * v
+    }
+
+    /// Returns the window at several rays inside the support, given as columns of x, y, u and v.
+    /// The values are those of [`Self::value`].
+    #[inline(always)]
+    #[must_use]
+    pub fn values<const N: usize>(&self, [x, y, u, v]: &[[f64; N]; 4]) -> [f64; N] {
+        let mut product = self.x.values(x);
+        for (profile, along) in [(self.y, y), (self.u, u), (self.v, v)] {
+            for (product, value) in product.iter_mut().zip(profile.values(along)) {
+                *product *= value;
+            }
+        }
+        product
     }
 
     /// Checks whether a ray is inside the support.

@@ -1,6 +1,6 @@
 //! Sums the light field in cells of x and u.
 
-use etendue_field::{Projection, ProjectionGrid, TwoPlane};
+use etendue_field::{Projection, ProjectionGrid};
 use ndarray::Array2;
 
 /// A sum of weighted rays in cells of (x, u), which becomes a [`Projection`]. A projection is the
@@ -22,10 +22,10 @@ impl ProjectionHistogram {
         }
     }
 
-    /// Adds a ray; rays outside the grid are ignored.
+    /// Adds a ray at (x, u); rays outside the grid are ignored.
     #[inline]
-    pub fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
-        if let Some(cell) = self.grid.cell(ray.x, ray.u) {
+    pub fn deposit(&mut self, [x, u]: [f64; 2], weight: f64) {
+        if let Some(cell) = self.grid.cell(x, u) {
             self.sums[cell] += weight;
         }
     }

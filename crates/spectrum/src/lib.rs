@@ -27,14 +27,16 @@ mod measurement;
 pub mod moments;
 mod radial;
 mod ray_moments;
+mod recorder;
 mod variation;
 
 pub use batch::{Batch, PartialBatch, PlaneBatch};
 pub use covariance::{CovarianceEstimate, covariance};
 pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;
-pub use measure::{PROJECTION_BINS, Watch, measure, measure_watched};
+pub use measure::{Watch, measure, measure_watched};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
 pub use ray_moments::RayMoments;
+pub use recorder::PROJECTION_BINS;
 pub use variation::WindowedMean;

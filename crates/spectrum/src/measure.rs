@@ -1,18 +1,14 @@
 //! Measures batches of photons, part by part, on all threads of a pool.
 
-use crate::batch::{Batch, PartialBatch, PlaneBatch};
-use crate::histogram::ProjectionHistogram;
+use crate::batch::{Batch, PartialBatch};
 use crate::measurement::Measurement;
-use crate::ray_moments::RayMoments;
-use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane};
-use etendue_transform::{Accumulator, SliceTransform};
+use crate::recorder::Recorder;
+use etendue_field::{Crossing, PhotonSource, VirtualPlane};
+use etendue_transform::SliceTransform;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Number of cells of a projection along x and along u.
-pub const PROJECTION_BINS: usize = 64;
 
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///
@@ -74,10 +70,12 @@ pub fn measure_watched(
     batches: &mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &dyn Watch,
 ) -> (Measurement, Vec<PartialBatch>) {
-    let plans: Vec<_> = planes
-        .iter()
-        .map(|p| SliceTransform::new(&p.grid))
-        .collect();
+    let plan = if source.is_precise() {
+        SliceTransform::new
+    } else {
+        SliceTransform::reduced
+    };
+    let plans: Vec<_> = planes.iter().map(|p| plan(&p.grid)).collect();
     let recorders = || -> Vec<Recorder<'_>> {
         let pairs = planes.iter().zip(&plans);
         pairs
@@ -209,54 +207,5 @@ fn measure_part(
         emitted,
         ledger,
         planes: recorders.iter_mut().map(|r| r.finish(scale)).collect(),
-    }
-}
-
-/// Receives the crossings of one plane, multiplies their weights by the plane's window and by the
-/// factor of the plane's quantity, and accumulates the sums.
-struct Recorder<'plan> {
-    plane: &'plan VirtualPlane,
-    tally: PlaneTally,
-    slices: Accumulator<'plan>,
-    projection: ProjectionHistogram,
-    moments: RayMoments,
-}
-
-impl<'plan> Recorder<'plan> {
-    fn new(plane: &'plan VirtualPlane, plan: &'plan SliceTransform) -> Self {
-        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
-        Self {
-            plane,
-            tally: PlaneTally::default(),
-            slices: plan.accumulator(),
-            projection: ProjectionHistogram::new(cells),
-            moments: RayMoments::default(),
-        }
-    }
-
-    fn record(&mut self, crossings: &[Crossing]) {
-        for Crossing { ray, weight } in crossings {
-            self.tally.crossed += 1;
-            if !self.plane.window.contains(ray) {
-                self.tally.outside += 1;
-                continue;
-            }
-            self.tally.inside += 1;
-            let weight = weight * self.plane.window.value(ray) * self.plane.factor(ray);
-            self.slices.deposit(ray, weight);
-            self.projection.deposit(ray, weight);
-            self.moments.deposit(ray, weight);
-        }
-    }
-
-    /// Returns the recorded sums divided by the number of emitted photons, and resets them for
-    /// the next part.
-    fn finish(&mut self, scale: f64) -> PlaneBatch {
-        PlaneBatch {
-            tally: std::mem::take(&mut self.tally),
-            slices: self.slices.finish(scale),
-            projection: self.projection.finish(scale),
-            moments: self.moments.finish(scale),
-        }
     }
 }

@@ -1,7 +1,9 @@
 //! Computes moments of the coordinates of a light field's rays.
 
-use etendue_field::TwoPlane;
 use ndarray::Array2;
+
+/// Number of rays that are added side by side.
+pub(crate) const LANES: usize = 8;
 
 /// Integrals of the windowed light field over rays, up to second order. With z = (x, y, u, v), they
 /// are ∫ ℓW, ∫ ℓW zᵢ, and ∫ ℓW zᵢ zⱼ for i ≤ j, in this order.
@@ -11,29 +13,6 @@ pub struct RayMoments(pub [f64; Self::COUNT]);
 impl RayMoments {
     /// Number of sums.
     pub const COUNT: usize = 15;
-
-    /// Adds a ray.
-    #[inline]
-    pub(crate) fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
-        let z = [ray.x, ray.y, ray.u, ray.v];
-        self.0[0] += weight;
-        let mut next = 5;
-        for i in 0..4 {
-            let first = weight * z[i];
-            self.0[1 + i] += first;
-            for other in &z[i..] {
-                self.0[next] += first * other;
-                next += 1;
-            }
-        }
-    }
-
-    /// Returns the sums of the recorded rays times `scale`, and resets the sums for the next
-    /// part.
-    pub(crate) fn finish(&mut self, scale: f64) -> Self {
-        let sums = std::mem::take(self);
-        Self(sums.0.map(|s| s * scale))
-    }
 
     /// Returns the central second moments, [4, 4]; `None` if no light arrived.
     pub(crate) fn covariance(&self) -> Option<Array2<f64>> {
@@ -53,21 +32,73 @@ impl RayMoments {
     }
 }
 
+/// Sums of moments over rays, each in several parts that are added side by side.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MomentSums([[f64; LANES]; RayMoments::COUNT]);
+
+impl MomentSums {
+    /// Adds rays given as columns of x, y, u, v and weight. The weights beyond `count`, up to a
+    /// multiple of [`LANES`], must be zero.
+    #[inline(always)]
+    pub(crate) fn deposit<const N: usize>(&mut self, columns: &[[f64; N]; 5], count: usize) {
+        let columns = columns
+            .each_ref()
+            .map(|column| column.as_chunks::<LANES>().0);
+        let mut sums = self.0;
+        for i in 0..count.div_ceil(LANES) {
+            let [x, y, u, v, weight] = columns.map(|column| column[i]);
+            let z = [x, y, u, v];
+            add(&mut sums[0], &weight, &[1.0; LANES]);
+            let mut next = 5;
+            for i in 0..4 {
+                add(&mut sums[1 + i], &weight, &z[i]);
+                let mut first = [0.0; LANES];
+                add(&mut first, &weight, &z[i]);
+                for other in &z[i..] {
+                    add(&mut sums[next], &first, other);
+                    next += 1;
+                }
+            }
+        }
+        self.0 = sums;
+    }
+
+    /// Returns the sums of the recorded rays times `scale`, and resets the sums for the next
+    /// part.
+    pub(crate) fn finish(&mut self, scale: f64) -> RayMoments {
+        let sums = std::mem::take(self);
+        RayMoments(sums.0.map(|parts| parts.iter().sum::<f64>() * scale))
+    }
+}
+
+/// Adds the products of two columns to a sum.
+#[inline(always)]
+fn add(sum: &mut [f64; LANES], a: &[f64; LANES], b: &[f64; LANES]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum += a * b;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn moments_of_four_rays_are_what_a_hand_makes_of_them() {
-        let mut moments = RayMoments::default();
-        let ray = |x, y, u, v| TwoPlane { x, y, u, v };
-        for (ray, weight) in [
-            (ray(1.0, 0.0, 2.0, 0.0), 1.0),
-            (ray(-1.0, 0.0, -2.0, 0.5), 1.0),
-            (ray(3.0, 1.0, 0.0, 0.0), 2.0),
-        ] {
-            moments.deposit(&ray, weight);
+        // Each row has x, y, u, v and the weight of a ray.
+        let rays = [
+            [1.0, 0.0, 2.0, 0.0, 1.0],
+            [-1.0, 0.0, -2.0, 0.5, 1.0],
+            [3.0, 1.0, 0.0, 0.0, 2.0],
+        ];
+        let mut columns = [[0.0; 2 * LANES]; 5];
+        for (i, column) in columns.iter_mut().enumerate() {
+            for (to, ray) in column.iter_mut().zip(rays) {
+                *to = ray[i];
+            }
         }
+        let mut moments = MomentSums::default();
+        moments.deposit(&columns, rays.len());
         let covariance = moments.finish(0.25).covariance().unwrap_or_default();
         // The means of the four coordinates are 1.5, 0.5, 0 and 0.125.
         let expected = [

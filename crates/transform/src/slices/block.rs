@@ -44,6 +44,16 @@ impl Block {
         self.weight.push(weight);
     }
 
+    /// Adds rays given as columns of x, y, u, v and weight, up to the capacity. Returns the number
+    /// of rays added.
+    pub(crate) fn extend(&mut self, more: [&[f64]; 5]) -> usize {
+        let count = more[0].len().min(CAPACITY - self.weight.len());
+        for (column, more) in self.columns().into_iter().zip(more) {
+            column.extend_from_slice(&more[..count]);
+        }
+        count
+    }
+
     /// Checks whether the block must be spread before another ray is added.
     #[inline]
     pub(crate) fn is_full(&self) -> bool {

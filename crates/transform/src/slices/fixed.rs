@@ -21,8 +21,8 @@ const LANES: usize = 16;
 /// those of every second or every fourth multiple.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A group of rays on the fine grid.
-struct Group {
+/// A group of rays on the fine grid, with scaled weights.
+struct ScaledRays {
     /// The first padded cell of each ray.
     start: [u32; GROUP],
     /// The position of each ray between two rows, from −1 to 1.
@@ -52,7 +52,7 @@ pub(crate) fn spread<S: Simd>(
     cells: &mut [i32],
     fine: &mut [f64],
 ) {
-    let mut group = Group {
+    let mut group = ScaledRays {
         start: [0; GROUP],
         row: [0.0; GROUP],
         column: [0.0; GROUP],
@@ -95,7 +95,7 @@ fn scale(block: &Block) -> f64 {
     clippy::cast_possible_truncation,
     reason = "f32 has more digits than six taps"
 )]
-fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize, scale: f64) {
+fn place(group: &mut ScaledRays, placement: &Placement, block: &Block, from: usize, scale: f64) {
     let rays = from..from + GROUP;
     let (x, y) = (&block.x[rays.clone()], &block.y[rays.clone()]);
     let (u, v) = (&block.u[rays.clone()], &block.v[rays.clone()]);
@@ -113,7 +113,7 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize, s
 
 /// Computes the taps.
 #[inline(always)]
-fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel<f32, TAPS>) {
+fn weigh<S: Simd>(simd: S, group: &mut ScaledRays, kernel: &Kernel<f32, TAPS>) {
     for i in (0..GROUP).step_by(LANES) {
         let lanes = i..i + LANES;
         let row = f32x16::from_slice(simd, &group.row[lanes.clone()]);
@@ -136,7 +136,7 @@ fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel<f32, TAPS>) {
 
 /// Adds each ray to its cells.
 #[inline(always)]
-fn add<S: Simd>(simd: S, group: &Group, stride: usize, cells: &mut [i32]) {
+fn add<S: Simd>(simd: S, group: &ScaledRays, stride: usize, cells: &mut [i32]) {
     for (i, across) in group.across.iter().enumerate() {
         let across = f32x8::from_slice(simd, across);
         let offset = f32x8::splat(simd, group.offset[i]);

@@ -48,6 +48,10 @@ pub struct SliceTransform {
 
 /// The kernel of a plan.
 #[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a plan holds one kernel, and is not moved"
+)]
 enum Spreading {
     Full(Kernel<f64, WIDTH>),
     Reduced(Kernel<f32, { fixed::TAPS }>),
@@ -198,6 +202,17 @@ impl Accumulator<'_> {
         self.block.push(ray, weight);
         if self.block.is_full() {
             self.flush();
+        }
+    }
+
+    /// Adds rays given as columns of x, y, u, v and weight. All columns have the same length.
+    pub fn deposit_columns(&mut self, columns: [&[f64]; 5]) {
+        let mut from = 0;
+        while from < columns[0].len() {
+            from += self.block.extend(columns.map(|column| &column[from..]));
+            if self.block.is_full() {
+                self.flush();
+            }
         }
     }
 
