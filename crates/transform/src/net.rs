@@ -29,8 +29,12 @@ const POLYNOMIALS: [(usize, u32, [u32; 5]); 9] = [
 ];
 
 /// The contribution of each byte of a point's index to its coordinates, [block, byte, value];
-/// contributions are combined by exclusive or.
+/// contributions are combined by exclusive or. The bits of coordinates are reversed, because the
+/// scrambling needs them in this order.
 static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
+
+/// The contribution of the lowest byte of a point's index, [block, coordinate, value].
+static LOWEST: [[[u32; 256]; WIDTH]; JOINT] = lowest();
 
 /// Returns the contribution of each bit of a point's index to a coordinate of Sobol' points;
 /// contributions are combined by exclusive or. There are ten coordinates, starting at 0.
@@ -72,13 +76,25 @@ const fn added() -> [[[[u32; WIDTH]; 256]; 4]; JOINT] {
             let mut value = 0;
             while value < 256 {
                 if (value >> (bit % 8)) & 1 == 1 {
-                    table[dimension / WIDTH][bit / 8][value][dimension % WIDTH] ^= directions[bit];
+                    table[dimension / WIDTH][bit / 8][value][dimension % WIDTH] ^=
+                        directions[bit].reverse_bits();
                 }
                 value += 1;
             }
             bit += 1;
         }
         dimension += 1;
+    }
+    table
+}
+
+const fn lowest() -> [[[u32; 256]; WIDTH]; JOINT] {
+    let mut table = [[[0; 256]; WIDTH]; JOINT];
+    let mut i = 0;
+    while i < JOINT * WIDTH * 256 {
+        let [block, k, value] = [i / (WIDTH * 256), i / 256 % WIDTH, i % 256];
+        table[block][k][value] = ADDED[block][0][value][k];
+        i += 1;
     }
     table
 }
@@ -123,29 +139,71 @@ impl Net {
     #[inline]
     #[must_use]
     pub fn words(&self, point: u32, block: u32) -> [u32; WIDTH] {
-        let block = block as usize;
-        let keys = &self.keys[block];
+        let keys = &self.keys[block as usize];
+        let reversed = keys.reversed(point, block as usize);
+        std::array::from_fn(|k| hashed(reversed[k], keys.coordinate(k)))
+    }
+
+    /// Returns [`Self::words`] of `N` points from the point `first` on, as a column for each
+    /// coordinate. The compiler can vectorise the function if `first` is a multiple of `N`.
+    #[inline(always)]
+    #[must_use]
+    pub fn columns<const N: usize>(&self, first: u32, block: u32) -> [[u32; N]; WIDTH] {
+        let mut columns = [[0; N]; WIDTH];
+        let keys = &self.keys[block as usize];
+        let is_aligned = N.is_power_of_two() && (first as usize).is_multiple_of(N);
+        match LOWEST.get(block as usize) {
+            // Points of the group differ only in the lowest bits of the index.
+            Some(lowest) if N <= 256 && is_aligned => {
+                let reversed = keys.reversed(first, block as usize);
+                for (k, column) in columns.iter_mut().enumerate() {
+                    for (word, lowest) in column.iter_mut().zip(&lowest[k]) {
+                        *word = hashed(reversed[k] ^ lowest, keys.coordinate(k));
+                    }
+                }
+            }
+            _ => {
+                for (i, point) in (0..N).zip(first..=u32::MAX) {
+                    let words = self.words(point, block);
+                    for (column, word) in columns.iter_mut().zip(words) {
+                        column[i] = word;
+                    }
+                }
+            }
+        }
+        columns
+    }
+}
+
+impl Keys {
+    /// Returns the coordinates of a point without scrambling, as words of reversed bits.
+    #[inline(always)]
+    fn reversed(&self, point: u32, block: usize) -> [u32; WIDTH] {
         // The first blocks form a joint net; further blocks are combined with it in a random order.
         let (table, point) = if block < JOINT {
             (&ADDED[block], point)
         } else {
-            (&ADDED[0], scrambled(point, keys.order))
+            (&ADDED[0], hashed(point.reverse_bits(), self.order))
         };
         let [a, b, c, d] = point.to_le_bytes().map(usize::from);
         let [a, b, c, d] = [&table[0][a], &table[1][b], &table[2][c], &table[3][d]];
-        std::array::from_fn(|k| {
-            scrambled(a[k] ^ b[k] ^ c[k] ^ d[k], [keys.added[k], keys.factors[k]])
-        })
+        std::array::from_fn(|k| a[k] ^ b[k] ^ c[k] ^ d[k])
+    }
+
+    /// Returns the addend and multiplier that scramble a coordinate.
+    #[inline(always)]
+    fn coordinate(&self, k: usize) -> [u32; 2] {
+        [self.added[k], self.factors[k]]
     }
 }
 
-/// Applies Owen scrambling by a hash. In Owen scrambling, the change of each bit depends only on
-/// the bits above it, so the hash is applied to the reversed bits (Laine and Karras 2011). The hash
-/// is from Vegdahl 2021, *Building a better LK hash*, with one change: the multiplier is
-/// independent of the addend, so all numbers are equally likely.
-#[inline]
-fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
-    let mut x = value.reverse_bits();
+/// Applies Owen scrambling by a hash to a number whose bits are given in reversed order. In Owen
+/// scrambling, the change of each bit depends only on the bits above it, so the hash is applied to
+/// the reversed bits (Laine and Karras 2011). The hash is from Vegdahl 2021, *Building a better LK
+/// hash*, with one change: the multiplier is independent of the addend, so all numbers are equally
+/// likely.
+#[inline(always)]
+fn hashed(mut x: u32, [added, factor]: [u32; 2]) -> u32 {
     x ^= x.wrapping_mul(0x3D20_ADEA);
     x = x.wrapping_add(added);
     x = x.wrapping_mul(factor | 1);
@@ -233,6 +291,20 @@ mod tests {
         }
     }
 
+    #[test]
+    fn columns_are_words_of_points() {
+        let net = Net::new(7, Stream::Net, 0, 3);
+        for first in [0, 16, 48, 250, 0x0123_4560, 0xFFFF_FFE0] {
+            for block in 0..3 {
+                let columns = net.columns::<16>(first, block);
+                for i in 0..16 {
+                    let words = columns.map(|column| column[i as usize]);
+                    assert_eq!(words, net.words(first + i, block), "{first} + {i}");
+                }
+            }
+        }
+    }
+
     /// The expected values are points 5, 16 and 32, times 64. They are computed by
     /// `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy 1.17, where these points have the
     /// numbers 6, 31 and 63, because SciPy orders points by Gray code.
@@ -243,7 +315,7 @@ mod tests {
                 let [a, b] = [ADDED[block][0][low], ADDED[block][0][high]];
                 (0..WIDTH).map(move |k| a[k] ^ b[k])
             });
-            words.map(|word| word >> 26).collect()
+            words.map(|word| word.reverse_bits() >> 26).collect()
         };
         assert_eq!(point([5, 0]), [40, 8, 56, 40, 40, 56, 8, 8]);
         assert_eq!(point([16, 0]), [2, 34, 58, 62, 62, 50, 22, 34]);
