@@ -42,8 +42,9 @@ fn emission(criterion: &mut Criterion) {
     let points = 0..u32::try_from(PHOTONS).unwrap();
     group.bench_function("points", |bencher| {
         bencher.iter(|| {
-            let words = points.clone().map(|point| net.words(point, 0)[0]);
-            words.fold(0, |all, word| all ^ word)
+            let groups = points.clone().step_by(ABREAST);
+            let words = groups.map(|first| net.columns::<ABREAST>(first, 0)[0]);
+            words.fold(0, |all, words| all ^ words[0])
         });
     });
     for name in ["travel", "fig9b", "table1/environment"] {
@@ -51,9 +52,8 @@ fn emission(criterion: &mut Criterion) {
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let groups = points.clone().step_by(ABREAST).map(|first| {
-                    let words =
-                        |i: usize, block| net.words(first + u32::try_from(i).unwrap(), block);
-                    emitter.emit(words).1[0]
+                    let photons = emitter.emit(|block| net.columns(first, block));
+                    photons.weights[0]
                 });
                 groups.sum::<f64>()
             });

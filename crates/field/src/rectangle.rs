@@ -25,8 +25,10 @@ impl Rectangle {
     #[inline]
     #[must_use]
     pub fn contains(&self, x: f64, y: f64) -> bool {
-        2.0 * (x - self.center[0]).abs() <= self.size[0]
-            && 2.0 * (y - self.center[1]).abs() <= self.size[1]
+        let along_x = 2.0 * (x - self.center[0]).abs() <= self.size[0];
+        let along_y = 2.0 * (y - self.center[1]).abs() <= self.size[1];
+        // Both comparisons are made, because the processor could not predict the result of one.
+        along_x & along_y
     }
 
     /// Returns the largest absolute coordinate of a point of the rectangle.

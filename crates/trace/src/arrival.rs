@@ -1,8 +1,6 @@
 //! A photon that arrives at the surface that ends a leg.
 
 use crate::line::{direction, start};
-use crate::obstacles::HitKind;
-use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Frame, TwoPlane};
 use glam::DVec3;
 
@@ -20,15 +18,17 @@ pub(crate) struct Arrival {
 }
 
 impl Arrival {
+    /// Returns the photon on a ray at a distance; `normal` returns the normal of the surface at the
+    /// photon's point.
     pub(crate) fn new(
         ray: &TwoPlane,
         distance: f64,
-        target: PrimitiveHit<'_, HitKind>,
+        normal: impl FnOnce(DVec3) -> DVec3,
         flux: f64,
     ) -> Self {
         let direction = direction(ray);
         let point = start(ray) + distance * direction;
-        let facing = target.normal(point);
+        let facing = normal(point);
         Self {
             point,
             normal: -facing.dot(direction).signum() * facing,
@@ -59,6 +59,7 @@ impl Arrival {
 
 /// Returns the ratio of a photon's contribution to radiance space to its flux, (1 + u² + v²)² =
 /// 1/cos⁴θ.
+#[inline]
 pub(crate) fn radiance_per_flux(ray: &TwoPlane) -> f64 {
     let secant_squared = ray.secant_squared();
     secant_squared * secant_squared

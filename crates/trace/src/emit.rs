@@ -1,10 +1,13 @@
-//! Emits photons from the light, eight at a time.
+//! Emits photons from the light, many at a time.
 
 mod plain;
 
 use crate::aim::{FromSky, looks_across};
+use crate::arrival::radiance_per_flux;
+use crate::lanes::{inside, lanes};
+use crate::photon_group::{ABREAST, PhotonColumn, PhotonGroup, ray};
 use crate::plane_on_leg::PlaneOnLeg;
-use crate::proposal::{ProfileDensity, Proposal, lanes};
+use crate::proposal::{ProfileDensity, Proposal};
 use crate::radiance::radiance;
 use crate::reach::{looks_at_surface, outline, reach};
 use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window};
@@ -38,12 +41,6 @@ enum EmissionStrategy {
     /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
 }
-
-/// The number of photons that one call emits together.
-pub const ABREAST: usize = 8;
-
-/// x, y, u and v of rays that are emitted together.
-type Columns = [[f64; ABREAST]; 4];
 
 impl Emitter {
     /// Builds the emitter of a scene.
@@ -153,22 +150,21 @@ impl Emitter {
         }
     }
 
-    /// Emits several photons together, and returns the rays with their weights in radiance space.
-    /// The weight of a ray that carries no light is zero. `words` returns the random words of one
-    /// block of random numbers of one photon.
+    /// Emits several photons together. `words` returns a block of four random words of each photon,
+    /// as columns.
     #[must_use]
-    pub fn emit(
-        &self,
-        words: impl Fn(usize, u32) -> [u32; 4],
-    ) -> ([TwoPlane; ABREAST], [f64; ABREAST]) {
-        let mut rays = [TwoPlane::default(); ABREAST];
-        let mut weights = [0.0; ABREAST];
-        let mut one_by_one = |drawn: &dyn Fn([[u32; 4]; 2]) -> Option<(TwoPlane, f64)>| {
-            for (i, (to, weight)) in rays.iter_mut().zip(&mut weights).enumerate() {
-                if let Some((ray, density)) = drawn([words(i, 0), words(i, 1)]) {
-                    (*to, *weight) = (ray, self.weight(&ray, density));
+    pub fn emit(&self, words: impl Fn(u32) -> [[u32; ABREAST]; 4]) -> PhotonGroup {
+        let one_by_one = |drawn: &dyn Fn([[u32; 4]; 2]) -> Option<(TwoPlane, f64)>| {
+            let (mut rays, mut densities) = ([[0.0; ABREAST]; 4], [0.0; ABREAST]);
+            let blocks = [words(0), words(1)];
+            for i in 0..ABREAST {
+                let words = blocks.map(|block| block.map(|column| column[i]));
+                if let Some((TwoPlane { x, y, u, v }, density)) = drawn(words) {
+                    [rays[0][i], rays[1][i], rays[2][i], rays[3][i]] = [x, y, u, v];
+                    densities[i] = density;
                 }
             }
+            self.weighted(rays, densities)
         };
         match &self.strategy {
             EmissionStrategy::Sky(sky) => one_by_one(&|words| {
@@ -181,49 +177,48 @@ impl Emitter {
                 Some((ray, plain.density(&ray)))
             }),
             EmissionStrategy::Aimed(proposals) => {
-                let [x, y, u, v] = self.aimed(proposals, words);
-                let densities = dispatch!(self.level, _simd => densities(proposals, &[x, y, u, v]));
-                for (i, ray) in rays.iter_mut().enumerate() {
-                    let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
-                    *ray = TwoPlane { x, y, u, v };
-                    weights[i] = self.weight(ray, densities[i]);
-                }
+                let numbers = words(0);
+                let choices = match proposals[..] {
+                    [_] => [0; ABREAST],
+                    _ => words(1)[3],
+                };
+                dispatch!(self.level, _simd => {
+                    let (rays, densities) = aimed(proposals, numbers, choices);
+                    self.weighted(rays, densities)
+                })
             }
         }
-        (rays, weights)
     }
 
-    /// Returns rays aimed at virtual planes, as columns of x, y, u and v. The plane at which each
-    /// ray is aimed is drawn at random.
-    #[inline]
-    fn aimed(
-        &self,
-        proposals: &[[Proposal; 2]],
-        words: impl Fn(usize, u32) -> [u32; 4],
-    ) -> Columns {
-        let mut numbers = [[0.0; 4]; ABREAST];
-        for (i, numbers) in numbers.iter_mut().enumerate() {
-            let words = words(i, 0);
-            *numbers = lanes(|k| random::unit(words[k]));
-        }
-        if let [[along_x, along_y]] = proposals {
-            let column = |k: usize| lanes(|i| numbers[i][k]);
-            let [a, b, c, d] = [column(0), column(1), column(2), column(3)];
-            return dispatch!(self.level, _simd => {
-                let ([x, u], [y, v]) = (along_x.samples([a, b]), along_y.samples([c, d]));
-                [x, y, u, v]
-            });
-        }
-        let mut rays = [[0.0; ABREAST]; 4];
-        for (i, [a, b, c, d]) in numbers.into_iter().enumerate() {
-            let [along_x, along_y] = &proposals[random::index(words(i, 1)[3], proposals.len())];
-            let [[x], [u]] = along_x.samples([[a], [b]]);
-            let [[y], [v]] = along_y.samples([[c], [d]]);
-            for (to, from) in rays.iter_mut().zip([x, y, u, v]) {
-                to[i] = from;
+    /// Returns photons with their weights and fluxes.
+    #[inline(always)]
+    fn weighted(&self, rays: [PhotonColumn; 4], densities: PhotonColumn) -> PhotonGroup {
+        let radiance: PhotonColumn = match &self.light {
+            Light::Area {
+                shape,
+                radiance,
+                exponent: 0.0,
+            } => {
+                let is_lit = inside(shape, [&rays[0], &rays[1]]);
+                lanes(|i| if is_lit[i] { *radiance } else { 0.0 })
             }
+            light => lanes(|i| radiance(light, &ray(&rays, i))),
+        };
+        let weights = lanes(|i| {
+            let weight = radiance[i] / densities[i];
+            // Because of rounding, a ray can lie exactly on the edge of a range, where the density
+            // is zero. A ray on the edge of a range carries no light.
+            if densities[i] > 0.0 && weight > 0.0 {
+                weight
+            } else {
+                0.0
+            }
+        });
+        PhotonGroup {
+            rays,
+            weights,
+            fluxes: lanes(|i| weights[i] / radiance_per_flux(&ray(&rays, i))),
         }
-        rays
     }
 
     /// Returns a ray of a light without extent and its density. The slopes of a point light or a
@@ -244,24 +239,44 @@ impl Emitter {
         };
         (TwoPlane { x, y, u, v }, density)
     }
+}
 
-    /// Returns the radiance divided by the density.
-    #[inline]
-    fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Because of rounding, a ray can lie exactly on the edge of a range, where the density is
-        // zero. A ray on the edge of a range carries no light.
-        if density > 0.0 {
-            radiance(&self.light, ray) / density
-        } else {
-            0.0
+/// Returns rays aimed at virtual planes, as columns of x, y, u and v, and their densities. The
+/// plane at which each ray is aimed is drawn at random.
+#[inline(always)]
+fn aimed(
+    proposals: &[[Proposal; 2]],
+    words: [[u32; ABREAST]; 4],
+    choices: [u32; ABREAST],
+) -> ([PhotonColumn; 4], PhotonColumn) {
+    let [a, b, c, d] = words.map(|words| lanes(|i| random::unit(words[i])));
+    if let [[along_x, along_y]] = proposals {
+        let ([x, u], in_x) = along_x.samples_and_densities([a, b]);
+        let ([y, v], in_y) = along_y.samples_and_densities([c, d]);
+        return ([x, y, u, v], lanes(|i| in_x[i] * in_y[i]));
+    }
+    let mut rays = [[0.0; ABREAST]; 4];
+    let chosen: [usize; ABREAST] = lanes(|i| random::index(choices[i], proposals.len()));
+    for (number, [along_x, along_y]) in proposals.iter().enumerate() {
+        let [x, u] = along_x.samples([a, b]);
+        let [y, v] = along_y.samples([c, d]);
+        for (ray, aimed) in rays.iter_mut().zip([x, y, u, v]) {
+            *ray = lanes(|i| {
+                if chosen[i] == number {
+                    aimed[i]
+                } else {
+                    ray[i]
+                }
+            });
         }
     }
+    (rays, densities(proposals, &rays))
 }
 
 /// Returns the density of rays that several proposals aim. The density is per du dv for a point
 /// light, and per dx dy du dv for any other light.
 #[inline(always)]
-fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
+fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &[PhotonColumn; 4]) -> PhotonColumn {
     let mut sums = [0.0; ABREAST];
     for [along_x, along_y] in proposals {
         let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));

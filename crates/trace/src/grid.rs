@@ -1,6 +1,8 @@
 //! Finds which of many flat shapes contains a point.
 
-use etendue_field::{Shape, whole};
+use crate::lanes::lanes;
+use etendue_field::Shape;
+use std::ops::Range;
 
 /// Flat shapes that lie side by side in a plane across the leg. A grid finds the shapes that may
 /// contain a point.
@@ -10,15 +12,19 @@ pub(crate) struct Grid {
     pub(crate) distance: f64,
     /// The lowest and highest x, and the lowest and highest y, of all shapes.
     pub(crate) bounds: [[f64; 2]; 2],
-    counts: [usize; 2],
+    counts: [u32; 2],
     /// Number of cells per metre along x and along y.
     density: [f64; 2],
-    /// For each cell [y, x], the index in `shapes` of its first shape. The last entry is the end of
-    /// the last cell.
-    starts: Vec<usize>,
-    /// The shapes that overlap each cell, cell by cell.
+    /// For each cell [y, x], the index in `members` of its first shape. An empty cell follows the
+    /// last cell, and the last entry is its end.
+    starts: Vec<u32>,
+    /// The indices of the shapes that overlap each cell, cell by cell, and then [`TESTED`] zeros.
+    members: Vec<u32>,
     shapes: Vec<Shape>,
 }
+
+/// The number of shapes of a cell that are tested without branches.
+const TESTED: usize = 2;
 
 /// The number of cells per shape, chosen so that most cells hold at most one shape.
 const FINENESS: f64 = 4.0;
@@ -26,6 +32,17 @@ const FINENESS: f64 = 4.0;
 /// The largest allowed average number of cells per shape. The average exceeds this limit only if
 /// shapes overlap.
 const COPIES: usize = 16;
+
+/// Returns the whole part of a number, between 0 and `u32::MAX`.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the function returns the whole part"
+)]
+fn whole_u32(x: f64) -> u32 {
+    x as u32
+}
 
 /// Returns the extent of a shape along an axis. The extent includes a small margin, because
 /// rounding errors may make a point just beyond the edge count as inside.
@@ -64,15 +81,16 @@ impl Grid {
         let mut grid = Self {
             distance,
             bounds,
-            counts: [0, 1].map(|axis| whole(along(axis).clamp(1.0, cells))),
+            counts: [0, 1].map(|axis| whole_u32(along(axis).clamp(1.0, cells))),
             density: [0.0; 2],
-            starts: Vec::new(),
-            shapes: Vec::new(),
+            starts: vec![0],
+            members: Vec::new(),
+            shapes: shapes.to_vec(),
         };
-        grid.density = [0, 1].map(|axis| grid.counts[axis] as f64 / sides[axis]);
-        let mut cells = vec![Vec::new(); grid.counts[0] * grid.counts[1]];
+        grid.density = [0, 1].map(|axis| f64::from(grid.counts[axis]) / sides[axis]);
+        let mut cells = vec![Vec::new(); (grid.counts[0] * grid.counts[1]) as usize];
         let mut copies = 0;
-        for shape in shapes {
+        for (index, shape) in (0..).zip(shapes) {
             let [columns, rows] = [0, 1].map(|axis| {
                 let [first, last] = reach(shape, axis).map(|end| grid.cell(axis, end));
                 first..last + 1
@@ -83,35 +101,62 @@ impl Grid {
             }
             for row in rows {
                 for column in columns.clone() {
-                    cells[row * grid.counts[0] + column].push(*shape);
+                    cells[(row * grid.counts[0] + column) as usize].push(index);
                 }
             }
         }
-        grid.starts.push(0);
-        for cell in cells {
-            grid.shapes.extend(cell);
-            grid.starts.push(grid.shapes.len());
+        for cell in cells.into_iter().chain([Vec::new()]) {
+            grid.members.extend(cell);
+            grid.starts.push(u32::try_from(grid.members.len()).ok()?);
         }
+        grid.members.extend([0; TESTED]);
         Some(grid)
     }
 
     /// Returns the cell along an axis that contains a coordinate within the bounds.
-    #[inline]
-    fn cell(&self, axis: usize, at: f64) -> usize {
+    #[inline(always)]
+    fn cell(&self, axis: usize, at: f64) -> u32 {
         let cell = (at - self.bounds[axis][0]) * self.density[axis];
-        whole(cell).min(self.counts[axis] - 1)
+        whole_u32(cell).min(self.counts[axis] - 1)
     }
 
     /// Checks whether any shape of the grid contains a point.
     #[inline]
     pub(crate) fn contains(&self, x: f64, y: f64) -> bool {
+        let [inside] = self.contains_each([&[x], &[y]]);
+        inside
+    }
+
+    /// Checks which of several points lie in a shape of the grid.
+    #[inline(always)]
+    pub(crate) fn contains_each<const N: usize>(&self, [x, y]: [&[f64; N]; 2]) -> [bool; N] {
         let [[left, right], [low, high]] = self.bounds;
-        if !(x >= left && x <= right && y >= low && y <= high) {
-            return false;
+        let [columns, rows] = self.counts;
+        let cells: [u32; N] = lanes(|i| {
+            let is_within = (x[i] >= left) & (x[i] <= right) & (y[i] >= low) & (y[i] <= high);
+            let cell = self.cell(1, y[i]) * columns + self.cell(0, x[i]);
+            if is_within { cell } else { rows * columns }
+        });
+        // Most cells hold few shapes, but the processor could not predict how many.
+        let mut inside = [false; N];
+        for (i, is_inside) in inside.iter_mut().enumerate() {
+            let cell = cells[i] as usize;
+            let [start, end] = [self.starts[cell], self.starts[cell + 1]].map(|n| n as usize);
+            for member in start..start + TESTED {
+                let shape = &self.shapes[self.members[member] as usize];
+                *is_inside |= shape.contains(x[i], y[i]) & (member < end);
+            }
+            if start + TESTED < end {
+                *is_inside |= self.crowd_contains(start + TESTED..end, x[i], y[i]);
+            }
         }
-        let cell = self.cell(1, y) * self.counts[0] + self.cell(0, x);
-        let shapes = &self.shapes[self.starts[cell]..self.starts[cell + 1]];
-        shapes.iter().any(|shape| shape.contains(x, y))
+        inside
+    }
+
+    /// Checks whether any of several members contains a point.
+    #[inline(never)]
+    fn crowd_contains(&self, mut members: Range<usize>, x: f64, y: f64) -> bool {
+        members.any(|member| self.shapes[self.members[member] as usize].contains(x, y))
     }
 }
 

@@ -3,6 +3,7 @@
 use etendue_scene::{Run, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
+use fearless_simd::{Level, dispatch};
 
 /// The source of the random numbers of photons, with their division into blocks.
 #[derive(Clone, Copy, Debug)]
@@ -66,10 +67,34 @@ impl Numbers {
     pub(crate) fn words(&self, photon: u64, block: u32) -> [u32; 4] {
         match self {
             Self::Random { seed, stream } => random::words(*seed, *stream, photon, block),
-            Self::Net(net, first) => {
-                let point = u32::try_from(photon - first).unwrap_or(u32::MAX);
-                net.words(point, block)
-            }
+            Self::Net(net, first) => net.words(point(photon, *first), block),
         }
     }
+
+    /// Returns [`Self::words`] of `N` photons from `photon` on, as a column for each word.
+    pub(crate) fn columns<const N: usize>(
+        &self,
+        level: Level,
+        photon: u64,
+        block: u32,
+    ) -> [[u32; N]; 4] {
+        if let Self::Net(net, first) = self {
+            let point = point(photon, *first);
+            return dispatch!(level, _simd => net.columns(point, block));
+        }
+        let mut columns = [[0; N]; 4];
+        for (i, photon) in (0..N).zip(photon..) {
+            let words = self.words(photon, block);
+            for (column, word) in columns.iter_mut().zip(words) {
+                column[i] = word;
+            }
+        }
+        columns
+    }
+}
+
+/// Returns the point of a net that a photon uses, where the photon `first` uses the first point.
+#[inline]
+fn point(photon: u64, first: u64) -> u32 {
+    u32::try_from(photon - first).unwrap_or(u32::MAX)
 }

@@ -1,5 +1,6 @@
 //! Finds the obstacles of light on a leg.
 
+use crate::flat_leg::{FlatObstacle, Outline, PhotonEnd};
 use crate::grid::Grid;
 use crate::line::{direction, start};
 use crate::mesh::BlockerMesh;
@@ -168,6 +169,47 @@ impl Obstacles {
             half_planes,
             semi_transparent,
         }
+    }
+
+    /// Returns the obstacles beyond the beginning of the leg if all of them lie across the leg.
+    /// `end` is the object that ends the leg. Returns `None` for any other obstacles, and for
+    /// surfaces that do not scatter light by Lambert's law.
+    pub(crate) fn flat(&self, end: Option<Object>) -> Option<Vec<FlatObstacle>> {
+        let half_planes = self.half_planes.iter().map(|layer| {
+            layer.leg.is_none().then_some(FlatObstacle {
+                distance: layer.distance,
+                outline: Outline::HalfPlane(layer.what),
+                end: PhotonEnd::ABSORBED,
+            })
+        });
+        let primitives = self.primitives.primitives().iter().map(|target| {
+            let (distance, outline) = match &target.primitive {
+                Primitive::Flat { distance, shape } => (*distance, Outline::Shape(*shape)),
+                Primitive::Grid(grid) => (grid.distance, Outline::Grid(grid.clone())),
+                _ => return None,
+            };
+            let end = match target.tag {
+                HitKind::Blocker => PhotonEnd::ABSORBED,
+                HitKind::Surface {
+                    material: ObstacleKind::Lambertian { albedo },
+                    ..
+                } => PhotonEnd {
+                    absorbed: 1.0 - albedo,
+                    stopped: albedo,
+                    arrives: target.tag.is(end),
+                    ..PhotonEnd::default()
+                },
+                HitKind::Surface { .. } => return None,
+            };
+            Some(FlatObstacle {
+                distance,
+                outline,
+                end,
+            })
+        });
+        let all: Option<Vec<FlatObstacle>> = half_planes.chain(primitives).collect();
+        let all = all.filter(|_| self.semi_transparent.is_empty());
+        all.map(|all| all.into_iter().filter(|one| one.distance > 0.0).collect())
     }
 
     /// Returns the first obstacle that a ray meets beyond `from`, and the distance of this

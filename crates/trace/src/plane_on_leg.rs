@@ -90,6 +90,11 @@ impl PlaneOnLeg {
         !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)
     }
 
+    /// Checks whether the virtual plane lies across the leg and sees light along the leg.
+    pub(crate) fn is_across(&self) -> bool {
+        self.surface.is_none() && self.heading == Heading::Along
+    }
+
     /// Returns the surface coordinates of the virtual plane; `None` for a plane across the leg.
     pub(crate) fn view(&self) -> Option<SurfaceCoordinates> {
         self.surface

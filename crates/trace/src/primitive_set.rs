@@ -75,6 +75,11 @@ impl<T: Clone> PrimitiveSet<T> {
         }
     }
 
+    /// Returns all primitives.
+    pub(crate) fn primitives(&self) -> &[TaggedPrimitive<T>] {
+        &self.primitives
+    }
+
     /// Returns the first primitive that a ray meets beyond `from`, and the distance of the hit.
     #[inline]
     pub(crate) fn closest_hit(

@@ -1,5 +1,6 @@
 //! Defines densities for drawing rays that pass a window.
 
+use crate::lanes::lanes;
 use etendue_field::Profile;
 
 /// A density over t for |t| < half. It follows a window's profile and can be sampled on any
@@ -116,17 +117,6 @@ impl ProfileDensity {
             ProposalKind::Cosine => lanes(|i| f(&of(ProposalKind::Cosine), t[i])),
         }
     }
-}
-
-/// Returns an array whose element at each index is the number that `f` returns for the index.
-/// `std::array::from_fn` would call its function separately for each index.
-#[inline(always)]
-pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
-    let mut all = [0.0; N];
-    for (i, number) in all.iter_mut().enumerate() {
-        *number = f(i);
-    }
-    all
 }
 
 /// A sampler of slopes along one axis. The slopes belong to rays that leave a point of a surface
@@ -254,34 +244,63 @@ impl Proposal {
     /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
     /// 1).
     #[inline(always)]
-    pub(crate) fn samples<const N: usize>(&self, [a, b]: [[f64; N]; 2]) -> [[f64; N]; 2] {
-        let between = |low: f64, high: f64, r: f64| low + r * (high - low);
-        let [low, high] = self.range;
-        let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
-        let u = self.slope.each(shares, ProfileDensity::quantile);
-        if self.is_point() {
-            return [[self.light[0]; N], u];
-        }
-        let [low, high] = self.images(&u);
-        let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
-        let x = self.space.each(shares, ProfileDensity::quantile);
-        [lanes(|i| x[i] - self.distance * u[i]), u]
+    pub(crate) fn samples<const N: usize>(&self, numbers: [[f64; N]; 2]) -> [[f64; N]; 2] {
+        self.samples_and_images(numbers).0
+    }
+
+    /// Returns [`Self::samples`], and the density of each pair with respect to dx du.
+    #[inline(always)]
+    pub(crate) fn samples_and_densities<const N: usize>(
+        &self,
+        numbers: [[f64; N]; 2],
+    ) -> ([[f64; N]; 2], [f64; N]) {
+        let ([x, u], images) = self.samples_and_images(numbers);
+        ([x, u], self.densities_of([&x, &u], images))
     }
 
     /// Returns the density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
+        let images = (!self.is_point()).then(|| self.images(u));
+        self.densities_of([x, u], images)
+    }
+
+    /// Returns [`Self::samples`], and [`Self::images`] for light of some extent.
+    #[inline(always)]
+    fn samples_and_images<const N: usize>(
+        &self,
+        [a, b]: [[f64; N]; 2],
+    ) -> ([[f64; N]; 2], Option<[[f64; N]; 2]>) {
+        let between = |low: f64, high: f64, r: f64| low + r * (high - low);
+        let [low, high] = self.range;
+        let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
+        let u = self.slope.each(shares, ProfileDensity::quantile);
+        if self.is_point() {
+            return ([[self.light[0]; N], u], None);
+        }
+        let [low, high] = self.images(&u);
+        let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
+        let x = self.space.each(shares, ProfileDensity::quantile);
+        let x = lanes(|i| x[i] - self.distance * u[i]);
+        ([x, u], Some([low, high]))
+    }
+
+    #[inline(always)]
+    fn densities_of<const N: usize>(
+        &self,
+        [x, u]: [&[f64; N]; 2],
+        images: Option<[[f64; N]; 2]>,
+    ) -> [f64; N] {
         let [left, right] = self.light;
         let share = self.range[1] - self.range[0];
         let slope = self.slope.each(*u, ProfileDensity::density);
         let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
-        if self.is_point() {
+        let Some([low, high]) = images else {
             return lanes(|i| {
                 let is_seen = x[i] >= left && x[i] <= right && seen[i].abs() < self.space.half;
                 if is_seen { slope[i] / share } else { 0.0 }
             });
-        }
-        let [low, high] = self.images(u);
+        };
         let space = self.space.each(seen, ProfileDensity::density);
         lanes(|i| {
             let density = slope[i] / share * space[i] / (high[i] - low[i]);

@@ -4,15 +4,18 @@ use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
 use crate::courses::{Both, rounding};
-use crate::emit::{ABREAST, Emitter};
+use crate::emit::Emitter;
+use crate::flat_leg::FlatLeg;
 use crate::heading::Heading;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
+use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_transform::random::Stream;
+use fearless_simd::Level;
 use std::ops::Range;
 
 /// The forward tracer of a scene.
@@ -31,11 +34,14 @@ use std::ops::Range;
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
+    /// The first leg, if photons can be traced over it many at a time.
+    flat: Option<FlatLeg>,
     legs: Vec<FlightLeg>,
     planes: usize,
     shares: BatchRanges,
     numbers: PhotonNumbers,
     is_precise: bool,
+    level: Level,
 }
 
 /// The number of photons up to which the spectrum of a light with extent has more noise than the
@@ -90,6 +96,22 @@ struct Photon {
     counts: bool,
 }
 
+impl Photon {
+    /// Returns a photon of a group whose first photon has the number `first`.
+    fn emitted(group: &PhotonGroup, i: usize, first: u64) -> Self {
+        Self {
+            index: first + i as u64,
+            flight: Flight {
+                ray: group.ray(i),
+                heading: Heading::Along,
+                from: 0.0,
+                weight: group.weights[i],
+            },
+            counts: true,
+        }
+    }
+}
+
 impl Tracer {
     /// Builds the tracer of a scene.
     #[must_use]
@@ -100,10 +122,12 @@ impl Tracer {
         let legs: Vec<FlightLeg> = legs.collect();
         Self {
             emitter: Emitter::new(scene),
+            flat: legs.first().and_then(FlightLeg::flat),
             planes: scene.planes.len(),
             is_precise: !scene.light.has_extent() || scene.run.photons > MAX_REDUCED,
             shares: BatchRanges::new(&scene.run),
             numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
+            level: Level::new(),
             legs,
         }
     }
@@ -129,36 +153,44 @@ impl Tracer {
         }
     }
 
-    /// Emits the photons of a block, except for photons drawn outside the light.
+    /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the
+    /// photons that are not traced to their end to `photons`.
     #[inline]
     fn emit_block(
         &self,
         range: Range<u64>,
         numbers: &Numbers,
         photons: &mut Vec<Photon>,
+        crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // At the end of the range, the group is filled with copies of the last photon, and
-            // these copies are discarded.
-            let index = |i: usize| (first + i as u64).min(range.end - 1);
-            let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
-            for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
+            let words = |block| numbers.columns(self.level, first, block);
+            let mut group = self.emitter.emit(words);
+            group.end_at(range.end - first);
+            for flux in group.fluxes {
+                ledger.emitted += flux;
+            }
+            let Some(flat) = &self.flat else {
                 // If a point is drawn inside the bounding square of a disc but outside the disc, it
                 // counts as a photon that carries no light.
-                if weight > 0.0 {
-                    ledger.emitted += weight / radiance_per_flux(&ray);
-                    photons.push(Photon {
-                        index,
-                        flight: Flight {
-                            ray,
-                            heading: Heading::Along,
-                            from: 0.0,
-                            weight,
-                        },
-                        counts: true,
-                    });
-                }
+                let lit = (0..ABREAST).filter(|i| group.weights[*i] > 0.0);
+                photons.extend(lit.map(|i| Photon::emitted(&group, i, first)));
+                continue;
+            };
+            let arrivals = flat.trace(&group, crossings, ledger);
+            if let Some(next) = self.legs.get(1) {
+                let words = words(self.emitter.bounces_from());
+                let course = &self.legs[0].courses.along;
+                photons.extend(arrivals.filter_map(|(i, distance)| {
+                    let arrival = group.arrival(i, distance);
+                    let flight = next.begin(course, &arrival, words.map(|column| column[i]))?;
+                    Some(Photon {
+                        index: first + i as u64,
+                        flight,
+                        counts: false,
+                    })
+                }));
             }
         }
     }
@@ -211,7 +243,7 @@ impl Tracer {
             return false;
         };
         let next = self.legs.get(leg + 1).filter(|_| target.tag.is(this.ends));
-        let arrival = || Arrival::new(&ray, distance, target, arrives);
+        let arrival = || Arrival::new(&ray, distance, |point| target.normal(point), arrives);
         if let ObstacleKind::Lambertian { albedo } = material {
             account.stopped += albedo * arrives;
             account.absorbed += (1.0 - albedo) * arrives;
@@ -256,6 +288,15 @@ impl FlightLeg {
             ends: scene.path.ends_at(leg).map(|hit| hit.object),
             rounding: rounding(this),
         }
+    }
+
+    fn flat(&self) -> Option<FlatLeg> {
+        let Course {
+            obstacles,
+            planes_on_leg,
+            ..
+        } = &self.courses.along;
+        FlatLeg::new(obstacles.flat(self.ends)?, planes_on_leg)
     }
 
     /// Returns the start on this leg of a photon that arrives at the end of the previous leg;
@@ -382,8 +423,15 @@ impl PhotonSource for Tracer {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
             let numbers = self.numbers.of(batch, first, start);
-            self.emit_block(start..end, &numbers, &mut photons, &mut block);
-            for (leg, bounce) in (0..self.legs.len()).zip(self.emitter.bounces_from()..) {
+            self.emit_block(
+                start..end,
+                &numbers,
+                &mut photons,
+                &mut crossings,
+                &mut block,
+            );
+            let legs = (0..self.legs.len()).zip(self.emitter.bounces_from()..);
+            for (leg, bounce) in legs.skip(usize::from(self.flat.is_some())) {
                 photons.retain_mut(|photon| {
                     let index = photon.index;
                     let words = || numbers.words(index, bounce);
@@ -403,3 +451,6 @@ impl PhotonSource for Tracer {
         total
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@
 use crate::common::estimates;
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_trace::{Backward, Emitter, Tracer, finds};
+use etendue_trace::{ABREAST, Backward, Emitter, Tracer, finds};
 use etendue_transform::random::{Stream, words};
 
 const LIGHTS: [&str; 3] = [
@@ -140,9 +140,14 @@ fn what_is_sent_evenly_has_one_density() {
     let mirror = BALL.replace("EVENT", "Mirror");
     let scene = scene(LIGHTS[0], &mirror, r#""s""#, &[r#"at: After("s")"#]);
     let spread = |emitter: &Emitter| {
-        let (rays, weights) = emitter.emit(|i, block| words(1, Stream::Photon, i as u64, block));
-        let densities = rays.iter().zip(weights);
-        let densities = densities.map(|(ray, weight)| ray.secant_squared().sqrt() / weight);
+        let photons = emitter.emit(|block| {
+            let blocks: [_; ABREAST] =
+                std::array::from_fn(|i| words(1, Stream::Photon, i as u64, block));
+            [0, 1, 2, 3].map(|k| blocks.map(|block| block[k]))
+        });
+        let densities = photons.weights.iter().enumerate();
+        let densities =
+            densities.map(|(i, weight)| photons.ray(i).secant_squared().sqrt() / weight);
         let (low, high) = densities.fold((f64::INFINITY, 0.0_f64), |(low, high), density| {
             (low.min(density), high.max(density))
         });
