@@ -122,14 +122,11 @@ fn weigh<S: Simd>(simd: S, group: &mut ScaledRays, kernel: &Kernel<f32, TAPS>) {
         for (down, tap) in group.down.iter_mut().zip(kernel.taps(simd, row)) {
             (tap * weight).store_slice(&mut down[lanes.clone()]);
         }
-        let mut halves = [[f32x8::splat(simd, 0.0); ROW]; 2];
-        for (k, tap) in kernel.taps(simd, column).into_iter().enumerate() {
-            (halves[0][k], halves[1][k]) = simd.split_f32x16(tap);
-        }
-        for (across, half) in group.across[lanes].chunks_exact_mut(ROW).zip(halves) {
-            for (to, taps) in across.iter_mut().zip(transposed(half)) {
-                taps.store_slice(to);
-            }
+        let mut taps = [f32x16::splat(simd, 0.0); ROW];
+        taps[..TAPS].copy_from_slice(&kernel.taps(simd, column));
+        let across = group.across[lanes].as_flattened_mut();
+        for (across, taps) in across.chunks_exact_mut(LANES).zip(transposed(taps)) {
+            taps.store_slice(across);
         }
     }
 }

@@ -110,8 +110,9 @@ impl<T: Copy, const TAPS: usize> Kernel<T, TAPS> {
     }
 }
 
-/// Transposes eight rows of eight numbers by three perfect shuffles. The index of a number has six
-/// bits, and each shuffle moves the last bit to the front.
+/// Transposes eight rows by three perfect shuffles, each of which moves the first bit of a number's
+/// index to the end. The result, read row by row, holds the first number of each row, then the
+/// second number of each row, and so on.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd, V: SimdBase<S>>(mut rows: [V; 8]) -> [V; 8] {
     for _ in 0..3 {
@@ -157,7 +158,7 @@ fn fit(function: impl Fn(f64) -> f64) -> [f64; TERMS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch, f32x8, f64x8};
+    use fearless_simd::{Level, dispatch, f32x8, f32x16, f64x8};
 
     #[test]
     fn taps_follow_the_kernel_and_one_another() {
@@ -198,6 +199,13 @@ mod tests {
         });
         let expected: [[f64; 8]; 8] = std::array::from_fn(|i| rows.map(|row| row[i]));
         assert_eq!(turned, expected);
+        let long: [[f32; 16]; 8] =
+            std::array::from_fn(|i| std::array::from_fn(|j| (16 * i + j) as f32));
+        let turned = dispatch!(Level::new(), simd => {
+            transposed(long.map(|row| f32x16::load_array(simd, row))).map(|row| row.to_array())
+        });
+        let expected: [[f32; 8]; 16] = std::array::from_fn(|i| long.map(|row| row[i]));
+        assert_eq!(turned.as_flattened(), expected.as_flattened());
     }
 
     #[test]
