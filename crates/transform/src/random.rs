@@ -21,6 +21,10 @@ pub enum Stream {
     Net,
     /// The scrambling of a net for emission that is not aimed.
     EvenNet,
+    /// The points of set `index`, or the scrambling of the net that set `index` is.
+    Points,
+    /// The shift of set `index` of points.
+    Shift,
 }
 
 /// Returns four random words for `block` of item `index` in a stream of `seed`.

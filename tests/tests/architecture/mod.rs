@@ -32,6 +32,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "trace",
         &["bvh", "field", "sampling", "scatter", "scene", "transform"],
     ),
+    (
+        "variance",
+        &["field", "scene", "spectrum", "trace", "transform"],
+    ),
     ("export", &["field", "scene"]),
     (
         "compare",
@@ -104,7 +108,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cli",
         &[
             "adaptive", "compare", "export", "field", "figures", "import", "paper", "pipeline",
-            "rays", "report", "scene", "spectrum", "store", "sweep", "theory", "view",
+            "rays", "report", "scene", "spectrum", "store", "sweep", "theory", "variance", "view",
         ],
     ),
 ];

@@ -78,15 +78,41 @@ impl Backward {
         })
     }
 
+    /// Returns the radiance that crosses plane number `plane` along a ray, in W m⁻² sr⁻¹, times dA / dx dy on a curved surface. The ray is given in the
+    /// coordinates of the plane.
+    ///
+    /// If light is scattered on its way, the result is an unbiased estimate, and `index` selects its
+    /// random numbers. Otherwise, the result is exact. At a plane on the first leg, light without
+    /// extent has no finite radiance, and the result has no meaning.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the scene has no such plane.
+    #[must_use]
+    pub fn radiance(&self, plane: usize, ray: &TwoPlane, index: u64) -> f64 {
+        let sampler = &self.samplers[plane];
+        let plane = u32::try_from(plane).unwrap_or(u32::MAX);
+        let is_ahead =
+            sampler.leg > 0 || sampler.planes_on_leg.along.is_ahead([ray.x, ray.y]);
+        let on_leg = sampler.leg_ray(ray).filter(|_| is_ahead);
+        on_leg.map_or(0.0, |(on_leg, end, area)| {
+            let words = |block| self.random_numbers(plane, index, block);
+            area * self.incident(&on_leg, end, 1, &words)
+        })
+    }
+
+    /// Returns four random numbers of ray number `index` of one plane. The ray itself uses block 0,
+    /// and each surface that it meets uses a further block.
+    fn random_numbers(&self, plane: u32, index: u64, block: u32) -> [f64; 4] {
+        let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
+        let block = blocks * plane + block;
+        random::words(self.seed, Stream::Backward, index, block).map(random::unit)
+    }
+
     /// Returns the ray with number `index` of one plane, and the weight of this ray in radiance
     /// space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
-        // The ray itself uses one block of random numbers, and so does each surface that it meets.
-        let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
-        let words = |block| {
-            let block = blocks * plane + block;
-            random::words(self.seed, Stream::Backward, index, block).map(random::unit)
-        };
+        let words = |block| self.random_numbers(plane, index, block);
         let r = words(0);
         let [x, y] = [0, 1].map(|axis| sampler.position[axis].quantile(r[axis]));
         let mut density = sampler.position[0].density(x) * sampler.position[1].density(y);
