@@ -1,9 +1,10 @@
 //! Computes standard errors by the delete-one jackknife over batches.
 
 use ndarray::{Array, Dimension};
+use serde::Serialize;
 
 /// A number and its standard error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Uncertain {
     /// The number.
     pub value: f64,

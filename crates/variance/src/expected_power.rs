@@ -75,10 +75,7 @@ impl ExpectedPower {
                 terms: vec![(1.0 / n, [0; 4]), ((n - 1.0) / n, [1; 4])],
             }),
             Sampler::Sobol => Some(Self::net(count)),
-            Sampler::Padded(pairs) => Some(Self::padded(
-                cells_per_axis(count, 2)? as f64,
-                *pairs,
-            )),
+            Sampler::Padded(pairs) => Some(Self::padded(cells_per_axis(count, 2)? as f64, *pairs)),
             Sampler::File(_) => None,
         }
     }
@@ -102,7 +99,7 @@ impl ExpectedPower {
             *numbers.entry(shared).or_default() += 1;
         }
         // Only the point with itself shares all digits along an axis.
-        let shared_digits = |r: u32| AxisFactor::SharedDigits(f64::from(r).exp2());
+        let shared_digits = |r: u32| AxisFactor::SharedDigits(libm::exp2(f64::from(r)));
         let mut factors: Vec<AxisFactor> = (0..digits).map(shared_digits).collect();
         factors.push(AxisFactor::One);
         let weight = |number: usize| number as f64 / count as f64;
@@ -138,7 +135,8 @@ impl ExpectedPower {
     /// Returns E|S_m|² at a frequency m ≠ 0 with the coordinates (x, u, y, v).
     #[must_use]
     pub fn at(&self, m: [i64; 4]) -> f64 {
-        let factor = |index: usize, axis: usize| self.factors[index].at(m[axis].unsigned_abs() as f64);
+        let factor =
+            |index: usize, axis: usize| self.factors[index].at(m[axis].unsigned_abs() as f64);
         let term = |(weight, at): &(f64, [usize; 4])| {
             weight * (0..4).map(|axis| factor(at[axis], axis)).product::<f64>()
         };

@@ -1,12 +1,38 @@
 //! Predicts the Monte Carlo error of the mean radiance over the window of a virtual plane, from
 //! the measured 4D spectrum of the light field, and measures the error really made.
+//!
+//! Window coordinates z ∈ \[0, 1\]⁴ have the order (x, u, y, v), with z = (x + h)/2h on each axis of
+//! half-width h. The windows of the plane are replaced by Box windows ([`with_box_window`]). A mean
+//! over N points that are shifted on the torus at random has the variance Σ_(m≠0) |f_m|² E|S_m|²,
+//! exactly. [`MeasuredPower`] has |f_m|² from photons, [`ExpectedPower`] has E|S_m|² of samplers,
+//! [`PredictedVariance`] has the sum, and [`WindowStudy`] compares it with the variance of means
+//! over rays traced back.
 
+mod error;
 mod expected_power;
+mod found;
+mod measured_power;
 mod points;
+mod power_law;
+mod prediction;
+mod radiance;
+mod report;
+mod response;
 mod sampler;
 #[cfg(test)]
 mod tests;
 
+pub use error::VarianceError;
 pub use expected_power::ExpectedPower;
+pub use found::{SetFamily, variance_of};
+pub use measured_power::{FREQUENCIES, MeasuredPower, field_options, with_box_window};
 pub use points::{points, shift};
+pub use power_law::fitted_slope;
+pub use prediction::{MAX_FILE_TAIL, PredictedVariance};
+pub use radiance::{WindowMoments, WindowRadiance};
+pub use report::{
+    AXES, AxisSetPower, CountReport, MAX_WORST, SamplerReport, WindowStudy, WorsePower,
+    WorstFrequency, axis_sets,
+};
+pub use response::SamplerResponse;
 pub use sampler::{AxisPairs, MAX_POINTS, PointFile, PointFileError, Sampler, WindowPoint};

@@ -49,9 +49,8 @@ impl WordSequence {
 
     /// Returns one random point in each of n² cells.
     fn jittered_square(&mut self, n: usize) -> Vec<[f64; 2]> {
-        let mut point = |cell: usize| {
-            [cell / n, cell % n].map(|at| (at as f64 + self.unit()) / n as f64)
-        };
+        let mut point =
+            |cell: usize| [cell / n, cell % n].map(|at| (at as f64 + self.unit()) / n as f64);
         (0..n * n).map(&mut point).collect()
     }
 }
@@ -69,7 +68,12 @@ pub fn points(sampler: &Sampler, count: usize, seed: u64, set: u64) -> Option<Ve
         Sampler::Jitter => {
             let n = cells_per_axis(count, 4)?;
             let mut point = |cell: usize| {
-                let cells = [cell / (n * n * n), cell / (n * n) % n, cell / n % n, cell % n];
+                let cells = [
+                    cell / (n * n * n),
+                    cell / (n * n) % n,
+                    cell / n % n,
+                    cell % n,
+                ];
                 cells.map(|at| (at as f64 + random.unit()) / n as f64)
             };
             (0..count).map(&mut point).collect()

@@ -152,10 +152,7 @@ mod tests {
     fn samplers_have_the_counts_that_their_cells_need() {
         let all: Vec<usize> = (2..=300).collect();
         assert_eq!(Sampler::Jitter.counts(&all), [16, 81, 256]);
-        assert_eq!(
-            Sampler::Sobol.counts(&all),
-            [2, 4, 8, 16, 32, 64, 128, 256]
-        );
+        assert_eq!(Sampler::Sobol.counts(&all), [2, 4, 8, 16, 32, 64, 128, 256]);
         let padded = Sampler::Padded(AxisPairs::PositionAndSlope).counts(&all);
         assert_eq!(padded.len(), 16);
         assert_eq!(Sampler::LatinHypercube.counts(&all), all);

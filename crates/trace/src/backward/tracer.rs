@@ -78,8 +78,8 @@ impl Backward {
         })
     }
 
-    /// Returns the radiance that crosses plane number `plane` along a ray, in W m⁻² sr⁻¹, times dA / dx dy on a curved surface. The ray is given in the
-    /// coordinates of the plane.
+    /// Returns the radiance that crosses plane number `plane` along a ray, in W m⁻² sr⁻¹, times dA /
+    /// dx dy on a curved surface. The ray is given in the coordinates of the plane.
     ///
     /// If light is scattered on its way, the result is an unbiased estimate, and `index` selects its
     /// random numbers. Otherwise, the result is exact. At a plane on the first leg, light without
@@ -92,8 +92,7 @@ impl Backward {
     pub fn radiance(&self, plane: usize, ray: &TwoPlane, index: u64) -> f64 {
         let sampler = &self.samplers[plane];
         let plane = u32::try_from(plane).unwrap_or(u32::MAX);
-        let is_ahead =
-            sampler.leg > 0 || sampler.planes_on_leg.along.is_ahead([ray.x, ray.y]);
+        let is_ahead = sampler.leg > 0 || sampler.planes_on_leg.along.is_ahead([ray.x, ray.y]);
         let on_leg = sampler.leg_ray(ray).filter(|_| is_ahead);
         on_leg.map_or(0.0, |(on_leg, end, area)| {
             let words = |block| self.random_numbers(plane, index, block);

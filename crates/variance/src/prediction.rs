@@ -1,0 +1,79 @@
+//! The variance of a mean over N points, predicted from the power of the field.
+
+use crate::measured_power::{MeasuredPower, box_frequencies, jackknife_error};
+use crate::radiance::WindowMoments;
+use crate::response::{SamplerResponse, is_in_last_octave};
+use etendue_spectrum::Uncertain;
+
+/// The largest share of the tail in the prediction for a fixed set of points. Beyond it, the
+/// prediction is undecided, because a fixed set has peaks beyond the box.
+pub const MAX_FILE_TAIL: f64 = 0.2;
+
+/// The power of the last octave must be larger than this number of standard errors.
+const MIN_OCTAVE: f64 = 4.0;
+
+/// The predicted variance of the mean of the radiance at N points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictedVariance {
+    /// The variance and its standard error, from the jackknife over groups of photons, from the
+    /// error of σ² and from the error of the noise of radiances. The unit is the square of the unit
+    /// of radiance.
+    pub variance: Uncertain,
+    /// The share of the tail beyond the box in the variance.
+    pub tail: f64,
+}
+
+impl PredictedVariance {
+    /// Returns Σ_(m≠0) |f_m|² E|S_m|², where the power beyond the box is the dyadic tail. The sets of
+    /// points are shifted on the torus at random. `count` is N, by which the noise of radiances is
+    /// divided.
+    #[must_use]
+    pub fn new(
+        power: &MeasuredPower,
+        response: &SamplerResponse,
+        moments: &WindowMoments,
+        count: usize,
+    ) -> Self {
+        let all = box_frequencies(power.max);
+        let last: Vec<bool> = all
+            .iter()
+            .map(|m| is_in_last_octave(m, power.max))
+            .collect();
+        let of_last = |power: &[f64]| {
+            let of_last = power.iter().zip(&last).filter(|(_, is_last)| **is_last);
+            of_last.map(|(p, _)| p).sum::<f64>()
+        };
+        // If the last octave has no power above its noise, its shape is unknown. The power beyond the
+        // box, which is then small, counts as for independent points.
+        let (octave, without) = power.estimates(of_last);
+        let is_known = octave > MIN_OCTAVE * jackknife_error(&without);
+        let of_tail = |power: &[f64]| {
+            if is_known {
+                dot(power, &response.tail) / of_last(power)
+            } else {
+                1.0 / count as f64
+            }
+        };
+        let missing = |power: &[f64]| moments.variance.value - power.iter().sum::<f64>();
+        let (value, without) =
+            power.estimates(|power| dot(power, &response.inside) + missing(power) * of_tail(power));
+        let noise = 1.0 / count as f64;
+        let errors = [
+            jackknife_error(&without),
+            of_tail(&power.power) * moments.variance.error,
+            noise * moments.noise.error,
+        ];
+        let value = value + noise * moments.noise.value;
+        Self {
+            variance: Uncertain {
+                value,
+                error: errors.iter().map(|e| e * e).sum::<f64>().sqrt(),
+            },
+            tail: missing(&power.power) * of_tail(&power.power) / value,
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,229 @@
+//! The numbers of a study: what is predicted and found for each sampler at a plane.
+
+use crate::found::{SetFamily, variance_of};
+use crate::measured_power::{MeasuredPower, box_frequencies, jackknife_error};
+use crate::power_law::fitted_slope;
+use crate::prediction::{MAX_FILE_TAIL, PredictedVariance};
+use crate::radiance::{WindowMoments, WindowRadiance};
+use crate::response::SamplerResponse;
+use crate::sampler::Sampler;
+use etendue_spectrum::Uncertain;
+use serde::Serialize;
+
+/// The names of the axes of the window coordinates, in their order.
+pub const AXES: [&str; 4] = ["x", "u", "y", "v"];
+
+/// The power of the field at frequencies at which a fixed set of coordinates is not zero.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AxisSetPower {
+    /// The axes whose coordinates are not zero.
+    pub axes: Vec<&'static str>,
+    /// The power as a share of σ², inside the box of measured frequencies.
+    pub share: Uncertain,
+}
+
+/// The numbers of one sampler.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SamplerReport {
+    /// Name of the sampler.
+    pub sampler: String,
+    /// The slope of log Var against log N as predicted: a least-squares fit in which all numbers of
+    /// points count the same. `None` if there are fewer than two numbers of points.
+    pub predicted_slope: Option<f64>,
+    /// The slope as found; numbers of points count by their errors.
+    pub found_slope: Option<Uncertain>,
+    /// The numbers at each number of points.
+    pub counts: Vec<CountReport>,
+}
+
+/// The numbers of one sampler with N points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CountReport {
+    /// N.
+    pub count: usize,
+    /// The predicted variance of the mean, for sets shifted on the torus at random.
+    pub predicted: Uncertain,
+    /// The share of the dyadic tail in the predicted variance.
+    pub tail: f64,
+    /// The variance found, with its standard error.
+    pub found: Uncertain,
+    /// Predicted / found, with its standard error.
+    pub ratio: Uncertain,
+    /// N · Var/σ² as predicted: 1 for independent points, smaller is better.
+    pub predicted_gain: f64,
+    /// N · Var/σ² as found.
+    pub found_gain: f64,
+    /// Whether the prediction is undecided: the set is fixed, and the tail is too large.
+    pub is_undecided: bool,
+    /// The frequencies at which the sampler is worse than independent points.
+    pub worse: WorsePower,
+}
+
+/// The power of the field at frequencies at which a sampler is worse than independent points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorsePower {
+    /// The power at these frequencies, as a share of σ².
+    pub share: f64,
+    /// The worst of these frequencies, each with all its signs. At most [`MAX_WORST`].
+    pub worst: Vec<WorstFrequency>,
+}
+
+/// A frequency at which a sampler is worse than independent points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstFrequency {
+    /// The moduli of the coordinates (x, u, y, v), cycles per window.
+    pub frequency: [usize; 4],
+    /// N · E|S_m|², which is 1 for independent points. The largest value over the signs.
+    pub ratio: f64,
+    /// The power of the field at all signs, as a share of σ².
+    pub share: f64,
+}
+
+/// The largest number of worst frequencies in a report.
+pub const MAX_WORST: usize = 3;
+
+/// A sampler is worse than independent points if N · E|S_m|² exceeds 1 by more than rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What all samplers of a study share.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowStudy<'a> {
+    /// The measured power.
+    pub power: &'a MeasuredPower,
+    /// The radiance along rays.
+    pub radiance: &'a WindowRadiance,
+    /// The moments of the radiance.
+    pub moments: &'a WindowMoments,
+    /// Number of random shifts with which the variance is found.
+    pub shifts: u32,
+    /// The seed of the sets of points.
+    pub seed: u64,
+}
+
+impl WindowStudy<'_> {
+    /// Predicts and finds the variances of a sampler. `family` is a number of its own below 128.
+    /// `progress` is called with 1 after each set of points.
+    #[must_use]
+    pub fn sampler(
+        &self,
+        sampler: &Sampler,
+        counts: &[usize],
+        family: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> SamplerReport {
+        let counts = sampler.counts(counts);
+        let each = (0..).zip(&counts);
+        let reports = each.filter_map(|(i, n)| self.count(sampler, *n, family + 128 * i, progress));
+        let counts: Vec<CountReport> = reports.collect();
+        let of = |value: fn(&CountReport) -> Uncertain| {
+            let all = counts.iter().map(|report| (report.count, value(report)));
+            all.collect::<Vec<_>>()
+        };
+        SamplerReport {
+            sampler: sampler.to_string(),
+            predicted_slope: fitted_slope(&of(|r| r.predicted), false).map(|slope| slope.value),
+            found_slope: fitted_slope(&of(|r| r.found), true),
+            counts,
+        }
+    }
+
+    fn count(
+        &self,
+        sampler: &Sampler,
+        count: usize,
+        family: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Option<CountReport> {
+        let response = SamplerResponse::new(sampler, count, self.power.max, self.seed)?;
+        let predicted = PredictedVariance::new(self.power, &response, self.moments, count);
+        let family = SetFamily {
+            seed: self.seed,
+            family,
+            sets: self.shifts,
+            is_shifted: true,
+        };
+        let means = family.means(self.radiance, sampler, count, progress)?;
+        let found = variance_of(&means);
+        let gain = |variance: f64| count as f64 * variance / self.moments.variance.value;
+        let is_file = matches!(sampler, Sampler::File(_));
+        Some(CountReport {
+            count,
+            predicted: predicted.variance,
+            tail: predicted.tail,
+            found,
+            ratio: ratio(predicted.variance, found),
+            predicted_gain: gain(predicted.variance.value),
+            found_gain: gain(found.value),
+            is_undecided: is_file && predicted.tail > MAX_FILE_TAIL,
+            worse: self.worse(&response, count),
+        })
+    }
+
+    /// Returns the frequencies at which a sampler is worse than independent points.
+    fn worse(&self, response: &SamplerResponse, count: usize) -> WorsePower {
+        let variance = self.moments.variance.value;
+        let mut share = 0.0;
+        let mut worst = std::collections::BTreeMap::<[usize; 4], (f64, f64)>::new();
+        let all = box_frequencies(self.power.max);
+        for ((m, power), expected) in all.iter().zip(&self.power.power).zip(&response.inside) {
+            let ratio = count as f64 * expected;
+            if ratio > 1.0 + ROUNDING {
+                share += power / variance;
+                let signs = worst.entry(m.map(isize::unsigned_abs)).or_default();
+                *signs = (signs.0.max(ratio), signs.1 + power / variance);
+            }
+        }
+        let named = |(frequency, (ratio, share))| WorstFrequency {
+            frequency,
+            ratio,
+            share,
+        };
+        let mut worst: Vec<WorstFrequency> = worst.into_iter().map(named).collect();
+        worst.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+        worst.truncate(MAX_WORST);
+        WorsePower { share, worst }
+    }
+}
+
+/// Returns the power of each of the 15 sets of axes as a share of σ². Sets with fewer axes come
+/// first. A Latin hypercube removes the power of single axes, and padding removes the power of sets
+/// inside one of its pairs.
+#[must_use]
+pub fn axis_sets(power: &MeasuredPower, moments: &WindowMoments) -> Vec<AxisSetPower> {
+    let all = box_frequencies(power.max);
+    let set_of = |m: &[isize; 4]| {
+        let nonzero = m.iter().enumerate().filter(|(_, m)| **m != 0);
+        nonzero.fold(0_usize, |set, (axis, _)| set | 1 << axis)
+    };
+    let sets: Vec<usize> = all.iter().map(set_of).collect();
+    let mut order: Vec<usize> = (1..16).collect();
+    order.sort_by_key(|set| (set.count_ones(), *set));
+    let share = |set: usize| {
+        let (value, without) = power.estimates(|power| {
+            let inside = power.iter().zip(&sets).filter(|(_, other)| **other == set);
+            inside.map(|(p, _)| p).sum::<f64>() / moments.variance.value
+        });
+        Uncertain {
+            value,
+            error: jackknife_error(&without),
+        }
+    };
+    let named = |set: usize| AxisSetPower {
+        axes: (0..4)
+            .filter(|axis| set >> axis & 1 == 1)
+            .map(|axis| AXES[axis])
+            .collect(),
+        share: share(set),
+    };
+    order.into_iter().map(named).collect()
+}
+
+/// Returns the ratio of two independent numbers.
+fn ratio(a: Uncertain, b: Uncertain) -> Uncertain {
+    let value = a.value / b.value;
+    let [of_a, of_b] = [a, b].map(|number| number.error / number.value);
+    Uncertain {
+        value,
+        error: value.abs() * (of_a * of_a + of_b * of_b).sqrt(),
+    }
+}
