@@ -5,6 +5,7 @@ mod rays;
 mod run;
 mod shared;
 mod sweep;
+mod variance;
 mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
@@ -15,6 +16,7 @@ pub(crate) use run::{
 };
 pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
+pub(crate) use variance::{SamplerArg, VarianceArgs};
 pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
 use clap::error::{ContextKind, ContextValue};
@@ -73,6 +75,8 @@ pub(crate) enum Command {
     Bandwidth(BandwidthArgs),
     /// Compare covariance tracing with measured spectra.
     Covariance(CovarianceArgs),
+    /// Predict the error of a mean of N rays, for several samplers.
+    Variance(VarianceArgs),
     /// Measure how fast first-order maps approach the real geometry.
     Converge(ConvergeArgs),
     /// Show what a scene file of another program contains.
@@ -99,7 +103,14 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ),
     (
         "Show results and reproduce the paper",
-        &["report", "figure", "bandwidth", "covariance", "converge"],
+        &[
+            "report",
+            "figure",
+            "bandwidth",
+            "covariance",
+            "variance",
+            "converge",
+        ],
     ),
     (
         "Scenes of other programs",

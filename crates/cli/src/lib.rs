@@ -29,6 +29,7 @@ mod schema;
 mod split;
 mod sweep;
 mod threads;
+mod variance;
 mod warnings;
 mod workers;
 
@@ -66,6 +67,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Covariance(args) => covariance::covariance(&args),
+        Command::Variance(args) => variance::variance(&args),
         Command::Export(args) => export::export(&args),
         Command::Import(args) => import::import(&args),
         Command::Render(args) => render::render(&args),

@@ -36,6 +36,6 @@ pub use failure::{CANNOT_RUN, Failure};
 pub use method::Method;
 pub use results::{
     COVARIANCE, EXPORT, FIGURE, Finished, LINKED, MAX_INDEX_BYTES, MEASUREMENT, PICTURE,
-    PREDICTION, PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, hash_of, inside,
+    PREDICTION, PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, hash_of, inside,
 };
 pub use version::VERSION;

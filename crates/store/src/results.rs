@@ -37,6 +37,8 @@ pub const PICTURE: &str = "picture.json";
 pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
 pub const COVARIANCE: &str = "covariance.json";
+/// The index of `etendue variance`.
+pub const VARIANCE: &str = "variance.json";
 /// The file with the seconds of a comparison. The index does not list this file, because the
 /// seconds differ in every run.
 pub const TIMING: &str = "timing.json";
@@ -291,6 +293,7 @@ impl Results {
             PICTURE,
             PROBE,
             COVARIANCE,
+            VARIANCE,
         ]
         .into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())

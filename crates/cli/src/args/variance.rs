@@ -1,0 +1,173 @@
+//! Arguments of `etendue variance`.
+
+use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
+use clap::Args;
+use etendue_variance::{AxisPairs, FREQUENCIES, MAX_POINTS, Sampler};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue variance scenes/variance/soft_shadow.ron
+  etendue variance scenes/variance/spot_disc.ron --plane receiver --samplers sobol,padded
+  etendue variance scene.ron --plane receiver --samplers sobol,points.npy --counts 16..1024
+
+Predicts the error of the mean radiance over the window of a plane, for a renderer that estimates it \
+with N rays, and shows the error really made beside it. The windows of the plane are replaced by Box \
+windows of the same half-widths.
+  predicted   from the 4D spectrum of the photons: the sum over frequencies of
+              the power of the field times the power of the sampler. Sets of
+              points are shifted at random, and wrap around the window
+  found       from means over rays traced back at sets of points, each with a
+              shift and random numbers of its own
+  gain        N Var/variance of the radiance: 1 for independent points; smaller
+              is better
+  tail        share of the frequencies beyond those measured. They are assumed
+              to go on as the last octave does, half as strong in each octave
+Samplers:
+  independent   independent points
+  jitter        a point in each of n^4 cells, N = n^4
+  lhs           Latin hypercube
+  sobol         Sobol' net with Owen's scrambling, N = 2^k
+  padded        two jittered sets in two dimensions, paired at random, N = n^2;
+                for the pairs (x,u)+(y,v) and (x,y)+(u,v)
+  FILE.npy      points of a file: f64 [N, 4] in [0, 1), axes x, u, y, v. The
+                prediction is undecided if the tail is more than 20 % of it
+Writes to out/NAME-variance, or to the folder of --out: variance.json, and variance.png, .svg and .csv, \
+which show the variance against N.")]
+pub(crate) struct VarianceArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Name of the plane [default: the only plane of the scene]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) plane: Option<String>,
+
+    /// Samplers, separated by commas
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = sampler, default_value = "independent,jitter,lhs,sobol,padded")]
+    pub(crate) samplers: Vec<SamplerArg>,
+
+    /// Numbers of points: A..B stands for A, 4A, 16A, ... up to B, and A,B,C for a list
+    #[arg(long, value_name = "A..B", value_parser = counts, default_value = "4..4096")]
+    pub(crate) counts: PointCounts,
+
+    /// Number of sets of points with which errors are found
+    #[arg(long, value_name = "R", default_value_t = 200, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    pub(crate) shifts: u32,
+
+    /// Largest measured frequency M along each axis, in cycles per window
+    #[arg(long, value_name = "M", default_value_t = 8, value_parser = frequencies)]
+    pub(crate) frequencies: usize,
+
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+}
+
+/// A sampler as it is named in the arguments.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SamplerArg {
+    /// Samplers with a name; padding stands for two.
+    Named(Vec<Sampler>),
+    /// A file of points.
+    File(PathBuf),
+}
+
+/// Numbers of points, ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PointCounts(pub(crate) Vec<usize>);
+
+fn sampler(text: &str) -> Result<SamplerArg, String> {
+    let named = |sampler| Ok(SamplerArg::Named(vec![sampler]));
+    match text.trim() {
+        "independent" => named(Sampler::Independent),
+        "jitter" => named(Sampler::Jitter),
+        "lhs" => named(Sampler::LatinHypercube),
+        "sobol" => named(Sampler::Sobol),
+        "padded" => Ok(SamplerArg::Named(
+            [AxisPairs::PositionWithSlope, AxisPairs::PositionAndSlope]
+                .map(Sampler::Padded)
+                .to_vec(),
+        )),
+        file if file.to_ascii_lowercase().ends_with(".npy") => Ok(SamplerArg::File(file.into())),
+        _ => Err(
+            "no such sampler; allowed: independent, jitter, lhs, sobol, padded, and files that end with .npy"
+                .to_owned(),
+        ),
+    }
+}
+
+/// Parses numbers of points.
+fn counts(text: &str) -> Result<PointCounts, String> {
+    let allowed = || {
+        format!(
+            "must be A..B, such as 4..4096, or a list, such as 16,81,256, of numbers from 2 to {MAX_POINTS}"
+        )
+    };
+    let number = |text: &str| {
+        let number = text.trim().parse::<usize>().ok();
+        number
+            .filter(|n| (2..=MAX_POINTS).contains(n))
+            .ok_or_else(allowed)
+    };
+    let mut all = if let Some((first, last)) = text.split_once("..") {
+        let [first, last] = [number(first)?, number(last)?];
+        let times_four = |n: &usize| n.checked_mul(4);
+        let all = std::iter::successors(Some(first), times_four);
+        all.take_while(|n| *n <= last).collect::<Vec<_>>()
+    } else {
+        text.split(',').map(number).collect::<Result<_, _>>()?
+    };
+    all.sort_unstable();
+    all.dedup();
+    if all.is_empty() || all.len() > MAX_COUNTS {
+        return Err(allowed());
+    }
+    Ok(PointCounts(all))
+}
+
+/// The largest number of numbers of points.
+const MAX_COUNTS: usize = 64;
+
+fn frequencies(text: &str) -> Result<usize, String> {
+    let [first, last] = [FREQUENCIES.start(), FREQUENCIES.end()];
+    let number = text.trim().parse().ok();
+    number
+        .filter(|n| FREQUENCIES.contains(n))
+        .ok_or_else(|| format!("must be a whole number from {first} to {last}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_points_are_ranges_or_lists() {
+        let of = |text| counts(text).map(|all| all.0);
+        assert_eq!(of("4..4096"), Ok(vec![4, 16, 64, 256, 1024, 4096]));
+        assert_eq!(of("16..100"), Ok(vec![16, 64]));
+        assert_eq!(of("81, 16,16"), Ok(vec![16, 81]));
+        for text in ["1..16", "16..4", "4..65537", "4..", "", "4,x", "-4"] {
+            assert!(of(text).unwrap_err().contains("from 2 to 65536"), "{text}");
+        }
+    }
+
+    #[test]
+    fn samplers_have_names_or_are_files() {
+        assert_eq!(
+            sampler("sobol"),
+            Ok(SamplerArg::Named(vec![Sampler::Sobol]))
+        );
+        assert_eq!(sampler("a/b.npy"), Ok(SamplerArg::File("a/b.npy".into())));
+        assert!(
+            sampler("halton")
+                .unwrap_err()
+                .contains("allowed: independent")
+        );
+        assert!(frequencies("17").unwrap_err().contains("from 2 to 16"));
+    }
+}

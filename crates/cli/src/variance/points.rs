@@ -1,0 +1,39 @@
+//! Reads sets of points from NPY files.
+
+use etendue_rays::NpyHeader;
+use etendue_scene::read_file;
+use etendue_store::Failure;
+use etendue_variance::{MAX_POINTS, PointFile, WindowPoint};
+use std::path::Path;
+
+/// The largest number of bytes of a file: the points, and a long header.
+const MAX_BYTES: u64 = (MAX_POINTS * size_of::<WindowPoint>() + (1 << 16)) as u64;
+
+/// Reads an array f64 [N, 4] in C order.
+pub(super) fn read(path: &Path) -> Result<PointFile, Failure> {
+    let refused = |fault: &dyn std::fmt::Display| {
+        Failure::bad_input(format!("--samplers {}: {fault}", path.display()))
+    };
+    let bytes = read_file(path, MAX_BYTES).map_err(|e| refused(&e))?;
+    let array = array(&bytes);
+    let array = array.ok_or_else(|| {
+        refused(&"it is no such array; allowed: an NPY file of an array of f64 ('<f8') in C order, [N, 4]")
+    })?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    PointFile::new(name.into_owned(), array).map_err(|e| refused(&e))
+}
+
+/// Returns the rows of an array; `None` if the file holds another array.
+fn array(bytes: &[u8]) -> Option<Vec<WindowPoint>> {
+    let (header, start) = NpyHeader::read(bytes)?;
+    let is_plain = header.descr == "<f8" && !header.fortran_order;
+    let (numbers, rest) = bytes.get(start..)?.as_chunks();
+    let numbers: Vec<f64> = numbers
+        .iter()
+        .map(|number| f64::from_le_bytes(*number))
+        .collect();
+    let (points, odd) = numbers.as_chunks();
+    let is_whole = rest.is_empty() && odd.is_empty() && is_plain;
+    let has_shape = header.shape == [points.len() as u64, 4];
+    (is_whole && has_shape).then(|| points.to_vec())
+}

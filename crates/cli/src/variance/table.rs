@@ -1,0 +1,159 @@
+//! The tables that `etendue variance` prints.
+
+use super::PlaneVariance;
+use crate::args::VarianceArgs;
+use etendue_field::{brief, fixed, percent, uncertain};
+use etendue_pipeline::table::{aligned, grouped};
+use etendue_spectrum::Uncertain;
+use etendue_variance::{AxisSetPower, CountReport, SamplerReport};
+
+/// Number of sets of axes in a row.
+const SETS_PER_ROW: usize = 5;
+
+/// Means by photons and by rays that differ by more than this number of standard errors are
+/// reported.
+const MAX_DIFFERENCE: f64 = 4.0;
+
+/// Returns all tables.
+pub(super) fn text(found: &PlaneVariance, args: &VarianceArgs) -> String {
+    let mut lines = head(found, args);
+    lines.push(String::new());
+    lines.push(format!(
+        "power by nonzero axes, as a share of the variance (frequencies up to {}):",
+        args.frequencies
+    ));
+    lines.extend(sets(&found.axis_sets));
+    for sampler in &found.samplers {
+        lines.push(String::new());
+        lines.extend(of_sampler(sampler, found.moments.mean.value));
+    }
+    lines.join("\n")
+}
+
+fn head(found: &PlaneVariance, args: &VarianceArgs) -> Vec<String> {
+    let [x, u, y, v] = found.half_widths.map(brief);
+    let moments = &found.moments;
+    let shown = |number: Uncertain| uncertain(number.value, number.error);
+    let mut lines = vec![
+        format!(
+            "{}: Box windows |x| < {x}, |u| < {u}, |y| < {y}, |v| < {v}; found with {} sets of points",
+            found.plane,
+            grouped(args.shifts.into())
+        ),
+        format!(
+            "mean: {} by photons, {} by rays",
+            shown(found.mean_by_photons),
+            shown(moments.mean)
+        ),
+        format!(
+            "variance over the window: {}, of which {} at frequencies up to {}",
+            shown(moments.variance),
+            percent(found.inside, 1),
+            args.frequencies
+        ),
+    ];
+    if moments.noise.value > 0.0 {
+        let noise = shown(moments.noise);
+        lines.push(format!(
+            "noise of single radiances (paths that scatter): {noise}"
+        ));
+    }
+    let [photons, rays] = [found.mean_by_photons, moments.mean];
+    let error = (photons.error * photons.error + rays.error * rays.error).sqrt();
+    if (photons.value - rays.value).abs() > MAX_DIFFERENCE * error {
+        lines.push("warning: the means differ by more than their errors".to_owned());
+    }
+    lines
+}
+
+/// Returns the table of sets of axes.
+fn sets(sets: &[AxisSetPower]) -> Vec<String> {
+    let cell = |set: &AxisSetPower| {
+        let share = [set.share.value, set.share.error].map(|share| 100.0 * share);
+        [
+            set.axes.concat(),
+            format!("{} %", uncertain(share[0], share[1])),
+        ]
+    };
+    let row = |sets: &[AxisSetPower]| {
+        let cells = sets.iter().flat_map(cell);
+        let missing = (sets.len()..SETS_PER_ROW).flat_map(|_| [String::new(), String::new()]);
+        cells.chain(missing).collect()
+    };
+    aligned(sets.chunks(SETS_PER_ROW).map(row).collect())
+}
+
+/// Returns the table of one sampler.
+fn of_sampler(report: &SamplerReport, mean: f64) -> Vec<String> {
+    let name = &report.sampler;
+    if report.counts.is_empty() {
+        return vec![format!("{name}: it has none of these numbers of points")];
+    }
+    let slope = match (report.predicted_slope, report.found_slope) {
+        (Some(predicted), Some(found)) => format!(
+            ": Var falls as N to the power {} (predicted), {} (found)",
+            fixed(predicted, 2),
+            uncertain(found.value, found.error)
+        ),
+        _ => String::new(),
+    };
+    let header = [
+        "N",
+        "error predicted",
+        "error found",
+        "predicted/found",
+        "gain predicted",
+        "found",
+        "tail",
+    ];
+    let rows = report.counts.iter().map(|count| row(count, mean).to_vec());
+    let header = header.map(str::to_owned).to_vec();
+    let mut lines = vec![format!("{name}{slope}")];
+    lines.extend(aligned(std::iter::once(header).chain(rows).collect()));
+    lines.extend(report.counts.iter().filter_map(worse));
+    if report.counts.iter().any(|count| count.is_undecided) {
+        lines.push("undecided: the tail is too large a share of the prediction".to_owned());
+    }
+    lines
+}
+
+/// Returns a row of the table of a sampler. Errors are relative to the mean.
+fn row(count: &CountReport, mean: f64) -> [String; 7] {
+    let error = |variance: Uncertain| {
+        let value = variance.value.max(0.0).sqrt() / mean;
+        // The relative error of a root is half that of its square.
+        let relative = 0.5 * variance.error / variance.value;
+        format!("{} %", uncertain(100.0 * value, 100.0 * value * relative))
+    };
+    let predicted = if count.is_undecided {
+        "undecided".to_owned()
+    } else {
+        error(count.predicted)
+    };
+    [
+        count.count.to_string(),
+        predicted,
+        error(count.found),
+        uncertain(count.ratio.value, count.ratio.error),
+        fixed(count.predicted_gain, 3),
+        fixed(count.found_gain, 3),
+        percent(count.tail, 0),
+    ]
+}
+
+/// Returns the frequencies at which a sampler is worse than independent points.
+fn worse(count: &CountReport) -> Option<String> {
+    if count.worse.worst.is_empty() {
+        return None;
+    }
+    let worst = count.worse.worst.iter().map(|worst| {
+        let [x, u, y, v] = worst.frequency;
+        format!("{:.2} at ({x},{u},{y},{v})", worst.ratio)
+    });
+    Some(format!(
+        "N = {}: {} of the variance is at frequencies where it is worse; N E|S|²: {}",
+        count.count,
+        percent(count.worse.share, 1),
+        worst.collect::<Vec<_>>().join(", ")
+    ))
+}
