@@ -8,6 +8,7 @@ use crate::args::{SamplerArg, VarianceArgs};
 use crate::print::{deliver, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
+use etendue_field::PhotonSource;
 use etendue_pipeline::{Reporter, Work, load, method};
 use etendue_report::pictures;
 use etendue_scene::Scene;
@@ -15,8 +16,9 @@ use etendue_spectrum::Uncertain;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE, VERSION, machine};
 use etendue_variance::{
-    AXES, AxisSetPower, MeasuredPower, Sampler, SamplerReport, VarianceError, WindowMoments,
-    WindowRadiance, WindowStudy, axis_sets, field_options, with_box_window,
+    AXES, AxisSetPower, MeasuredPower, PowerEstimate, Sampler, SamplerReport, VarianceError,
+    WindowMoments, WindowRadiance, WindowStudy, axis_sets, dyadic_power, field_options,
+    with_box_window,
 };
 use serde_json::json as tree_of;
 use std::path::PathBuf;
@@ -151,9 +153,11 @@ fn studied(
     });
     drop(bar);
     let power = power.map_err(failure)?;
+    let bands = bands(args, scene, &*source, reporter)?;
     let counts = &args.counts.0;
     let sets = samplers.iter().map(|sampler| sampler.counts(counts).len());
-    let sets = sets.sum::<usize>() * args.shifts as usize;
+    let curves = if args.unshifted { 2 } else { 1 };
+    let sets = sets.sum::<usize>() * args.shifts as usize * curves;
     let steps = WindowRadiance::steps();
     let bar = reporter.begin(Work::Steps {
         verb: "tracing back",
@@ -170,9 +174,10 @@ fn studied(
     }
     let study = WindowStudy {
         power: &power,
+        bands: bands.as_ref(),
         radiance,
         moments: &moments,
-        shifts: args.shifts,
+        sets: args.shifts,
         seed: scene.run.seed,
     };
     let each = (0..).zip(samplers);
@@ -183,11 +188,26 @@ fn studied(
         plane: plane.name.clone(),
         half_widths: [window.x, window.u, window.y, window.v].map(|p| p.half_width()),
         mean_by_photons: power.mean,
-        inside: power.total() / moments.variance.value,
+        inside: power.spectrum.total() / moments.variance.value,
         axis_sets: axis_sets(&power, &moments),
         samplers: reports.collect(),
         moments,
     })
+}
+
+/// Traces the photons once more, and returns their power in dyadic bands, if it is requested.
+fn bands(
+    args: &VarianceArgs,
+    scene: &Scene,
+    source: &dyn PhotonSource,
+    reporter: &dyn Reporter,
+) -> Result<Option<PowerEstimate>, Failure> {
+    if !args.unshifted {
+        return Ok(None);
+    }
+    let bar = reporter.begin(Work::Photons(scene.run.photons));
+    let bands = dyadic_power(scene, source, &|photons| bar.advance(photons));
+    bands.map(Some).map_err(failure)
 }
 
 /// Returns the content of the index, without its list of files.

@@ -41,6 +41,27 @@ impl AxisFactor {
             Self::SharedDigits(n) => 2.0 * cell(n) - cell(2.0 * n),
         }
     }
+
+    /// Returns the factor in a dyadic band of level s along an axis, where frequencies are replaced
+    /// by halvings: cells of length 2^−l average levels s > l to 0, and keep coarser levels. Returns
+    /// `None` if the number of cells is no power of two.
+    fn in_band(self, level: usize) -> Option<f64> {
+        let cell = |n: f64| {
+            let cells = etendue_field::whole(n);
+            let is_kept = (1_usize << level) <= cells;
+            cells
+                .is_power_of_two()
+                .then_some(f64::from(u8::from(is_kept)))
+        };
+        Some(match self {
+            Self::One => 1.0,
+            Self::Zero | Self::TwoCells(_) if level == 0 => 1.0,
+            Self::Zero => 0.0,
+            Self::Cell(n) => cell(n)?,
+            Self::TwoCells(n) => -cell(n)? / (n - 1.0),
+            Self::SharedDigits(n) => 2.0 * cell(n)? - cell(2.0 * n)?,
+        })
+    }
 }
 
 /// The expected power spectrum E|S_m|² of a sampler with a fixed number of points, at m ≠ 0.
@@ -147,6 +168,16 @@ impl ExpectedPower {
     pub(crate) fn grid(&self, max: usize) -> Vec<f64> {
         let table = |factor: &AxisFactor| (0..=max).map(|m| factor.at(m as f64)).collect();
         self.sums(&self.factors.iter().map(table).collect::<Vec<_>>())
+    }
+
+    /// Returns what replaces E|S_m|² in the dyadic bands 0 ≤ s_k ≤ `finest` along each axis, for sets
+    /// that are not shifted, in row-major order. The variance of a mean is the sum over bands of
+    /// their power times this number (Owen 1997, for nets: N times the number is the gain
+    /// coefficient). Returns `None` if the cells of the sampler are no dyadic blocks.
+    pub(crate) fn bands(&self, finest: usize) -> Option<Vec<f64>> {
+        let table = |factor: &AxisFactor| (0..=finest).map(|level| factor.in_band(level)).collect();
+        let tables: Option<Vec<Vec<f64>>> = self.factors.iter().map(table).collect();
+        Some(self.sums(&tables?))
     }
 
     /// Returns the means of E|S_m|² over the cells of `octaves` octaves of a dyadic tail, each as

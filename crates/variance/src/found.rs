@@ -11,7 +11,7 @@ use rayon::prelude::*;
 pub struct SetFamily {
     /// The seed.
     pub seed: u64,
-    /// Number of the family, below 2⁸.
+    /// Number of the family, below 2¹⁶.
     pub family: u64,
     /// Number of sets, below 2³².
     pub sets: u32,

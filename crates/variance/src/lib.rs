@@ -7,12 +7,17 @@
 //! exactly. [`MeasuredPower`] has |f_m|² from photons, [`ExpectedPower`] has E|S_m|² of samplers,
 //! [`PredictedVariance`] has the sum, and [`WindowStudy`] compares it with the variance of means
 //! over rays traced back.
+//!
+//! Without shifts the sum is over dyadic bands of the window instead of frequencies, for samplers
+//! whose cells are dyadic blocks ([`dyadic_power`]). The border of the window is then no edge.
 
+mod dyadic_power;
 mod error;
 mod expected_power;
 mod found;
 mod measured_power;
 mod points;
+mod power_estimate;
 mod power_law;
 mod prediction;
 mod radiance;
@@ -22,17 +27,19 @@ mod sampler;
 #[cfg(test)]
 mod tests;
 
+pub use dyadic_power::dyadic_power;
 pub use error::VarianceError;
 pub use expected_power::ExpectedPower;
 pub use found::{SetFamily, variance_of};
 pub use measured_power::{FREQUENCIES, MeasuredPower, field_options, with_box_window};
 pub use points::{points, shift};
+pub use power_estimate::PowerEstimate;
 pub use power_law::fitted_slope;
 pub use prediction::{MAX_FILE_TAIL, PredictedVariance};
 pub use radiance::{WindowMoments, WindowRadiance};
 pub use report::{
-    AXES, AxisSetPower, CountReport, MAX_WORST, SamplerReport, WindowStudy, WorsePower,
-    WorstFrequency, axis_sets,
+    AXES, AxisSetPower, CountReport, MAX_WORST, SamplerReport, VarianceCurve, WindowStudy,
+    WorsePower, WorstFrequency, axis_sets,
 };
 pub use response::SamplerResponse;
 pub use sampler::{AxisPairs, MAX_POINTS, PointFile, PointFileError, Sampler, WindowPoint};

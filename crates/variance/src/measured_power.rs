@@ -1,7 +1,8 @@
 //! The power |f_m|² of a light field at whole frequencies of the window, measured by photons.
 
 use crate::VarianceError;
-use etendue_field::{FrequencyAxis, PhotonSource, Profile, VirtualPlane, Window};
+use crate::power_estimate::{GroupShares, PowerEstimate, jackknife_error};
+use etendue_field::{Complex, FrequencyAxis, PhotonSource, Profile, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::field::{FieldGroup, FieldOptions, measure_field};
@@ -16,16 +17,13 @@ pub const FREQUENCIES: std::ops::RangeInclusive<usize> = 2..=16;
 /// The power |f_m|² at the frequencies |m_k| ≤ M along each axis, (x, u, y, v).
 ///
 /// f_m = ∫ f(z) e^(−2πi m·z) dz over the window coordinates z in \[0, 1\]⁴, so the unit of the power
-/// is the square of the unit of radiance. The power is estimated from products of independent
-/// groups of photons. Therefore it contains no power of the photons' noise, and it may be negative.
+/// is the square of the unit of radiance.
 #[derive(Clone, Debug)]
 pub struct MeasuredPower {
     /// M.
     pub(crate) max: usize,
     /// The power in row-major order, from −M to M along each axis; 0 at m = 0.
-    pub(crate) power: Vec<f64>,
-    /// The same, with one group of photons left out.
-    pub(crate) without_group: Vec<Vec<f64>>,
+    pub spectrum: PowerEstimate,
     /// The mean of f over the window, f_0.
     pub mean: Uncertain,
 }
@@ -83,48 +81,39 @@ impl MeasuredPower {
     /// Returns the power from the spectra of independent groups of photons.
     ///
     /// The estimate of |f_m|² is Σ_(r≠s) Re(G_r conj G_s)/(1 − Σ a_r²), where group r contributes G_r
-    /// to the spectrum and has the share a_r of the batches (docs/theory.md (13)).
+    /// to the spectrum and has the share a_r of the batches.
     fn of_groups(groups: &[FieldGroup], plane: &VirtualPlane, max: usize) -> Self {
         let Window { x, y, u, v } = plane.window;
         let volume: f64 = [x, y, u, v].iter().map(|p| 2.0 * p.half_width()).product();
-        let shares: Vec<f64> = groups.iter().map(|group| group.share).collect();
-        let squares: f64 = shares.iter().map(|a| a * a).sum();
+        let shares = GroupShares::new(groups.iter().map(|group| group.share).collect());
         let all = box_frequencies(max);
         let mut power = Vec::with_capacity(all.len());
         let mut without_group = vec![Vec::with_capacity(all.len()); groups.len()];
-        for [x, u, y, v] in all {
-            let of = |group: &FieldGroup| group.spectrum.at([x, y, u, v]) / volume;
-            let values: Vec<_> = groups.iter().map(of).collect();
-            let sum: etendue_field::Complex = values.iter().sum();
-            let row = |r: usize| (values[r] * (sum - values[r]).conj()).re;
-            let pairs: f64 = (0..values.len()).map(row).sum();
-            let is_zero = [x, u, y, v] == [0; 4];
-            let unless_zero = |value: f64| if is_zero { 0.0 } else { value };
-            power.push(unless_zero(pairs / (1.0 - squares)));
+        for [x, u, y, v] in &all {
+            let of = |group: &FieldGroup| group.spectrum.at([*x, *y, *u, *v]) / volume;
+            let values: Vec<Complex> = groups.iter().map(of).collect();
+            let sum: Complex = values.iter().sum();
+            let product = |value: &Complex| (value * (sum - value).conj()).re;
+            let is_zero = [*x, *u, *y, *v] == [0; 4];
+            let products = values
+                .iter()
+                .map(|v| if is_zero { 0.0 } else { product(v) });
+            let products: Vec<f64> = products.collect();
+            power.push(shares.power(&products));
             for (r, without) in without_group.iter_mut().enumerate() {
-                let norm = (1.0 - shares[r]).powi(2) - (squares - shares[r] * shares[r]);
-                without.push(unless_zero((pairs - 2.0 * row(r)) / norm));
+                without.push(shares.power_without(&products, r));
             }
         }
         let zero = |group: &FieldGroup| group.spectrum.at_zero() / volume;
         Self {
             max,
-            power,
-            without_group,
+            spectrum: PowerEstimate {
+                power,
+                without_group,
+                is_last: all.iter().map(|m| is_in_last_octave(m, max)).collect(),
+            },
             mean: mean(groups.iter().map(|group| (group.share, zero(group)))),
         }
-    }
-
-    /// Returns the sum of the power over all frequencies m ≠ 0 of the box.
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        self.power.iter().sum()
-    }
-
-    /// Returns the power and the leave-one-out estimates of a linear function of the power.
-    pub(crate) fn estimates(&self, of: impl Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
-        let without = self.without_group.iter().map(|power| of(power));
-        (of(&self.power), without.collect())
     }
 }
 
@@ -144,12 +133,9 @@ pub(crate) fn box_frequencies(max: usize) -> Vec<[isize; 4]> {
     all.collect()
 }
 
-/// Returns the standard error of an estimate by the delete-one jackknife.
-pub(crate) fn jackknife_error(without: &[f64]) -> f64 {
-    let n = without.len() as f64;
-    let mean = without.iter().sum::<f64>() / n;
-    let squares: f64 = without.iter().map(|value| (value - mean).powi(2)).sum();
-    (squares * (n - 1.0) / n).sqrt()
+/// Checks whether a frequency is in the last octave of the box.
+pub(crate) fn is_in_last_octave(m: &[isize; 4], max: usize) -> bool {
+    m.iter().any(|m| 2 * m.unsigned_abs() > max)
 }
 
 /// Returns the sum of contributions of groups, and its error from the differences of the groups.

@@ -1,8 +1,8 @@
 //! The variance of a mean over N points, predicted from the power of the field.
 
-use crate::measured_power::{MeasuredPower, box_frequencies, jackknife_error};
+use crate::power_estimate::{PowerEstimate, jackknife_error};
 use crate::radiance::WindowMoments;
-use crate::response::{SamplerResponse, is_in_last_octave};
+use crate::response::SamplerResponse;
 use etendue_spectrum::Uncertain;
 
 /// The largest share of the tail in the prediction for a fixed set of points. Beyond it, the
@@ -19,28 +19,28 @@ pub struct PredictedVariance {
     /// error of σ² and from the error of the noise of radiances. The unit is the square of the unit
     /// of radiance.
     pub variance: Uncertain,
-    /// The share of the tail beyond the box in the variance.
+    /// The share of the tail beyond the measured parts in the variance.
     pub tail: f64,
 }
 
 impl PredictedVariance {
-    /// Returns Σ_(m≠0) |f_m|² E|S_m|², where the power beyond the box is the dyadic tail. The sets of
-    /// points are shifted on the torus at random. `count` is N, by which the noise of radiances is
-    /// divided.
+    /// Returns Σ_(m≠0) |f_m|² E|S_m|², where the power beyond the measured parts is the dyadic tail.
+    /// The power and the response are both at frequencies, for sets that are shifted on the torus at
+    /// random, or both in dyadic bands, for sets that are not shifted. `count` is N, by which the
+    /// noise of radiances is divided.
+    ///
+    /// The tail follows the power of edges. The error of this assumption is not part of the stated
+    /// error.
     #[must_use]
     pub fn new(
-        power: &MeasuredPower,
+        power: &PowerEstimate,
         response: &SamplerResponse,
         moments: &WindowMoments,
         count: usize,
     ) -> Self {
-        let all = box_frequencies(power.max);
-        let last: Vec<bool> = all
-            .iter()
-            .map(|m| is_in_last_octave(m, power.max))
-            .collect();
+        let last = &power.is_last;
         let of_last = |power: &[f64]| {
-            let of_last = power.iter().zip(&last).filter(|(_, is_last)| **is_last);
+            let of_last = power.iter().zip(last).filter(|(_, is_last)| **is_last);
             of_last.map(|(p, _)| p).sum::<f64>()
         };
         // If the last octave has no power above its noise, its shape is unknown. The power beyond the

@@ -1,8 +1,8 @@
 //! The radiance along rays of a window, found by rays traced back, and its moments.
 
 use crate::VarianceError;
-use crate::measured_power::jackknife_error;
 use crate::points::{points, shift};
+use crate::power_estimate::jackknife_error;
 use crate::sampler::{MAX_POINTS, Sampler, WindowPoint};
 use etendue_field::{TwoPlane, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -15,7 +15,7 @@ const NETS: u64 = 64;
 const RAYS_PER_NET: usize = 1 << 13;
 
 /// Set numbers from here on belong to the moments.
-const FIRST_NET: u64 = 1 << 40;
+const FIRST_NET: u64 = 1 << 47;
 
 /// The radiance f(z) at the points z of the window of a plane.
 #[derive(Debug)]

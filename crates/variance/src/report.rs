@@ -1,7 +1,8 @@
 //! The numbers of a study: what is predicted and found for each sampler at a plane.
 
 use crate::found::{SetFamily, variance_of};
-use crate::measured_power::{MeasuredPower, box_frequencies, jackknife_error};
+use crate::measured_power::{MeasuredPower, box_frequencies};
+use crate::power_estimate::{PowerEstimate, jackknife_error};
 use crate::power_law::fitted_slope;
 use crate::prediction::{MAX_FILE_TAIL, PredictedVariance};
 use crate::radiance::{WindowMoments, WindowRadiance};
@@ -27,21 +28,31 @@ pub struct AxisSetPower {
 pub struct SamplerReport {
     /// Name of the sampler.
     pub sampler: String,
+    /// The variances of sets that are shifted on the torus at random.
+    pub shifted: VarianceCurve,
+    /// The variances of sets that are not shifted, if they are requested and the cells of the
+    /// sampler are dyadic blocks.
+    pub unshifted: Option<VarianceCurve>,
+}
+
+/// The variances of one sampler against the number of points N.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VarianceCurve {
     /// The slope of log Var against log N as predicted: a least-squares fit in which all numbers of
     /// points count the same. `None` if there are fewer than two numbers of points.
     pub predicted_slope: Option<f64>,
     /// The slope as found; numbers of points count by their errors.
     pub found_slope: Option<Uncertain>,
-    /// The numbers at each number of points.
+    /// The numbers at each N.
     pub counts: Vec<CountReport>,
 }
 
-/// The numbers of one sampler with N points.
+/// The variance of the mean at N points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CountReport {
     /// N.
     pub count: usize,
-    /// The predicted variance of the mean, for sets shifted on the torus at random.
+    /// The predicted variance.
     pub predicted: Uncertain,
     /// The share of the dyadic tail in the predicted variance.
     pub tail: f64,
@@ -55,8 +66,8 @@ pub struct CountReport {
     pub found_gain: f64,
     /// Whether the prediction is undecided: the set is fixed, and the tail is too large.
     pub is_undecided: bool,
-    /// The frequencies at which the sampler is worse than independent points.
-    pub worse: WorsePower,
+    /// The frequencies at which a shifted sampler is worse than independent points.
+    pub worse: Option<WorsePower>,
 }
 
 /// The power of the field at frequencies at which a sampler is worse than independent points.
@@ -88,65 +99,88 @@ const ROUNDING: f64 = 1e-9;
 /// What all samplers of a study share.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowStudy<'a> {
-    /// The measured power.
+    /// The measured power at frequencies.
     pub power: &'a MeasuredPower,
+    /// The measured power in dyadic bands, if variances without shifts are requested.
+    pub bands: Option<&'a PowerEstimate>,
     /// The radiance along rays.
     pub radiance: &'a WindowRadiance,
     /// The moments of the radiance.
     pub moments: &'a WindowMoments,
-    /// Number of random shifts with which the variance is found.
-    pub shifts: u32,
+    /// Number of sets of points with which each variance is found.
+    pub sets: u32,
     /// The seed of the sets of points.
     pub seed: u64,
 }
 
+/// Number of families of sets of each sampler: one for each number of points, with and without
+/// shifts.
+const FAMILIES: u64 = 256;
+
 impl WindowStudy<'_> {
-    /// Predicts and finds the variances of a sampler. `family` is a number of its own below 128.
+    /// Predicts and finds the variances of sampler number `number`, at most 64 numbers of points.
     /// `progress` is called with 1 after each set of points.
     #[must_use]
     pub fn sampler(
         &self,
         sampler: &Sampler,
         counts: &[usize],
-        family: u64,
+        number: u64,
         progress: &(dyn Fn(u64) + Sync),
     ) -> SamplerReport {
-        let counts = sampler.counts(counts);
-        let each = (0..).zip(&counts);
-        let reports = each.filter_map(|(i, n)| self.count(sampler, *n, family + 128 * i, progress));
-        let counts: Vec<CountReport> = reports.collect();
-        let of = |value: fn(&CountReport) -> Uncertain| {
-            let all = counts.iter().map(|report| (report.count, value(report)));
-            all.collect::<Vec<_>>()
+        let shifted = |count: usize| {
+            let response = SamplerResponse::new(sampler, count, self.power.max, self.seed)?;
+            let worse = self.worse(&response, count);
+            Some((&self.power.spectrum, response, Some(worse)))
         };
+        let unshifted = |count: usize| {
+            Some((
+                self.bands?,
+                SamplerResponse::in_bands(sampler, count)?,
+                None,
+            ))
+        };
+        let curve = |is_shifted: bool| {
+            let each = (0..).zip(sampler.counts(counts)).filter_map(|(i, count)| {
+                let (power, response, worse) = if is_shifted {
+                    shifted(count)
+                } else {
+                    unshifted(count)
+                }?;
+                let family = SetFamily {
+                    seed: self.seed,
+                    family: FAMILIES * number + 2 * i + u64::from(is_shifted),
+                    sets: self.sets,
+                    is_shifted,
+                };
+                let predicted = PredictedVariance::new(power, &response, self.moments, count);
+                let means = family.means(self.radiance, sampler, count, progress)?;
+                let mut report = self.compared(sampler, count, predicted, &means);
+                report.worse = worse;
+                Some(report)
+            });
+            VarianceCurve::new(each.collect())
+        };
+        let unshifted = curve(false);
         SamplerReport {
             sampler: sampler.to_string(),
-            predicted_slope: fitted_slope(&of(|r| r.predicted), false).map(|slope| slope.value),
-            found_slope: fitted_slope(&of(|r| r.found), true),
-            counts,
+            shifted: curve(true),
+            unshifted: (!unshifted.counts.is_empty()).then_some(unshifted),
         }
     }
 
-    fn count(
+    /// Compares a predicted variance with the variance of means.
+    fn compared(
         &self,
         sampler: &Sampler,
         count: usize,
-        family: u64,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Option<CountReport> {
-        let response = SamplerResponse::new(sampler, count, self.power.max, self.seed)?;
-        let predicted = PredictedVariance::new(self.power, &response, self.moments, count);
-        let family = SetFamily {
-            seed: self.seed,
-            family,
-            sets: self.shifts,
-            is_shifted: true,
-        };
-        let means = family.means(self.radiance, sampler, count, progress)?;
-        let found = variance_of(&means);
+        predicted: PredictedVariance,
+        means: &[f64],
+    ) -> CountReport {
+        let found = variance_of(means);
         let gain = |variance: f64| count as f64 * variance / self.moments.variance.value;
         let is_file = matches!(sampler, Sampler::File(_));
-        Some(CountReport {
+        CountReport {
             count,
             predicted: predicted.variance,
             tail: predicted.tail,
@@ -155,8 +189,8 @@ impl WindowStudy<'_> {
             predicted_gain: gain(predicted.variance.value),
             found_gain: gain(found.value),
             is_undecided: is_file && predicted.tail > MAX_FILE_TAIL,
-            worse: self.worse(&response, count),
-        })
+            worse: None,
+        }
     }
 
     /// Returns the frequencies at which a sampler is worse than independent points.
@@ -165,7 +199,11 @@ impl WindowStudy<'_> {
         let mut share = 0.0;
         let mut worst = std::collections::BTreeMap::<[usize; 4], (f64, f64)>::new();
         let all = box_frequencies(self.power.max);
-        for ((m, power), expected) in all.iter().zip(&self.power.power).zip(&response.inside) {
+        for ((m, power), expected) in all
+            .iter()
+            .zip(&self.power.spectrum.power)
+            .zip(&response.inside)
+        {
             let ratio = count as f64 * expected;
             if ratio > 1.0 + ROUNDING {
                 share += power / variance;
@@ -185,6 +223,20 @@ impl WindowStudy<'_> {
     }
 }
 
+impl VarianceCurve {
+    fn new(counts: Vec<CountReport>) -> Self {
+        let of = |value: fn(&CountReport) -> Uncertain| {
+            let all = counts.iter().map(|report| (report.count, value(report)));
+            all.collect::<Vec<_>>()
+        };
+        Self {
+            predicted_slope: fitted_slope(&of(|r| r.predicted), false).map(|slope| slope.value),
+            found_slope: fitted_slope(&of(|r| r.found), true),
+            counts,
+        }
+    }
+}
+
 /// Returns the power of each of the 15 sets of axes as a share of σ². Sets with fewer axes come
 /// first. A Latin hypercube removes the power of single axes, and padding removes the power of sets
 /// inside one of its pairs.
@@ -199,7 +251,7 @@ pub fn axis_sets(power: &MeasuredPower, moments: &WindowMoments) -> Vec<AxisSetP
     let mut order: Vec<usize> = (1..16).collect();
     order.sort_by_key(|set| (set.count_ones(), *set));
     let share = |set: usize| {
-        let (value, without) = power.estimates(|power| {
+        let (value, without) = power.spectrum.estimates(|power| {
             let inside = power.iter().zip(&sets).filter(|(_, other)| **other == set);
             inside.map(|(p, _)| p).sum::<f64>() / moments.variance.value
         });

@@ -1,8 +1,9 @@
 //! The response of a sampler to the power of a field: E|S_m|² inside the box of measured
 //! frequencies, and its mean over the dyadic tail beyond the box.
 
+use crate::dyadic_power::{FINEST, bands};
 use crate::expected_power::ExpectedPower;
-use crate::measured_power::box_frequencies;
+use crate::measured_power::{box_frequencies, is_in_last_octave};
 use crate::sampler::{Sampler, WindowPoint};
 use etendue_field::{Complex, whole};
 use etendue_transform::random::{Stream, unit, words};
@@ -12,18 +13,18 @@ use std::f64::consts::TAU;
 /// Number of octaves of the tail. The last octave has the power of all further octaves too.
 const OCTAVES: u32 = 12;
 
-/// The response of a sampler with N points, at all frequencies |m_k| ≤ M in the order of
-/// [`MeasuredPower`](crate::MeasuredPower).
+/// The response of a sampler with N points to the parts of the power: at the frequencies |m_k| ≤ M,
+/// if sets are shifted on the torus, or in dyadic bands, if they are not.
 #[derive(Clone, Debug)]
 pub struct SamplerResponse {
-    /// E|S_m|²; 0 at m = 0.
+    /// E|S_m|², or its counterpart in a band; 0 for the mean of the field.
     pub(crate) inside: Vec<f64>,
-    /// For each frequency of the last octave, max |m_k| > M/2: the mean of E|S|² over the tail that
-    /// repeats this frequency. Other frequencies have 0.
+    /// For each part of the last octave: the mean of E|S|² over the tail that repeats this part.
+    /// Other parts have 0.
     ///
     /// The tail repeats the power at m at 2^k m, spread over 2^k whole numbers along each axis;
     /// coordinates that are 0 stay 0. Each octave has half the power of the octave before, as the
-    /// power of edges has.
+    /// power of edges has. In the same way, the tail repeats the band s at s + k.
     pub(crate) tail: Vec<f64>,
 }
 
@@ -31,11 +32,6 @@ pub struct SamplerResponse {
 fn octave_share(k: u32) -> f64 {
     let halvings = if k == OCTAVES { k - 1 } else { k };
     libm::exp2(-f64::from(halvings))
-}
-
-/// Checks whether a frequency is in the last octave below `max`.
-pub(crate) fn is_in_last_octave(m: &[isize; 4], max: usize) -> bool {
-    m.iter().any(|m| 2 * m.unsigned_abs() > max)
 }
 
 impl SamplerResponse {
@@ -65,6 +61,28 @@ impl SamplerResponse {
         Some(Self {
             inside: all.iter().map(inside).collect(),
             tail: all.iter().map(tail).collect(),
+        })
+    }
+
+    /// Returns the response in dyadic bands, for sets that are not shifted. Returns `None` if the
+    /// cells of the sampler are no dyadic blocks.
+    #[must_use]
+    pub fn in_bands(sampler: &Sampler, count: usize) -> Option<Self> {
+        let levels = FINEST + OCTAVES as usize;
+        let grid = ExpectedPower::new(sampler, count)?.bands(levels)?;
+        let at = |band: [usize; 4]| grid[band.iter().fold(0, |i, s| i * (levels + 1) + s)];
+        let tail = |band: [usize; 4]| {
+            if !band.contains(&FINEST) {
+                return 0.0;
+            }
+            let finer = |k: u32| band.map(|s| if s == 0 { 0 } else { s + k as usize });
+            let octaves = (1..=OCTAVES).map(|k| octave_share(k) * at(finer(k)));
+            octaves.sum()
+        };
+        let inside = |band: [usize; 4]| if band == [0; 4] { 0.0 } else { at(band) };
+        Some(Self {
+            inside: bands(FINEST).map(inside).collect(),
+            tail: bands(FINEST).map(tail).collect(),
         })
     }
 

@@ -130,8 +130,8 @@ impl fmt::Display for Sampler {
             Self::Jitter => "jitter",
             Self::LatinHypercube => "lhs",
             Self::Sobol => "sobol",
-            Self::Padded(AxisPairs::PositionWithSlope) => "padded (x,u)+(y,v)",
-            Self::Padded(AxisPairs::PositionAndSlope) => "padded (x,y)+(u,v)",
+            Self::Padded(AxisPairs::PositionWithSlope) => "padded xu+yv",
+            Self::Padded(AxisPairs::PositionAndSlope) => "padded xy+uv",
             Self::File(file) => &file.name,
         })
     }

@@ -22,14 +22,15 @@ windows of the same half-widths.
   gain        N Var/variance of the radiance: 1 for independent points; smaller
               is better
   tail        share of the frequencies beyond those measured. They are assumed
-              to go on as the last octave does, half as strong in each octave
+              to go on as the last octave does, half as strong in each octave.
+              The stated errors do not include the error of this assumption
 Samplers:
   independent   independent points
   jitter        a point in each of n^4 cells, N = n^4
   lhs           Latin hypercube
   sobol         Sobol' net with Owen's scrambling, N = 2^k
   padded        two jittered sets in two dimensions, paired at random, N = n^2;
-                for the pairs (x,u)+(y,v) and (x,y)+(u,v)
+                for the pairs xu+yv and xy+uv
   FILE.npy      points of a file: f64 [N, 4] in [0, 1), axes x, u, y, v. The
                 prediction is undecided if the tail is more than 20 % of it
 Writes to out/NAME-variance, or to the folder of --out: variance.json, and variance.png, .svg and .csv, \
@@ -49,6 +50,11 @@ pub(crate) struct VarianceArgs {
     /// Numbers of points: A..B stands for A, 4A, 16A, ... up to B, and A,B,C for a list
     #[arg(long, value_name = "A..B", value_parser = counts, default_value = "4..4096")]
     pub(crate) counts: PointCounts,
+
+    /// Also predict and find the errors of sets that are not shifted: of independent points, and of
+    /// jitter, lhs, sobol and padded sets whose number of cells along an axis is a power of two
+    #[arg(long)]
+    pub(crate) unshifted: bool,
 
     /// Number of sets of points with which errors are found
     #[arg(long, value_name = "R", default_value_t = 200, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]

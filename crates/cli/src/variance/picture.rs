@@ -12,7 +12,7 @@ pub(super) fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failur
     let samplers = found
         .samplers
         .iter()
-        .filter(|sampler| !sampler.counts.is_empty());
+        .filter(|sampler| !sampler.shifted.counts.is_empty());
     let figure = Curves {
         title: format!(
             "{scene}, {}: variance of a mean of *N* radiances",
@@ -27,7 +27,8 @@ pub(super) fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failur
     curves(&figure, &Style::default()).map_err(Failure::cannot_run)
 }
 
-fn panel(report: &SamplerReport, variance: f64) -> CurvePanel {
+fn panel(sampler: &SamplerReport, variance: f64) -> CurvePanel {
+    let report = &sampler.shifted;
     let points = |of: fn(&etendue_variance::CountReport) -> [f64; 2]| {
         let counts = report.counts.iter();
         let points = counts.map(|count| {
@@ -69,7 +70,7 @@ fn panel(report: &SamplerReport, variance: f64) -> CurvePanel {
         _ => String::new(),
     };
     CurvePanel {
-        title: format!("{}{slopes}", report.sampler),
+        title: format!("{}{slopes}", sampler.sampler),
         x: AxisQuantity::new("*N*", ""),
         curves,
         is_log: [true, true],

@@ -5,10 +5,10 @@ use crate::args::VarianceArgs;
 use etendue_field::{brief, fixed, percent, uncertain};
 use etendue_pipeline::table::{aligned, grouped};
 use etendue_spectrum::Uncertain;
-use etendue_variance::{AxisSetPower, CountReport, SamplerReport};
+use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 
 /// Number of sets of axes in a row.
-const SETS_PER_ROW: usize = 5;
+const SETS_PER_ROW: usize = 3;
 
 /// Means by photons and by rays that differ by more than this number of standard errors are
 /// reported.
@@ -83,15 +83,29 @@ fn sets(sets: &[AxisSetPower]) -> Vec<String> {
     aligned(sets.chunks(SETS_PER_ROW).map(row).collect())
 }
 
-/// Returns the table of one sampler.
+/// Returns the tables of one sampler.
 fn of_sampler(report: &SamplerReport, mean: f64) -> Vec<String> {
     let name = &report.sampler;
-    if report.counts.is_empty() {
-        return vec![format!("{name}: it has none of these numbers of points")];
+    let mut lines = of_curve(name, &report.shifted, mean);
+    let worst = report.shifted.counts.iter().filter_map(worst);
+    if name.starts_with("sobol") {
+        lines.extend(worst);
     }
-    let slope = match (report.predicted_slope, report.found_slope) {
+    if let Some(unshifted) = &report.unshifted {
+        lines.extend(of_curve(&format!("{name}, not shifted"), unshifted, mean));
+    }
+    lines
+}
+
+fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
+    if curve.counts.is_empty() {
+        return vec![format!(
+            "{name}: it has no sets with these numbers of points"
+        )];
+    }
+    let slope = match (curve.predicted_slope, curve.found_slope) {
         (Some(predicted), Some(found)) => format!(
-            ": Var falls as N to the power {} (predicted), {} (found)",
+            ": Var is as N to the power {} (predicted), {} (found)",
             fixed(predicted, 2),
             uncertain(found.value, found.error)
         ),
@@ -106,13 +120,12 @@ fn of_sampler(report: &SamplerReport, mean: f64) -> Vec<String> {
         "found",
         "tail",
     ];
-    let rows = report.counts.iter().map(|count| row(count, mean).to_vec());
+    let rows = curve.counts.iter().map(|count| row(count, mean).to_vec());
     let header = header.map(str::to_owned).to_vec();
     let mut lines = vec![format!("{name}{slope}")];
     lines.extend(aligned(std::iter::once(header).chain(rows).collect()));
-    lines.extend(report.counts.iter().filter_map(worse));
-    if report.counts.iter().any(|count| count.is_undecided) {
-        lines.push("undecided: the tail is too large a share of the prediction".to_owned());
+    if curve.counts.iter().any(|count| count.is_undecided) {
+        lines.push("undecided: more than 20 % of the prediction is tail".to_owned());
     }
     lines
 }
@@ -142,18 +155,14 @@ fn row(count: &CountReport, mean: f64) -> [String; 7] {
 }
 
 /// Returns the frequencies at which a sampler is worse than independent points.
-fn worse(count: &CountReport) -> Option<String> {
-    if count.worse.worst.is_empty() {
-        return None;
-    }
-    let worst = count.worse.worst.iter().map(|worst| {
-        let [x, u, y, v] = worst.frequency;
-        format!("{:.2} at ({x},{u},{y},{v})", worst.ratio)
-    });
+fn worst(count: &CountReport) -> Option<String> {
+    let worse = count.worse.as_ref()?;
+    let worst = worse.worst.first()?;
+    let [x, u, y, v] = worst.frequency;
     Some(format!(
-        "N = {}: {} of the variance is at frequencies where it is worse; N E|S|²: {}",
+        "N = {}: worse than independent at {} of the power, most at ({x}, {u}, {y}, {v}): {} times",
         count.count,
-        percent(count.worse.share, 1),
-        worst.collect::<Vec<_>>().join(", ")
+        percent(worse.share, 1),
+        fixed(worst.ratio, 2)
     ))
 }

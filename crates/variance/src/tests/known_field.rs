@@ -93,7 +93,8 @@ fn the_variance_of_known_waves_is_predicted() {
             let exact = WAVES.map(|(m, a)| 0.5 * a * a * expected.at(m));
             let exact: f64 = exact.iter().sum();
             let response = SamplerResponse::new(&sampler, count, 4, 1).unwrap();
-            let found = PredictedVariance::new(&power, &response, &moments, count).variance;
+            let found =
+                PredictedVariance::new(&power.spectrum, &response, &moments, count).variance;
             let off = (found.value - exact).abs() / (found.error + 1e-14);
             assert!(off < 4.0, "{sampler} {count}: {found:?} {exact}");
             assert!(found.error < 0.2 * moments.variance.value / count as f64);
@@ -124,7 +125,7 @@ fn missing_power_is_in_the_tail() {
     let (power, mut moments) = measured(4);
     let response = SamplerResponse::new(&Sampler::Sobol, 256, 4, 1).unwrap();
     let predicted =
-        |moments: &WindowMoments| PredictedVariance::new(&power, &response, moments, 256);
+        |moments: &WindowMoments| PredictedVariance::new(&power.spectrum, &response, moments, 256);
     let inside = predicted(&moments);
     moments.variance.value *= 1.25;
     let more = predicted(&moments);

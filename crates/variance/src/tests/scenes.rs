@@ -3,7 +3,7 @@
 use super::scene;
 use crate::{
     MeasuredPower, Sampler, SamplerReport, VarianceError, WindowRadiance, WindowStudy,
-    with_box_window,
+    dyadic_power, with_box_window,
 };
 use etendue_scene::Scene;
 use etendue_trace::Tracer;
@@ -15,15 +15,17 @@ fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, 
     let max = 8;
     let scene = with_box_window(scene, index, max);
     let power = MeasuredPower::measure(&scene, &Tracer::new(&scene), max, &|_| ()).unwrap();
+    let bands = dyadic_power(&scene, &Tracer::new(&scene), &|_| ()).unwrap();
     let radiance = WindowRadiance::new(&scene).unwrap();
     let moments = radiance.moments(3, &|_| ());
     let off = power.mean.value - moments.mean.value;
     assert!(off.abs() < 4.0 * power.mean.error.hypot(moments.mean.error));
     let study = WindowStudy {
         power: &power,
+        bands: Some(&bands),
         radiance: &radiance,
         moments: &moments,
-        shifts: 400,
+        sets: 400,
         seed: 7,
     };
     let samplers = [
@@ -40,7 +42,8 @@ fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, 
 
 fn check(reports: &[SamplerReport]) {
     for report in reports {
-        for count in &report.counts {
+        let unshifted = report.unshifted.iter().flat_map(|curve| &curve.counts);
+        for count in report.shifted.counts.iter().chain(unshifted) {
             let off = (count.ratio.value - 1.0).abs() / count.ratio.error;
             assert!(off < 4.0, "{} {count:?}", report.sampler);
         }
