@@ -155,9 +155,12 @@ fn studied(
     let power = power.map_err(failure)?;
     let bands = bands(args, scene, &*source, reporter)?;
     let counts = &args.counts.0;
-    let sets = samplers.iter().map(|sampler| sampler.counts(counts).len());
-    let curves = if args.unshifted { 2 } else { 1 };
-    let sets = sets.sum::<usize>() * args.shifts as usize * curves;
+    let curves = |sampler: &Sampler| match sampler {
+        Sampler::Independent | Sampler::File(_) => 1,
+        _ => 1 + usize::from(args.unshifted),
+    };
+    let sets = samplers.iter().map(|s| s.counts(counts).len() * curves(s));
+    let sets = sets.sum::<usize>() * args.shifts as usize;
     let steps = WindowRadiance::steps();
     let bar = reporter.begin(Work::Steps {
         verb: "tracing back",

@@ -23,6 +23,7 @@ mod schema;
 mod split;
 mod stages;
 mod sweep;
+mod variance;
 mod vocabulary;
 mod workers;
 mod worlds;

@@ -30,8 +30,8 @@ pub struct SamplerReport {
     pub sampler: String,
     /// The variances of sets that are shifted on the torus at random.
     pub shifted: VarianceCurve,
-    /// The variances of sets that are not shifted, if they are requested and the cells of the
-    /// sampler are dyadic blocks.
+    /// The variances of sets that are not shifted, if they are requested, the cells of the sampler
+    /// are dyadic blocks, and the points are not independent.
     pub unshifted: Option<VarianceCurve>,
 }
 
@@ -134,6 +134,10 @@ impl WindowStudy<'_> {
             Some((&self.power.spectrum, response, Some(worse)))
         };
         let unshifted = |count: usize| {
+            // A shift changes nothing about independent points.
+            if *sampler == Sampler::Independent {
+                return None;
+            }
             Some((
                 self.bands?,
                 SamplerResponse::in_bands(sampler, count)?,

@@ -51,8 +51,8 @@ pub(crate) struct VarianceArgs {
     #[arg(long, value_name = "A..B", value_parser = counts, default_value = "4..4096")]
     pub(crate) counts: PointCounts,
 
-    /// Also predict and find the errors of sets that are not shifted: of independent points, and of
-    /// jitter, lhs, sobol and padded sets whose number of cells along an axis is a power of two
+    /// Also predict and find the errors of sets that are not shifted, for jitter, lhs, sobol and
+    /// padded sets whose number of cells along an axis is a power of two
     #[arg(long)]
     pub(crate) unshifted: bool,
 
