@@ -1,6 +1,7 @@
 //! Implements `etendue variance`, which predicts the Monte Carlo error of the mean over a window.
 
 mod picture;
+mod plane_variance;
 mod points;
 mod table;
 
@@ -12,32 +13,18 @@ use etendue_field::PhotonSource;
 use etendue_pipeline::{Reporter, Work, load, method};
 use etendue_report::pictures;
 use etendue_scene::Scene;
-use etendue_spectrum::Uncertain;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE, VERSION, machine};
 use etendue_variance::{
-    AXES, AxisSetPower, MeasuredPower, PowerEstimate, Sampler, SamplerReport, VarianceError,
-    WindowMoments, WindowRadiance, WindowStudy, axis_sets, dyadic_power, field_options,
-    with_box_window,
+    AXES, MeasuredPower, PowerEstimate, Sampler, VarianceError, WindowRadiance, WindowStudy,
+    axis_sets, dyadic_power, field_options, with_box_window,
 };
+use plane_variance::PlaneVariance;
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
 /// The files beside the index.
 const NAMES: [&str; 3] = ["variance.png", "variance.svg", "variance.csv"];
-
-/// The numbers of a plane.
-struct PlaneVariance {
-    plane: String,
-    /// Half-widths of the window along (x, u, y, v).
-    half_widths: [f64; 4],
-    mean_by_photons: Uncertain,
-    moments: WindowMoments,
-    /// The power inside the box of measured frequencies, as a share of σ².
-    inside: f64,
-    axis_sets: Vec<AxisSetPower>,
-    samplers: Vec<SamplerReport>,
-}
 
 /// Runs `etendue variance`; returns the exit code.
 pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {

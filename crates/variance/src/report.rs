@@ -259,9 +259,11 @@ pub fn axis_sets(power: &MeasuredPower, moments: &WindowMoments) -> Vec<AxisSetP
             let inside = power.iter().zip(&sets).filter(|(_, other)| **other == set);
             inside.map(|(p, _)| p).sum::<f64>() / moments.variance.value
         });
+        let of_photons = jackknife_error(&without);
+        let of_variance = value * moments.variance.error / moments.variance.value;
         Uncertain {
             value,
-            error: jackknife_error(&without),
+            error: (of_photons * of_photons + of_variance * of_variance).sqrt(),
         }
     };
     let named = |set: usize| AxisSetPower {

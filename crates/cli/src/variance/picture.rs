@@ -1,6 +1,6 @@
 //! Draws predicted and found variances against the number of points.
 
-use super::PlaneVariance;
+use super::plane_variance::PlaneVariance;
 use etendue_field::fixed;
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Style, curves};
 use etendue_pipeline::table::spaced;

@@ -1,6 +1,6 @@
 //! The tables that `etendue variance` prints.
 
-use super::PlaneVariance;
+use super::plane_variance::PlaneVariance;
 use crate::args::VarianceArgs;
 use etendue_field::{brief, fixed, percent, uncertain};
 use etendue_pipeline::table::{aligned, grouped};
