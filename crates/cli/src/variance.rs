@@ -23,6 +23,9 @@ use plane_variance::PlaneVariance;
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
+/// The exit code if a prediction is undecided.
+const UNDECIDED: u8 = 4;
+
 /// The files beside the index.
 const NAMES: [&str; 3] = ["variance.png", "variance.svg", "variance.csv"];
 
@@ -32,6 +35,14 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     let index = chosen(&scene, args.plane.as_deref())?;
     method::check(&scene, args.photons.method)?;
     let samplers = samplers(&args.samplers)?;
+    let counts = &args.counts.0;
+    if samplers.iter().all(|s| s.counts(counts).is_empty()) {
+        let shown: Vec<String> = counts.iter().map(usize::to_string).collect();
+        return Err(Failure::bad_input(format!(
+            "--counts {}: no sampler has sets of so many points; allowed: n^4 for jitter, 2^k for sobol, n^2 for padded, any number for independent and lhs",
+            shown.join(",")
+        )));
+    }
     let mut inputs = load::inputs(&args.scene.source(), &scene);
     inputs.extend(files(&args.samplers).cloned());
     let plan = Plan {
@@ -67,7 +78,11 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     if !args.work.quiet {
         deliver(&format!("results in {}", finished.folder.display()))?;
     }
-    Ok(0)
+    let curves = found.samplers.iter().map(|sampler| &sampler.shifted);
+    let is_undecided = curves
+        .flat_map(|curve| &curve.counts)
+        .any(|count| count.is_undecided);
+    Ok(if is_undecided { UNDECIDED } else { 0 })
 }
 
 /// Returns the index of the selected plane.
@@ -170,8 +185,8 @@ fn studied(
         sets: args.shifts,
         seed: scene.run.seed,
     };
-    let each = (0..).zip(samplers);
-    let reports = each.map(|(family, sampler)| study.sampler(sampler, counts, family, &progress));
+    let each = samplers.iter();
+    let reports = each.map(|sampler| study.sampler(sampler, counts, &progress));
     let plane = &scene.planes[0];
     let window = plane.window;
     Ok(PlaneVariance {

@@ -60,7 +60,7 @@ pub struct CountReport {
     pub found: Uncertain,
     /// Predicted / found, with its standard error.
     pub ratio: Uncertain,
-    /// N · Var/σ² as predicted: 1 for independent points, smaller is better.
+    /// N · Var/σ² as predicted: 1 for independent points if radiances are exact, smaller is better.
     pub predicted_gain: f64,
     /// N · Var/σ² as found.
     pub found_gain: f64,
@@ -118,14 +118,13 @@ pub struct WindowStudy<'a> {
 const FAMILIES: u64 = 256;
 
 impl WindowStudy<'_> {
-    /// Predicts and finds the variances of sampler number `number`, at most 64 numbers of points.
-    /// `progress` is called with 1 after each set of points.
+    /// Predicts and finds the variances of a sampler, at most 64 numbers of points. `progress` is
+    /// called with 1 after each set of points.
     #[must_use]
     pub fn sampler(
         &self,
         sampler: &Sampler,
         counts: &[usize],
-        number: u64,
         progress: &(dyn Fn(u64) + Sync),
     ) -> SamplerReport {
         let shifted = |count: usize| {
@@ -153,7 +152,7 @@ impl WindowStudy<'_> {
                 }?;
                 let family = SetFamily {
                     seed: self.seed,
-                    family: FAMILIES * number + 2 * i + u64::from(is_shifted),
+                    family: FAMILIES * sampler.number() + 2 * i + u64::from(is_shifted),
                     sets: self.sets,
                     is_shifted,
                 };

@@ -112,6 +112,19 @@ impl Sampler {
             }
     }
 
+    /// Returns the number that selects the random numbers of the sampler's sets.
+    pub(crate) fn number(&self) -> u64 {
+        match self {
+            Self::Independent => 0,
+            Self::Jitter => 1,
+            Self::LatinHypercube => 2,
+            Self::Sobol => 3,
+            Self::Padded(AxisPairs::PositionWithSlope) => 4,
+            Self::Padded(AxisPairs::PositionAndSlope) => 5,
+            Self::File(_) => 6,
+        }
+    }
+
     /// Returns the numbers of points among `counts` that the sampler has. A file has only its own
     /// number of points.
     #[must_use]

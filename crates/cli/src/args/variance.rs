@@ -19,8 +19,9 @@ windows of the same half-widths.
               points are shifted at random, and wrap around the window
   found       from means over rays traced back at sets of points, each with a
               shift and random numbers of its own
-  gain        N Var/variance of the radiance: 1 for independent points; smaller
-              is better
+  ratio       predicted variance divided by found variance
+  gain        N Var/variance of the radiance: 1 for independent points, if light
+              does not scatter on its way; smaller is better
   tail        share of the frequencies beyond those measured. They are assumed
               to go on as the last octave does, half as strong in each octave.
               The stated errors do not include the error of this assumption
@@ -31,8 +32,9 @@ Samplers:
   sobol         Sobol' net with Owen's scrambling, N = 2^k
   padded        two jittered sets in two dimensions, paired at random, N = n^2;
                 for the pairs xu+yv and xy+uv
-  FILE.npy      points of a file: f64 [N, 4] in [0, 1), axes x, u, y, v. The
-                prediction is undecided if the tail is more than 20 % of it
+  FILE.npy      points of a file: f64 [N, 4] in [0, 1), axes x, u, y, v. Neither
+                --counts nor --unshifted apply. The prediction is undecided
+                (exit code 4) if the tail is more than 20 % of it
 Writes to out/NAME-variance, or to the folder of --out: variance.json, and variance.png, .svg and .csv, \
 which show the variance against N.")]
 pub(crate) struct VarianceArgs {

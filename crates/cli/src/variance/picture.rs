@@ -18,7 +18,9 @@ pub(super) fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failur
             "{scene}, {}: variance of a mean of *N* radiances",
             spaced(&found.plane)
         ),
-        note: "points are shifted at random on the torus; slopes: predicted, found".to_owned(),
+        note:
+            "points are shifted at random on the torus; titles have the slopes predicted and found"
+                .to_owned(),
         y: AxisQuantity::new("Var", ""),
         panels: samplers
             .map(|sampler| panel(sampler, found.moments.variance.value))
@@ -65,7 +67,7 @@ fn panel(sampler: &SamplerReport, variance: f64) -> CurvePanel {
         (Some(predicted), Some(found)) => {
             let [predicted, found] =
                 [predicted, found.value].map(|s| fixed(s, 2).replace('-', "−"));
-            format!(" {predicted}, {found}")
+            format!(": {predicted}, {found}")
         }
         _ => String::new(),
     };

@@ -15,25 +15,35 @@ pub(super) fn read(path: &Path) -> Result<PointFile, Failure> {
         Failure::bad_input(format!("--samplers {}: {fault}", path.display()))
     };
     let bytes = read_file(path, MAX_BYTES).map_err(|e| refused(&e))?;
-    let array = array(&bytes);
-    let array = array.ok_or_else(|| {
-        refused(&"it is no such array; allowed: an NPY file of an array of f64 ('<f8') in C order, [N, 4]")
+    let array = array(&bytes).map_err(|found| {
+        refused(&format!(
+            "{found}; allowed: an NPY file of an array of f64 ('<f8') in C order, [N, 4]"
+        ))
     })?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     PointFile::new(name.into_owned(), array).map_err(|e| refused(&e))
 }
 
-/// Returns the rows of an array; `None` if the file holds another array.
-fn array(bytes: &[u8]) -> Option<Vec<WindowPoint>> {
-    let (header, start) = NpyHeader::read(bytes)?;
+/// Returns the rows of an array, or what the file holds instead.
+fn array(bytes: &[u8]) -> Result<Vec<WindowPoint>, String> {
+    let (header, start) = NpyHeader::read(bytes).ok_or("it is no NPY file")?;
     let is_plain = header.descr == "<f8" && !header.fortran_order;
-    let (numbers, rest) = bytes.get(start..)?.as_chunks();
+    let (numbers, rest) = bytes.get(start..).unwrap_or_default().as_chunks();
     let numbers: Vec<f64> = numbers
         .iter()
         .map(|number| f64::from_le_bytes(*number))
         .collect();
     let (points, odd) = numbers.as_chunks();
-    let is_whole = rest.is_empty() && odd.is_empty() && is_plain;
+    let is_whole = rest.is_empty() && odd.is_empty();
     let has_shape = header.shape == [points.len() as u64, 4];
-    (is_whole && has_shape).then(|| points.to_vec())
+    if is_whole && is_plain && has_shape {
+        return Ok(points.to_vec());
+    }
+    let order = if header.fortran_order { "Fortran" } else { "C" };
+    Err(format!(
+        "it holds {} bytes of '{}' in {order} order, {:?}",
+        bytes.len() - start,
+        header.descr,
+        header.shape
+    ))
 }

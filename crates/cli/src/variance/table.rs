@@ -115,7 +115,7 @@ fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
         "N",
         "error predicted",
         "error found",
-        "predicted/found",
+        "ratio of Var",
         "gain predicted",
         "found",
         "tail",
@@ -125,7 +125,10 @@ fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
     let mut lines = vec![format!("{name}{slope}")];
     lines.extend(aligned(std::iter::once(header).chain(rows).collect()));
     if curve.counts.iter().any(|count| count.is_undecided) {
-        lines.push("undecided: more than 20 % of the prediction is tail".to_owned());
+        lines.push(
+            "undecided: more than 20 % of the prediction is tail, and a fixed set may have peaks there"
+                .to_owned(),
+        );
     }
     lines
 }
@@ -138,19 +141,21 @@ fn row(count: &CountReport, mean: f64) -> [String; 7] {
         let relative = 0.5 * variance.error / variance.value;
         format!("{} %", uncertain(100.0 * value, 100.0 * value * relative))
     };
-    let predicted = if count.is_undecided {
-        "undecided".to_owned()
-    } else {
-        error(count.predicted)
+    let known = |text: String| {
+        if count.is_undecided {
+            "undecided".to_owned()
+        } else {
+            text
+        }
     };
     [
         count.count.to_string(),
-        predicted,
+        known(error(count.predicted)),
         error(count.found),
-        uncertain(count.ratio.value, count.ratio.error),
-        fixed(count.predicted_gain, 3),
+        known(uncertain(count.ratio.value, count.ratio.error)),
+        known(fixed(count.predicted_gain, 3)),
         fixed(count.found_gain, 3),
-        percent(count.tail, 0),
+        percent(count.tail.max(0.0), 0),
     ]
 }
 
@@ -160,9 +165,9 @@ fn worst(count: &CountReport) -> Option<String> {
     let worst = worse.worst.first()?;
     let [x, u, y, v] = worst.frequency;
     Some(format!(
-        "N = {}: worse than independent at {} of the power, most at ({x}, {u}, {y}, {v}): {} times",
+        "N = {}: {} times independent points at ({x}, {u}, {y}, {v}), and above them at {} of the power",
         count.count,
-        percent(worse.share, 1),
-        fixed(worst.ratio, 2)
+        fixed(worst.ratio, 2),
+        percent(worse.share.max(0.0), 1)
     ))
 }

@@ -34,8 +34,8 @@ fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, 
         Sampler::LatinHypercube,
         Sampler::Sobol,
     ];
-    let each = (0..).zip(&samplers);
-    let reports = each.map(|(family, sampler)| study.sampler(sampler, counts, family, &|_| ()));
+    let each = samplers.iter();
+    let reports = each.map(|sampler| study.sampler(sampler, counts, &|_| ()));
     let numbers = [moments.mean, moments.variance, moments.noise].map(|m| [m.value, m.error]);
     (reports.collect(), numbers.concat().try_into().unwrap())
 }
