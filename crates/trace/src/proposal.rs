@@ -14,6 +14,11 @@ use etendue_field::Profile;
 pub(crate) struct ProfileDensity {
     half: f64,
     kind: ProposalKind,
+    /// 1 / `half`. Products with it replace divisions, which would take a third of the time of
+    /// emission.
+    inverse: f64,
+    /// The sine of the angle whose slope is `half`, and its inverse.
+    sine: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,37 +31,37 @@ enum ProposalKind {
 
 impl ProfileDensity {
     pub(crate) fn new(profile: &Profile) -> Self {
-        Self {
-            half: profile.half_width(),
-            kind: match profile {
-                Profile::Hann(_) => ProposalKind::Tent,
-                Profile::Box(_) | Profile::Gaussian { .. } => ProposalKind::Constant,
-            },
-        }
+        let kind = match profile {
+            Profile::Hann(_) => ProposalKind::Tent,
+            Profile::Box(_) | Profile::Gaussian { .. } => ProposalKind::Constant,
+        };
+        Self::of(kind, profile.half_width())
     }
 
     pub(crate) fn constant(half: f64) -> Self {
-        let kind = ProposalKind::Constant;
-        Self { half, kind }
+        Self::of(ProposalKind::Constant, half)
     }
 
     /// Returns the density for slopes of light that a surface receives. The slopes are at most
     /// `half`. The density is weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
-        let kind = ProposalKind::Cosine;
-        Self { half, kind }
+        Self::of(ProposalKind::Cosine, half)
     }
 
-    /// Returns the sine of the angle at the largest slope.
-    #[inline(always)]
-    fn sine(&self) -> f64 {
-        self.half / (1.0 + self.half * self.half).sqrt()
+    fn of(kind: ProposalKind, half: f64) -> Self {
+        let sine = half / (1.0 + half * half).sqrt();
+        Self {
+            half,
+            kind,
+            inverse: 1.0 / half,
+            sine: [sine, 1.0 / sine],
+        }
     }
 
     /// Returns the share of the density below `t`.
     #[inline(always)]
     fn cumulative(&self, t: f64) -> f64 {
-        let s = (t / self.half).clamp(-1.0, 1.0);
+        let s = (t * self.inverse).clamp(-1.0, 1.0);
         match self.kind {
             ProposalKind::Constant => 0.5 * (1.0 + s),
             ProposalKind::Tent => {
@@ -65,7 +70,7 @@ impl ProfileDensity {
             }
             ProposalKind::Cosine => {
                 let t = s * self.half;
-                0.5 * (1.0 + t / ((1.0 + t * t).sqrt() * self.sine()))
+                0.5 * (1.0 + t * self.sine[1] / (1.0 + t * t).sqrt())
             }
         }
     }
@@ -82,7 +87,7 @@ impl ProfileDensity {
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
             }
             ProposalKind::Cosine => {
-                let sine = (2.0 * p - 1.0) * self.sine();
+                let sine = (2.0 * p - 1.0) * self.sine[0];
                 return sine / (1.0 - sine * sine).sqrt();
             }
         };
@@ -92,16 +97,16 @@ impl ProfileDensity {
     /// Returns the density with respect to dt.
     #[inline(always)]
     pub(crate) fn density(&self, t: f64) -> f64 {
-        let s = (t / self.half).abs();
+        let s = (t * self.inverse).abs();
         if s >= 1.0 {
             return 0.0;
         }
         match self.kind {
-            ProposalKind::Constant => 0.5 / self.half,
-            ProposalKind::Tent => (1.0 - s) / self.half,
+            ProposalKind::Constant => 0.5 * self.inverse,
+            ProposalKind::Tent => (1.0 - s) * self.inverse,
             ProposalKind::Cosine => {
                 let secant_squared = 1.0 + t * t;
-                0.5 / (secant_squared * secant_squared.sqrt() * self.sine())
+                0.5 * self.sine[1] / (secant_squared * secant_squared.sqrt())
             }
         }
     }
@@ -303,7 +308,7 @@ impl Proposal {
         };
         let space = self.space.each(seen, ProfileDensity::density);
         lanes(|i| {
-            let density = slope[i] / share * space[i] / (high[i] - low[i]);
+            let density = slope[i] * space[i] / (share * (high[i] - low[i]));
             let is_lit = x[i] >= left && x[i] <= right && high[i] > low[i];
             if is_lit { density } else { 0.0 }
         })
