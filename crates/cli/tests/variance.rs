@@ -40,7 +40,8 @@ fn predicted_errors_are_found() {
         .args(line.split(' '))
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    // The prediction for one of the files is undecided.
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
     let said = String::from_utf8(output.stdout).unwrap();
     let long: Vec<&str> = said
         .lines()

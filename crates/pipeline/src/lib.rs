@@ -31,6 +31,7 @@ mod reporter;
 mod summary;
 pub mod table;
 pub mod target;
+pub mod variance;
 mod workers;
 
 pub use case::MeasuredScene;

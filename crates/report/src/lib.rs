@@ -11,6 +11,7 @@ mod explorer;
 pub mod page;
 pub mod pictures;
 mod shell;
+pub mod variance;
 mod write_result;
 
 pub use shell::shell_word;

@@ -62,13 +62,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "pipeline",
         &[
-            "compare", "field", "rays", "scene", "spectrum", "store", "trace",
+            "compare", "field", "rays", "scene", "spectrum", "store", "trace", "variance",
         ],
     ),
     (
         "report",
         &[
             "compare", "explorer", "field", "figures", "pipeline", "scene", "spectrum", "store",
+            "variance",
         ],
     ),
     (

@@ -1,9 +1,9 @@
 //! The tables that `etendue variance` prints.
 
-use super::plane_variance::PlaneVariance;
 use crate::args::VarianceArgs;
 use etendue_field::{brief, fixed, percent, uncertain};
 use etendue_pipeline::table::{aligned, grouped};
+use etendue_pipeline::variance::PlaneVariance;
 use etendue_spectrum::Uncertain;
 use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 

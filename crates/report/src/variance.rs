@@ -1,14 +1,14 @@
 //! Draws predicted and found variances against the number of points.
 
-use super::plane_variance::PlaneVariance;
 use etendue_field::fixed;
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Style, curves};
 use etendue_pipeline::table::spaced;
+use etendue_pipeline::variance::PlaneVariance;
 use etendue_store::Failure;
 use etendue_variance::SamplerReport;
 
 /// Draws a panel for each sampler.
-pub(super) fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failure> {
+pub fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failure> {
     let samplers = found
         .samplers
         .iter()
