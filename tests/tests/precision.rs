@@ -42,6 +42,23 @@ fn difference(full: &Measurement, reduced: &Measurement, plane: usize) -> f64 {
     ratios.fold(0.0, f64::max)
 }
 
+/// Lights without extent, narrow lights with nets, and long runs need full precision.
+#[test]
+fn quiet_photons_have_full_precision() {
+    let precise = |text: &str, photons: u64| {
+        let mut file = SceneFile::parse(text).expect("a scene file");
+        file.run.photons = photons;
+        let scene = resolve("test", file, "../scenes".as_ref(), u64::MAX).expect("a sound scene");
+        Tracer::new(&scene).is_precise()
+    };
+    let point = include_str!("../../scenes/fig4_point.ron");
+    let travel = SCENES[0];
+    let narrow = travel.replace("size: (0.2, 0.2)", "size: (0.2, 0.001)");
+    assert_ne!(narrow, travel);
+    assert!(precise(point, 1 << 22) && precise(&narrow, 1 << 22));
+    assert!(!precise(travel, 1 << 22) && precise(travel, 1 << 30));
+}
+
 #[test]
 fn reduced_precision_is_hidden_by_noise() {
     for text in SCENES {

@@ -65,6 +65,7 @@ impl Memory {
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
+            // A transform of full precision needs a little less.
             threads: busy * sum(&|plane, _| SliceTransform::reduced(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
                 let held = 3.0

@@ -89,8 +89,9 @@ pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Returns whether errors of 10⁻⁷ of a spectrum's value at zero can be told from its noise. Only
-    /// light from a source with extent has so much noise that they cannot.
+    /// Returns whether spectra need the full precision of the transform of rays. If not, the error
+    /// may be 2·10⁻⁵ of the sum of weights (typically 10⁻⁷), and weights must not be negative. A
+    /// source that wraps another one should return the answer of the other one.
     fn is_precise(&self) -> bool {
         true
     }

@@ -242,6 +242,33 @@ mod tests {
     use super::*;
 
     #[test]
+    fn several_values_are_single_values() {
+        let gaussian = Profile::Gaussian {
+            width: 0.3,
+            cut: 0.5,
+        };
+        for x in [Profile::Hann(0.7), Profile::Box(0.7), gaussian] {
+            let window = Window {
+                x,
+                y: Profile::Hann(0.5),
+                u: Profile::Hann(0.9),
+                v: Profile::Hann(1.1),
+            };
+            let rays = [
+                [-0.4, 0.1, 0.45],
+                [0.3, 0.0, -0.49],
+                [0.8, 0.2, 0.1],
+                [1.0, -1.0, 0.5],
+            ];
+            for (i, value) in window.values(&rays).into_iter().enumerate() {
+                let [x, y, u, v] = rays.map(|column| column[i]);
+                let expected = window.value(&TwoPlane { x, y, u, v });
+                assert_eq!(value.to_bits(), expected.to_bits());
+            }
+        }
+    }
+
+    #[test]
     fn hann_is_right_to_rounding() {
         for i in -1000..=1000 {
             let s = f64::from(i) / 1000.0;

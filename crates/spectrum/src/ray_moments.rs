@@ -44,6 +44,7 @@ impl MomentSums {
         let columns = columns
             .each_ref()
             .map(|column| column.as_chunks::<LANES>().0);
+        const { assert!(N.is_multiple_of(LANES)) };
         let mut sums = self.0;
         for i in 0..count.div_ceil(LANES) {
             let [x, y, u, v, weight] = columns.map(|column| column[i]);

@@ -4,11 +4,11 @@ mod plain;
 
 use crate::aim::{FromSky, looks_across};
 use crate::arrival::radiance_per_flux;
-use crate::lanes::{inside, lanes};
+use crate::lanes::lanes;
 use crate::photon_group::{ABREAST, PhotonColumn, PhotonGroup, ray};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::proposal::{ProfileDensity, Proposal};
-use crate::radiance::radiance;
+use crate::radiance::radiances;
 use crate::reach::{looks_at_surface, outline, reach};
 use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window};
 use etendue_scene::{Emission, Scene};
@@ -193,17 +193,7 @@ impl Emitter {
     /// Returns photons with their weights and fluxes.
     #[inline(always)]
     fn weighted(&self, rays: [PhotonColumn; 4], densities: PhotonColumn) -> PhotonGroup {
-        let radiance: PhotonColumn = match &self.light {
-            Light::Area {
-                shape,
-                radiance,
-                exponent: 0.0,
-            } => {
-                let is_lit = inside(shape, [&rays[0], &rays[1]]);
-                lanes(|i| if is_lit[i] { *radiance } else { 0.0 })
-            }
-            light => lanes(|i| radiance(light, &ray(&rays, i))),
-        };
+        let radiance = radiances(&self.light, &rays);
         let weights = lanes(|i| {
             let weight = radiance[i] / densities[i];
             // Because of rounding, a ray can lie exactly on the edge of a range, where the density

@@ -1,7 +1,25 @@
 //! Computes the radiance of lights along a ray.
 
+use crate::lanes::{inside, lanes};
+use crate::photon_group::{PhotonColumn, ray};
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
+
+/// Returns the radiance along several rays, given as columns of x, y, u and v.
+#[inline(always)]
+pub(crate) fn radiances(light: &Light, rays: &[PhotonColumn; 4]) -> PhotonColumn {
+    match light {
+        Light::Area {
+            shape,
+            radiance,
+            exponent: 0.0,
+        } => {
+            let is_lit = inside(shape, [&rays[0], &rays[1]]);
+            lanes(|i| if is_lit[i] { *radiance } else { 0.0 })
+        }
+        light => lanes(|i| radiance(light, &ray(rays, i))),
+    }
+}
 
 /// Returns the radiance along a ray that is given in the plane of the light. The value is per du dv
 /// for a point light, per dx dy for a beam, and per share of flux for rays of a file. The value

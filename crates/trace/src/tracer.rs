@@ -13,7 +13,7 @@ use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
-use etendue_scene::{Object, Scene};
+use etendue_scene::{Object, Sampling, Scene};
 use etendue_transform::random::Stream;
 use fearless_simd::Level;
 use std::ops::Range;
@@ -44,10 +44,15 @@ pub struct Tracer {
     level: Level,
 }
 
-/// The number of photons up to which the spectrum of a light with extent has more noise than the
-/// errors of a transform of reduced precision. With 4·10⁶ photons, these errors are 10⁻⁷ of the
-/// value at zero and at most 0.005 of the standard error at any frequency (results/performance.md).
-const MAX_REDUCED: u64 = 1_000_000_000;
+/// The largest number of photons with which spectra have reduced precision. Random photons then
+/// have noise of 1.3·10⁻⁴ of the value at zero, ten times the largest error of the transform. Nets
+/// may have less noise at some frequencies: with 4·10⁶ photons the error is at most 0.005 standard
+/// errors (results/performance.md), and noise falls at most as 1/photons.
+const MAX_REDUCED: u64 = 60_000_000;
+
+/// The least width of a light for reduced precision with nets, times the largest frequency. The
+/// spectrum of a narrower light does not fall beyond the grid, and nets sample it with little noise.
+const MIN_WIDTH: f64 = 1.25;
 
 /// A leg of the path for photons.
 #[derive(Debug)]
@@ -124,7 +129,7 @@ impl Tracer {
             emitter: Emitter::new(scene),
             flat: legs.first().and_then(FlightLeg::flat),
             planes: scene.planes.len(),
-            is_precise: !scene.light.has_extent() || scene.run.photons > MAX_REDUCED,
+            is_precise: is_precise(scene),
             shares: BatchRanges::new(&scene.run),
             numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
             level: Level::new(),
@@ -370,6 +375,17 @@ impl FlightLeg {
             }
         }
     }
+}
+
+/// Checks whether spectra of a scene need the full precision of the transform.
+fn is_precise(scene: &Scene) -> bool {
+    let is_narrow = |plane: &VirtualPlane| {
+        let widths = [0, 1].map(|axis| scene.light.extent(axis)).into_iter();
+        let mut widths = widths.map(|[low, high]| high - low);
+        widths.any(|width| width * plane.grid.rho.max() < MIN_WIDTH)
+    };
+    let has_quiet_nets = scene.run.sampling == Sampling::Net && scene.planes.iter().any(is_narrow);
+    scene.run.photons > MAX_REDUCED || has_quiet_nets
 }
 
 /// Checks whether a straight line may meet an object twice.

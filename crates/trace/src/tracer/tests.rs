@@ -77,6 +77,41 @@ fn group(seed: u64, number: u64) -> PhotonGroup {
     group
 }
 
+/// Returns a scene with a disc light, a floor, and layers of one rectangle each.
+fn layered(layers: u32) -> Scene {
+    let layer = |i: u32| {
+        let distance = 1.0 + f64::from(i) / 16.0;
+        format!(
+            r#"Shapes(name: "{i}", center: (0, 0, {distance}), shapes: [
+                Rectangle(center: (3, 0), size: (0.5, 0.5)),
+            ]),"#
+        )
+    };
+    let blockers: String = (0..layers).map(layer).collect();
+    let text = format!(
+        r#"(
+            light: Disc(center: (0, 0, 0), radius: 0.5, radiance: 1.0),
+            blockers: [{blockers}],
+            surfaces: [Rectangle(name: "floor", center: (0, 0, 4), size: (2, 2), albedo: 0.3)],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
+            planes: [(name: "receiver", at: Before("floor"))],
+            window: (x: Hann(1), u: Hann(0.5)),
+            frequencies: (rho: (max: 4), nu: (max: 4)),
+            run: (photons: 100_003, batches: 32, seed: 1),
+        )"#
+    );
+    let file = SceneFile::parse(&text).unwrap();
+    resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
+}
+
+#[test]
+fn scenes_that_are_not_flat_are_traced_one_by_one() {
+    let flat = |layers| Tracer::new(&layered(layers)).flat.is_some();
+    // The floor is an obstacle too.
+    assert!(flat(15));
+    assert!(!flat(16));
+}
+
 #[test]
 fn photons_that_touch_edges_end_at_the_same_obstacles() {
     for seed in 0..20 {
@@ -108,7 +143,13 @@ fn photons_that_touch_edges_end_at_the_same_obstacles() {
 #[test]
 fn emitted_photons_end_at_the_same_obstacles() {
     for seed in 0..20 {
-        let scene = scene(seed);
+        let mut scene = scene(seed);
+        if seed % 4 > 1 {
+            scene.run.sampling = Sampling::Random;
+        }
+        if seed % 5 == 1 {
+            scene.light = layered(1).light;
+        }
         let tracer = Tracer::new(&scene);
         assert!(tracer.flat.is_some(), "scene {seed}");
         let one_by_one = Tracer {

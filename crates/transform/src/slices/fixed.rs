@@ -1,7 +1,7 @@
 //! The spreading of rays over cells that hold whole numbers.
 //!
 //! Six taps of f32 and sums of i32 take half the time of eight taps and sums of f64. A sum of whole
-//! numbers is exact, so an error arises only where a share of a ray is rounded to a whole number.
+//! numbers is exact, so errors do not grow with the number of rays.
 
 use super::block::{Block, GROUP};
 use super::kernel::{Kernel, transposed};

@@ -88,6 +88,15 @@ impl<const TAPS: usize> Kernel<f64, TAPS> {
     }
 }
 
+impl<const TAPS: usize> Kernel<f32, TAPS> {
+    /// Returns the same kernel with the same coefficients in double precision.
+    pub(crate) fn double(&self) -> Kernel<f64, TAPS> {
+        Kernel {
+            terms: self.terms.map(|terms| terms.map(f64::from)),
+        }
+    }
+}
+
 impl<T: Copy, const TAPS: usize> Kernel<T, TAPS> {
     /// Computes the taps of several points at t = 2f − 1. Lane i of each tap belongs to point i.
     #[inline(always)]

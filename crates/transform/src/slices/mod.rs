@@ -25,7 +25,7 @@ use std::fmt;
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
 /// Klinteberg 2019, *SIAM Journal on Scientific Computing* 41(5)). The plan spreads each ray over 8
-/// × 8 cells of a grid, transforms the grid, and divides by the transform of the spreading kernel.
+/// × 8 cells of a grid (6 × 6 with reduced precision), transforms the grid, and divides by the transform of the spreading kernel.
 /// The grid is 2.5 times as fine as the frequencies require.
 ///
 /// The error is below 2·10⁻⁷ Σ|w| at every frequency. A single ray reaches this bound; with many
@@ -74,7 +74,7 @@ impl SliceTransform {
     ///
     /// # Panics
     ///
-    /// Panics if `grid` has no azimuth.
+    /// Panics if `grid` has no azimuth, or if a fine grid has 2³² cells or more.
     #[must_use]
     pub fn new(grid: &SliceGrid) -> Self {
         Self::at_level(grid, Level::new(), false)
@@ -85,11 +85,11 @@ impl SliceTransform {
     ///
     /// A single ray reaches this bound. The error is that of the spreading kernel, which is
     /// 1.3·10⁻⁵ of the spectrum at frequencies beyond the grid. Light from a source with extent has
-    /// little power there, so its error is about 10⁻⁷ Σw.
+    /// little power there, so its error is 1 to 3·10⁻⁷ Σw. Positions must be finite.
     ///
     /// # Panics
     ///
-    /// Panics if `grid` has no azimuth.
+    /// Panics if `grid` has no azimuth, or if a fine grid has 2³² cells or more.
     #[must_use]
     pub fn reduced(grid: &SliceGrid) -> Self {
         Self::at_level(grid, Level::new(), true)
@@ -110,10 +110,14 @@ impl SliceTransform {
             })
             .collect();
         let [rows, columns] = placements[0].padded();
+        assert!(
+            u32::try_from(rows * columns).is_ok(),
+            "a grid has fewer than 2³² cells"
+        );
         let (spreading, fine) = if reduced && rows * columns <= MAX_REDUCED {
-            let kernel = Kernel::<f64, { fixed::TAPS }>::new();
-            let fine = FineTransform::new(&kernel, placements[0], *grid);
-            (Spreading::Reduced(kernel.single()), fine)
+            let kernel = Kernel::<f64, { fixed::TAPS }>::new().single();
+            let fine = FineTransform::new(&kernel.double(), placements[0], *grid);
+            (Spreading::Reduced(kernel), fine)
         } else {
             let kernel = Kernel::new();
             let fine = FineTransform::new(&kernel, placements[0], *grid);
@@ -205,10 +209,16 @@ impl Accumulator<'_> {
         }
     }
 
-    /// Adds rays given as columns of x, y, u, v and weight. All columns have the same length.
+    /// Adds rays given as columns of x, y, u, v and weight.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the columns have different lengths.
     pub fn deposit_columns(&mut self, columns: [&[f64]; 5]) {
+        let count = columns[0].len();
+        assert!(columns.iter().all(|column| column.len() == count));
         let mut from = 0;
-        while from < columns[0].len() {
+        while from < count {
             from += self.block.extend(columns.map(|column| &column[from..]));
             if self.block.is_full() {
                 self.flush();
