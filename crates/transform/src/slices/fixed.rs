@@ -41,14 +41,15 @@ struct ScaledRays {
     across: [[f32; ROW]; GROUP],
 }
 
-/// Adds the rays of a padded block to the padded fine grid of one azimuth. `cells` is a grid of the
-/// same shape, which holds zeros before and after.
+/// Adds the rays of a padded block to the padded fine grid of one azimuth. `scale` is the
+/// [`scale`] of the block, and `cells` is a grid of the same shape, which holds zeros before and
+/// after.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(
     simd: S,
     kernel: &Kernel<f32, TAPS>,
     placement: &Placement,
-    block: &Block,
+    (block, scale): (&Block, f64),
     cells: &mut [i32],
     fine: &mut [f64],
 ) {
@@ -61,7 +62,6 @@ pub(crate) fn spread<S: Simd>(
         down: [[0.0; GROUP]; TAPS],
         across: [[0.0; ROW]; GROUP],
     };
-    let scale = scale(block);
     for from in (0..block.weight.len()).step_by(GROUP) {
         place(&mut group, placement, block, from, scale);
         weigh(simd, &mut group, kernel);
@@ -78,15 +78,14 @@ pub(crate) fn spread<S: Simd>(
 /// numbers. No cell can overflow, even if all rays lie in one cell, because the scaled weights sum
 /// to at most 2³⁰ and the taps are at most 1. The result is NaN if the sum of the weights is not
 /// finite.
-#[inline(always)]
-fn scale(block: &Block) -> f64 {
-    /// The least exponent of a sum of weights. Light below it counts as darkness.
-    const LEAST: i32 = -900;
+pub(crate) fn scale(block: &Block) -> f64 {
+    /// The smallest exponent of a sum of weights. Light below it counts as darkness.
+    const MIN_EXPONENT: i32 = -900;
     let total: f64 = block.weight.iter().map(|weight| weight.abs()).sum();
     if !total.is_finite() {
         return f64::NAN;
     }
-    libm::ldexp(1.0, 29 - libm::ilogb(total).max(LEAST))
+    libm::ldexp(1.0, 29 - libm::ilogb(total).max(MIN_EXPONENT))
 }
 
 /// Finds the cells of the rays starting at `from`, and scales their weights.

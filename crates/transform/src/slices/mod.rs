@@ -25,8 +25,8 @@ use std::fmt;
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
 /// Klinteberg 2019, *SIAM Journal on Scientific Computing* 41(5)). The plan spreads each ray over 8
-/// × 8 cells of a grid (6 × 6 with reduced precision), transforms the grid, and divides by the transform of the spreading kernel.
-/// The grid is 2.5 times as fine as the frequencies require.
+/// × 8 cells of a grid (6 × 6 with reduced precision), transforms the grid, and divides by the
+/// transform of the spreading kernel. The grid is 2.5 times as fine as the frequencies require.
 ///
 /// The error is below 2·10⁻⁷ Σ|w| at every frequency. A single ray reaches this bound; with many
 /// scattered rays, errors average out. A plan with [`reduced`](Self::reduced) precision takes half
@@ -59,7 +59,7 @@ enum Spreading {
 
 /// The largest number of cells of a padded grid at which reduced precision saves time. For larger
 /// grids, adding up the cells after each block takes longer than the spreading saves.
-const MAX_REDUCED: usize = 1 << 18;
+const MAX_REDUCED_CELLS: usize = 1 << 18;
 
 impl fmt::Debug for SliceTransform {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -114,7 +114,7 @@ impl SliceTransform {
             u32::try_from(rows * columns).is_ok(),
             "a grid has fewer than 2³² cells"
         );
-        let (spreading, fine) = if reduced && rows * columns <= MAX_REDUCED {
+        let (spreading, fine) = if reduced && rows * columns <= MAX_REDUCED_CELLS {
             let kernel = Kernel::<f64, { fixed::TAPS }>::new().single();
             let fine = FineTransform::new(&kernel.double(), placements[0], *grid);
             (Spreading::Reduced(kernel), fine)
@@ -135,13 +135,13 @@ impl SliceTransform {
     /// Returns the number of bytes of an accumulator.
     #[must_use]
     pub fn bytes(&self) -> f64 {
-        let [cells, whole] = self.cells();
+        let [cells, whole] = self.cell_counts();
         let cells = size_of::<f64>() * cells + size_of::<i32>() * whole;
         (cells + self.fine.workspace().bytes()) as f64
     }
 
     /// Returns the numbers of cells of an accumulator that hold f64, and that hold whole numbers.
-    fn cells(&self) -> [usize; 2] {
+    fn cell_counts(&self) -> [usize; 2] {
         let [rows, columns] = self.placements[0].padded();
         let whole = match self.spreading {
             Spreading::Full(_) => 0,
@@ -153,7 +153,7 @@ impl SliceTransform {
     /// Returns an empty sum.
     #[must_use]
     pub fn accumulator(&self) -> Accumulator<'_> {
-        let [cells, whole] = self.cells();
+        let [cells, whole] = self.cell_counts();
         Accumulator {
             plan: self,
             block: Block::new(),
@@ -249,14 +249,20 @@ impl Accumulator<'_> {
             plan, block, whole, ..
         } = self;
         let each = self.fine.len() / plan.placements.len();
-        for (placement, fine) in plan.placements.iter().zip(self.fine.chunks_exact_mut(each)) {
-            match &plan.spreading {
-                Spreading::Full(kernel) => {
+        let grids = plan.placements.iter().zip(self.fine.chunks_exact_mut(each));
+        match &plan.spreading {
+            Spreading::Full(kernel) => {
+                for (placement, fine) in grids {
                     dispatch!(plan.level, simd => spread(simd, kernel, placement, block, fine));
                 }
-                Spreading::Reduced(kernel) => dispatch!(plan.level, simd => {
-                    fixed::spread(simd, kernel, placement, block, whole, fine);
-                }),
+            }
+            Spreading::Reduced(kernel) => {
+                let block = (&*block, fixed::scale(block));
+                for (placement, fine) in grids {
+                    dispatch!(plan.level, simd => {
+                        fixed::spread(simd, kernel, placement, block, whole, fine);
+                    });
+                }
             }
         }
         self.block.clear();
