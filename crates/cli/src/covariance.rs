@@ -4,6 +4,7 @@
 mod table;
 
 use crate::args::CovarianceArgs;
+use crate::planes;
 use crate::print::{deliver, say_replaced};
 use crate::progress;
 use crate::progress::Terminal;
@@ -106,13 +107,8 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
 
 /// Removes the planes that the user has not selected from the scene.
 fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
-    let known = |name: &String| scene.planes.iter().any(|plane| plane.name == *name);
-    if let Some(name) = names.iter().find(|name| !known(name)) {
-        let all: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
-        let all = all.join(", ");
-        return Err(Failure::bad_input(format!(
-            "--plane {name}: the scene has no such plane; allowed: {all}"
-        )));
+    for name in names {
+        planes::named(scene, name)?;
     }
     if !names.is_empty() {
         scene.planes.retain(|plane| names.contains(&plane.name));

@@ -17,6 +17,7 @@ mod figure;
 mod import;
 mod interrupt;
 mod measure;
+mod planes;
 mod predict;
 mod print;
 mod probe;

@@ -4,6 +4,7 @@ mod points;
 mod table;
 
 use crate::args::{SamplerArg, VarianceArgs};
+use crate::planes;
 use crate::print::{deliver, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
@@ -79,20 +80,12 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
 
 /// Returns the index of the selected plane.
 fn chosen(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
-    let all: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
-    let allowed = all.join(", ");
     match name {
-        Some(name) => {
-            let index = all.iter().position(|plane| *plane == name);
-            index.ok_or_else(|| {
-                Failure::bad_input(format!(
-                    "--plane {name}: the scene has no such plane; allowed: {allowed}"
-                ))
-            })
-        }
-        None if all.len() == 1 => Ok(0),
+        Some(name) => planes::named(scene, name),
+        None if scene.planes.len() == 1 => Ok(0),
         None => Err(Failure::bad_input(format!(
-            "the scene has several planes: select one with --plane; allowed: {allowed}"
+            "the scene has several planes: select one with --plane; allowed: {}",
+            planes::names(scene)
         ))),
     }
 }

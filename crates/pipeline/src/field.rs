@@ -50,20 +50,28 @@ struct AliasingNumbers {
 
 /// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
 pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
-    let memory = machine::available_memory();
     for plane in &scene.planes {
         let grid = FieldGrid::new(&plane.window, &plane.grid);
-        let bytes = FieldOptions::default().bytes(&grid, rayon::current_num_threads());
-        if bytes > memory {
-            let [nx, ny, nu, nv] = grid.cells;
-            let gigabytes = |bytes: u64| bytes as f64 / 1e9;
-            return Err(Failure::cannot_run(format!(
-                "--save field: the grid of {} has {nx} x {ny} x {nu} x {nv} cells and needs {:.1} GB; {:.1} GB are available",
-                plane.name,
-                gigabytes(bytes),
-                gigabytes(memory),
-            )));
-        }
+        let name = format!("--save field: the grid of {}", plane.name);
+        check_grid(&name, &grid, &FieldOptions::default())?;
+    }
+    Ok(())
+}
+
+/// Fails if the grid `name`, measured with `options`, does not fit into memory.
+pub(crate) fn check_grid(
+    name: &str,
+    grid: &FieldGrid,
+    options: &FieldOptions,
+) -> Result<(), Failure> {
+    let memory = machine::available_memory();
+    let bytes = options.bytes(grid, rayon::current_num_threads());
+    if bytes > memory {
+        let [nx, ny, nu, nv] = grid.cells;
+        let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
+        return Err(Failure::cannot_run(format!(
+            "{name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; {memory:.1} GB are available"
+        )));
     }
     Ok(())
 }

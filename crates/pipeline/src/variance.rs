@@ -1,11 +1,12 @@
 //! Predicts and finds the Monte Carlo error of the mean radiance over a window.
 
+use crate::field::check_grid;
 use crate::method;
 use crate::reporter::{Reporter, Work};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
-use etendue_store::{Failure, Method, VERSION, machine};
+use etendue_store::{Failure, Method, VERSION};
 use etendue_variance::{
     AXES, AxisSetPower, MeasuredPower, PowerEstimate, Sampler, SamplerReport, VarianceError,
     WindowMoments, WindowRadiance, WindowStudy, axis_sets, dyadic_power, field_options,
@@ -77,20 +78,11 @@ impl VarianceStudy {
 
     /// Fails if the grids of all groups of photons do not fit into memory.
     pub fn check_memory(&self) -> Result<(), Failure> {
-        let memory = machine::available_memory();
         let options = field_options();
         let grid = options.grid(&self.scene.planes[0]);
+        let name = format!("--frequencies {}: the grid", self.options.frequencies);
         // Grids of groups are kept, and then their spectra are.
-        let bytes = options.bytes(&grid, rayon::current_num_threads());
-        if bytes > memory {
-            let [nx, ny, nu, nv] = grid.cells;
-            let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
-            return Err(Failure::cannot_run(format!(
-                "--frequencies {}: the grid has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; {memory:.1} GB are available",
-                self.options.frequencies
-            )));
-        }
-        Ok(())
+        check_grid(&name, &grid, &options)
     }
 
     /// Measures the plane, and predicts and finds the variances of each sampler.

@@ -48,11 +48,12 @@ pub struct Tracer {
 /// have noise of 1.3·10⁻⁴ of the value at zero, ten times the largest error of the transform. Nets
 /// may have less noise at some frequencies: with 4·10⁶ photons the error is at most 0.005 standard
 /// errors (results/performance.md), and noise falls at most as 1/photons.
-const MAX_REDUCED: u64 = 60_000_000;
+const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 
-/// The least width of a light for reduced precision with nets, times the largest frequency. The
-/// spectrum of a narrower light does not fall beyond the grid, and nets sample it with little noise.
-const MIN_WIDTH: f64 = 1.25;
+/// The smallest number of cycles of the largest frequency across the width of a light with which
+/// nets have reduced precision. The spectrum of a narrower light does not fall beyond the grid, and
+/// nets sample it with little noise.
+const MIN_LIGHT_CYCLES: f64 = 1.25;
 
 /// A leg of the path for photons.
 #[derive(Debug)]
@@ -380,12 +381,13 @@ impl FlightLeg {
 /// Checks whether spectra of a scene need the full precision of the transform.
 fn is_precise(scene: &Scene) -> bool {
     let is_narrow = |plane: &VirtualPlane| {
-        let widths = [0, 1].map(|axis| scene.light.extent(axis)).into_iter();
-        let mut widths = widths.map(|[low, high]| high - low);
-        widths.any(|width| width * plane.grid.rho.max() < MIN_WIDTH)
+        [0, 1].into_iter().any(|axis| {
+            let [low, high] = scene.light.extent(axis);
+            (high - low) * plane.grid.rho.max() < MIN_LIGHT_CYCLES
+        })
     };
     let has_quiet_nets = scene.run.sampling == Sampling::Net && scene.planes.iter().any(is_narrow);
-    scene.run.photons > MAX_REDUCED || has_quiet_nets
+    scene.run.photons > MAX_REDUCED_PHOTONS || has_quiet_nets
 }
 
 /// Checks whether a straight line may meet an object twice.

@@ -8,6 +8,7 @@
 
 use crate::VarianceError;
 use crate::power_estimate::{GroupShares, PowerEstimate};
+use crate::sampler::indices;
 use etendue_field::{Crossing, PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
@@ -29,7 +30,7 @@ const MIN_GROUPS: usize = 3;
 /// Returns all bands up to a level, in row-major order of (x, u, y, v).
 pub(crate) fn bands(finest: usize) -> impl Iterator<Item = [usize; 4]> {
     let n = finest + 1;
-    (0..n.pow(4)).map(move |i| [i / (n * n * n), i / (n * n) % n, i / n % n, i % n])
+    (0..n.pow(4)).map(move |i| indices(i, n))
 }
 
 /// Measures the power in dyadic bands at the only plane of a scene from
@@ -191,12 +192,7 @@ mod tests {
         let level = [1, 0, 2, 5];
         let mut blocks = std::collections::BTreeMap::<[usize; 4], [f64; 3]>::new();
         for i in 0..a.len() {
-            let at = [
-                i / CELLS.pow(3),
-                i / CELLS.pow(2) % CELLS,
-                i / CELLS % CELLS,
-                i % CELLS,
-            ];
+            let at = indices(i, CELLS);
             let block = [0, 1, 2, 3].map(|k| at[k] >> (FINEST - level[k]));
             let sums = blocks.entry(block).or_default();
             [a[i], b[i], 1.0]

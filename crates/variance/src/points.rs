@@ -1,6 +1,6 @@
 //! Sets of points that samplers place in the window.
 
-use crate::sampler::{AxisPairs, Sampler, WindowPoint, cells_per_axis};
+use crate::sampler::{AxisPairs, Sampler, WindowPoint, cells_per_axis, indices};
 use etendue_transform::Net;
 use etendue_transform::random::{Stream, index, unit, words};
 
@@ -67,15 +67,8 @@ pub fn points(sampler: &Sampler, count: usize, seed: u64, set: u64) -> Option<Ve
         Sampler::Independent => (0..count).map(|_| [0; 4].map(|_| random.unit())).collect(),
         Sampler::Jitter => {
             let n = cells_per_axis(count, 4)?;
-            let mut point = |cell: usize| {
-                let cells = [
-                    cell / (n * n * n),
-                    cell / (n * n) % n,
-                    cell / n % n,
-                    cell % n,
-                ];
-                cells.map(|at| (at as f64 + random.unit()) / n as f64)
-            };
+            let mut point =
+                |cell: usize| indices(cell, n).map(|at| (at as f64 + random.unit()) / n as f64);
             (0..count).map(&mut point).collect()
         }
         Sampler::LatinHypercube => {

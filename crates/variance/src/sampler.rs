@@ -150,6 +150,11 @@ impl fmt::Display for Sampler {
     }
 }
 
+/// Returns the four indices of an element of an array [n, n, n, n] in row-major order.
+pub(crate) fn indices(element: usize, n: usize) -> [usize; 4] {
+    [n * n * n, n * n, n, 1].map(|stride| element / stride % n)
+}
+
 /// Returns n if `count` is n to the power of `dimensions`.
 pub(crate) fn cells_per_axis(count: usize, dimensions: u32) -> Option<usize> {
     (1..=count)

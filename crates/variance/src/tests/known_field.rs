@@ -1,9 +1,9 @@
 //! Predicts the variance for a field with three known frequencies.
 
-use super::scene;
+use super::{samplers, scene};
 use crate::{
-    AxisPairs, ExpectedPower, MeasuredPower, PredictedVariance, Sampler, SamplerResponse,
-    WindowMoments, axis_sets, with_box_window,
+    ExpectedPower, MeasuredPower, PredictedVariance, Sampler, SamplerResponse, WindowMoments,
+    axis_sets, with_box_window,
 };
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane};
 use etendue_spectrum::Uncertain;
@@ -67,17 +67,6 @@ fn measured(max: usize) -> (MeasuredPower, WindowMoments) {
         noise: exactly(0.0),
     };
     (power, moments)
-}
-
-fn samplers() -> [Sampler; 6] {
-    [
-        Sampler::Independent,
-        Sampler::Jitter,
-        Sampler::LatinHypercube,
-        Sampler::Sobol,
-        Sampler::Padded(AxisPairs::PositionWithSlope),
-        Sampler::Padded(AxisPairs::PositionAndSlope),
-    ]
 }
 
 /// All power is inside the box, so the variance is Σ a²/2 · E|S_m|². Differences stay below four

@@ -6,8 +6,21 @@ mod known_field;
 mod periodograms;
 mod scenes;
 
+use crate::{AxisPairs, Sampler};
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::path::{Path, PathBuf};
+
+/// Returns every sampler that is not a file.
+fn samplers() -> [Sampler; 6] {
+    [
+        Sampler::Independent,
+        Sampler::Jitter,
+        Sampler::LatinHypercube,
+        Sampler::Sobol,
+        Sampler::Padded(AxisPairs::PositionWithSlope),
+        Sampler::Padded(AxisPairs::PositionAndSlope),
+    ]
+}
 
 /// Returns a scene of the folder `scenes/variance`, with some of its text replaced.
 fn scene(name: &str, edits: &[(&str, &str)]) -> Scene {
