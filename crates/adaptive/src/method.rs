@@ -112,8 +112,8 @@ pub struct Rendered {
 /// A method takes this share of the samples first, to determine the density of the other samples.
 const FIRST_SHARE: f64 = 0.25;
 
-/// The squared error of a plane through samples is proportional to the fourth power of their
-/// distance, and therefore to 1/n² for a density n of samples. Let c be the contrast and B the
+/// The squared error of a plane fitted to samples is proportional to the fourth power of their
+/// spacing, and therefore to 1/n² for a density n of samples. Let c be the contrast and B the
 /// bandwidth. For a fixed number of samples, the sum of this error over the picture is minimal if n
 /// ∝ (c² B⁴)^(1/3).
 pub(crate) const POWER: f64 = 2.0 / 3.0;

@@ -266,8 +266,8 @@ pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface the normal turns by twice the elevation angle, so a larger elevation
-    // angle shows that the points are on different parts of the shape.
+    // From a point of a sphere to another, the normal turns by twice the elevation angle between
+    // them. A larger elevation angle shows that the points are on different parts of the shape.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 

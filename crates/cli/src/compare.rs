@@ -6,29 +6,17 @@ use crate::conclude::{Ending, conclude};
 use crate::print::say;
 use crate::progress;
 use crate::threads::on_threads;
-use etendue_compare::Applicability;
-use etendue_pipeline::MeasuredScene;
-use etendue_pipeline::Stopwatch;
+use etendue_pipeline::{Stopwatch, read_case};
 use etendue_report::{OutputOptions, plan};
-use etendue_scene::Scene;
-use etendue_spectrum::Measurement;
 use etendue_store::Failure;
-use etendue_store::batches::{self, Held};
-use etendue_store::predictions;
-use etendue_store::stored::{Stored, check_earlier};
-use etendue_store::{ArgumentStyle, MEASUREMENT, PREDICTION, Results, SUMMARY};
-use serde_json::json;
-use std::ops::Range;
-use std::path::PathBuf;
-
-/// The minimum number of batches. Errors are computed from batches; a scene has the same minimum.
-const LEAST_BATCHES: usize = 32;
+use etendue_store::stored::check_earlier;
+use etendue_store::{ArgumentStyle, Results, SUMMARY};
 
 /// Runs `etendue compare`; returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     let stage = progress::stage("reading", args.work.quiet);
-    let (case, inputs) = read(args)?;
+    let (case, inputs) = read_case(&args.measured, &args.predicted)?;
     stage.finish_and_clear();
     watch.lap("read");
     let plan = plan(
@@ -62,87 +50,4 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
         conclude(&case, &ending, results, watch)
     })
-}
-
-/// Reads the measurement and the predictions, and checks that they belong to the same scene.
-/// Returns the scene, its measurement and its predictions, and the paths of all files that were
-/// read.
-fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
-    let shards = args.measured.iter();
-    let shards: Vec<Stored<Held>> = shards
-        .map(|folder| Stored::read(folder, MEASUREMENT))
-        .collect::<Result<_, _>>()?;
-    let predicted = Stored::read(&args.predicted, PREDICTION)?;
-    let first = &shards[0];
-    for shard in &shards[1..] {
-        same_experiment(first, shard)?;
-    }
-    first.check_scene(&predicted, false)?;
-    shards[1..].iter().try_for_each(Stored::check_inputs)?;
-    predicted.check_inputs()?;
-    let scene = first.scene()?;
-    let measurement = merged(&shards, &scene)?;
-    let method = first.index.content.method;
-    let inputs = shards
-        .iter()
-        .flat_map(Stored::paths)
-        .chain(predicted.paths());
-    let inputs = inputs.collect();
-    let theories = Applicability::of_planes(&scene);
-    let case = MeasuredScene {
-        method,
-        predictions: predictions::read(&predicted, &scene, &theories, method)?,
-        theories,
-        measurement,
-        scene,
-    };
-    Ok((case, inputs))
-}
-
-/// Checks that batches belong to the same experiment, because batches of different experiments
-/// are not replicates of each other.
-fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
-    first.check_scene(shard, true)?;
-    let words = |stored: &Stored<Held>| {
-        let index = &stored.index;
-        json!({"scene": index.scene, "method": index.content.method})
-    };
-    first.check_same(shard, &words(first), &words(shard))
-}
-
-fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure> {
-    let mut all = Measurement::new(scene.planes.clone());
-    for shard in shards {
-        let held = &shard.index.content;
-        let Range { start, end } = held.batches;
-        if start >= end || end > scene.run.batches {
-            let all = scene.run.batches;
-            return Err(shard.fault(format!("batches {start}..{end}; allowed: within 0..{all}")));
-        }
-        let part = batches::read(shard, &scene.planes)?;
-        all = all.merge(part).map_err(|e| {
-            Failure::bad_input(format!("cannot add {}: {e}", shard.folder.display()))
-        })?;
-    }
-    let held = all.batches().len();
-    if held < LEAST_BATCHES {
-        let missing = missing(&all, scene.run.batches);
-        return Err(Failure::bad_input(format!(
-            "{held} batches are too few: at least {LEAST_BATCHES} are needed; not measured: {missing}"
-        )));
-    }
-    Ok(all)
-}
-
-/// Returns the numbers of the missing batches, written as ranges.
-fn missing(measurement: &Measurement, all: u32) -> String {
-    let mut ranges: Vec<Range<u32>> = Vec::new();
-    for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {
-        match ranges.last_mut() {
-            Some(range) if range.end == batch => range.end += 1,
-            _ => ranges.push(batch..batch + 1),
-        }
-    }
-    let ranges: Vec<String> = ranges.iter().map(|r| format!("{r:?}")).collect();
-    ranges.join(", ")
 }

@@ -1,6 +1,5 @@
 //! Implements `etendue variance`, which predicts the Monte Carlo error of the mean over a window.
 
-mod points;
 mod table;
 
 use crate::args::{SamplerArg, VarianceArgs};
@@ -9,7 +8,7 @@ use crate::print::{deliver, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
-use etendue_pipeline::{load, method};
+use etendue_pipeline::{load, method, point_file};
 use etendue_report::{pictures, variance};
 use etendue_scene::Scene;
 use etendue_store::sealed::json;
@@ -102,7 +101,7 @@ fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
 fn samplers(named: &[SamplerArg]) -> Result<Vec<Sampler>, Failure> {
     let of = |sampler: &SamplerArg| match sampler {
         SamplerArg::Named(all) => Ok(all.clone()),
-        SamplerArg::File(path) => Ok(vec![Sampler::File(points::read(path)?)]),
+        SamplerArg::File(path) => Ok(vec![Sampler::File(point_file::read(path)?)]),
     };
     let all: Vec<Vec<Sampler>> = named.iter().map(of).collect::<Result<_, Failure>>()?;
     Ok(all.concat())

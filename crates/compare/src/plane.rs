@@ -25,7 +25,7 @@ pub struct PlaneComparison {
     pub report: PlaneReport,
     /// The measured slices: the mean over batches.
     pub measured: Slices,
-    /// The predicted slices, without the rounding errors of a dark field.
+    /// The predicted slices. If the light field is zero, they are zero, without rounding errors.
     pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,

@@ -12,7 +12,7 @@ pub enum Quality {
     /// The scenes' photons, and four times as many frequencies
     #[default]
     Print,
-    /// The least work that still draws all texts
+    /// The least work that still draws all labels
     #[cfg(test)]
     Sketch,
 }

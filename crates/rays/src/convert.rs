@@ -77,7 +77,7 @@ fn dropped(file: &RayFile) -> Vec<String> {
             let texts = header.texts.iter().chain([&header.additional_text]);
             note(
                 texts.into_iter().any(|t| !t.is_empty()),
-                "texts of the header:",
+                "text fields of the header:",
             );
             note(header.date != [0; 28], "date:");
         }

@@ -6,6 +6,7 @@
     reason = "a Failure holds the complete message for the user"
 )]
 
+pub mod covariance;
 mod drawing;
 mod explorer;
 pub mod page;

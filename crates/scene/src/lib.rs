@@ -34,7 +34,7 @@ pub use etendue_scenefile::{
     Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile,
     LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneError,
     SceneFile, SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
-    limits, nearest, schema, shown, unit,
+    limits, nearest, page, schema, shown, unit,
 };
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};

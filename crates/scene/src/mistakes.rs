@@ -70,7 +70,7 @@ fn steep(window: &WindowFile) -> Option<String> {
         .filter_map(|(name, profile)| Some((name, profile?.half_width())))
         .find(|(_, slope)| *slope > STEEP)?;
     Some(format!(
-        "window.{name} reaches a slope of {}, {:.0}° from the central ray: is that an angle in degrees?",
+        "window.{name} reaches a slope of {}, which is {:.0}° from the central ray: is the value an angle in degrees?",
         brief(slope),
         libm::atan(slope).to_degrees()
     ))

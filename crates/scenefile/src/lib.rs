@@ -12,6 +12,7 @@ mod hints;
 pub mod limits;
 mod messages;
 mod overrides;
+mod page;
 mod parse;
 mod place;
 mod schema;
@@ -28,5 +29,6 @@ pub use file::{
     ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
 pub use hints::unit;
+pub use page::page;
 pub use schema::schema;
 pub use suggestion::{did_you_mean, nearest};

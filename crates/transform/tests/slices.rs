@@ -4,7 +4,7 @@ use crate::random::{Random, boxed, grid, hann};
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, Window};
 use etendue_transform::{SliceTransform, direct};
 
-/// The plans, each with the bound of its error that `SliceTransform` states.
+/// The plans, each with the error bound that the documentation of `SliceTransform` states.
 type Plan = (fn(&SliceGrid) -> SliceTransform, f64);
 const PLANS: [Plan; 2] = [(SliceTransform::new, 2e-7), (SliceTransform::reduced, 2e-5)];
 

@@ -1,4 +1,4 @@
-//! Reads other programs' scenes for pictures and probes.
+//! Reads scenes of other programs, to render pictures and to probe light fields.
 
 use etendue_import::{Imported, Options, import};
 use etendue_store::{ArgumentStyle, Failure};

@@ -80,8 +80,8 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Measure only the batches from A to B, without B [default: all]; --photons is still the
-    /// number of photons in all batches of the scene together
+    /// Measure only the batches A to B, excluding B [default: all]; --photons is still the number
+    /// of photons in all batches of the scene
     #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
     pub(crate) batches: Option<Range<u32>>,
 
@@ -254,7 +254,7 @@ pub(crate) struct ExportArgs {
   etendue schema > docs/scene.schema.json
   etendue schema --page > docs/scene.md")]
 pub(crate) struct SchemaArgs {
-    /// Print the page of all fields, in Markdown
+    /// Print the reference page of all fields, in Markdown
     #[arg(long)]
     pub(crate) page: bool,
 }

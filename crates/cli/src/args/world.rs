@@ -62,7 +62,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_at", allow_hyphen_values = true)]
     pub(crate) look_from: Option<DVec3>,
 
-    /// Point at the centre of the picture
+    /// Where the camera looks: a point that appears at the centre of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_from", allow_hyphen_values = true)]
     pub(crate) look_at: Option<DVec3>,
 
@@ -209,11 +209,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 
-    /// Paths per pixel of a reference, at least 2
+    /// Paths per pixel of a reference picture, at least 2
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
-    /// Shading samples in the whole picture, at most 4 per pixel; not used by the method reference
+    /// Shading samples in the whole picture, at most 4 per pixel; not used by
+    /// `--method reference`
     /// [default: one for each 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
@@ -298,8 +299,8 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED)]
     pub(crate) seed: u64,
 
-    /// Also measure the covariance of each plane's spectrum, and compare the covariance at the camera
-    /// with covariance tracing from the first surface
+    /// Also measure the covariance of each plane's spectrum, and compare the measured covariance at
+    /// the camera with covariance tracing from the first surface
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 

@@ -140,7 +140,7 @@ pub fn data(
     };
     let file = format!("{}.json", summary.scene);
     let provenance = format!(
-        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nthe scene below, as {file}: etendue run {word} --photons {} --seed {}{method}",
+        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nto repeat: save the scene below as {file}, and run etendue run {word} --photons {} --seed {}{method}",
         summary.version,
         grouped(summary.photons),
         summary.batches,

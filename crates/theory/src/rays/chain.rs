@@ -166,7 +166,10 @@ impl Walk {
             self.step(&self.print.outgoing_4d(theta1), words);
             t * cos - n * sin
         } else {
-            let words = format!("map  off the other side at {}", degrees(theta1));
+            let words = format!(
+                "map  leaving the other side at an angle of {}",
+                degrees(theta1)
+            );
             let off = AffineMap::<4>::incidence(theta1).inverse()?;
             self.step(&off.spectrum_map(), words);
             -t * cos + n * sin

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct EmissionMeasure {
     /// Indices, among x, y, u and v, of the two inner coordinates.
     pub(super) inner: [usize; 2],
-    /// Rays are sought up to this absolute value of each inner coordinate.
+    /// The largest absolute value of each inner coordinate at which rays are searched for.
     pub(super) reach: [f64; 2],
     /// Number of cycles of the light's picture per unit of each inner coordinate.
     pub(super) cycles: [f64; 2],

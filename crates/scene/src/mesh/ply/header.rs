@@ -144,7 +144,7 @@ impl PlyHeader {
                 rows.push(format!("{more} more elements"));
             }
             let allowed = format!(
-                "at least {least}, because the header announces {}",
+                "at least {least}, because the header declares {}",
                 rows.join(", ")
             );
             return Err(fault("number of bytes after the header", length, allowed));

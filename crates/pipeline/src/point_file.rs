@@ -1,4 +1,4 @@
-//! Reads sets of points from NPY files.
+//! Reads sets of points from NPY files, for studies of variance.
 
 use etendue_rays::NpyHeader;
 use etendue_scene::read_file;
@@ -10,7 +10,7 @@ use std::path::Path;
 const MAX_BYTES: u64 = (MAX_POINTS * size_of::<WindowPoint>() + (1 << 16)) as u64;
 
 /// Reads an array f64 [N, 4] in C order.
-pub(super) fn read(path: &Path) -> Result<PointFile, Failure> {
+pub fn read(path: &Path) -> Result<PointFile, Failure> {
     let refused = |fault: &dyn std::fmt::Display| {
         Failure::bad_input(format!("--samplers {}: {fault}", path.display()))
     };

@@ -1,0 +1,118 @@
+//! Traces the covariance of the spectrum at each plane of a scene, and measures it on a 4D grid.
+
+use crate::moments::{check_memory, fitting};
+use crate::reporter::{Reporter, Work};
+use crate::{limits, measured, method, predicted};
+use etendue_compare::{AXES, Applicability, CovarianceReport, Prediction};
+use etendue_field::PhotonSource;
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_spectrum::field::measure_field;
+use etendue_store::{Failure, Method, VERSION};
+
+/// A request for the covariances at all planes of a scene.
+#[derive(Debug)]
+pub struct CovarianceStudy<'a> {
+    scene: &'a Scene,
+    theories: Vec<Applicability>,
+    method: Method,
+}
+
+/// The covariances at all planes, and the measurement to which they belong.
+#[derive(Debug)]
+pub struct SceneCovariances {
+    /// The measured slices of all planes.
+    pub measurement: Measurement,
+    /// The covariances, in the order of the planes.
+    pub reports: Vec<CovarianceReport>,
+}
+
+impl<'a> CovarianceStudy<'a> {
+    /// Checks that the method can measure the scene.
+    pub fn new(scene: &'a Scene, method: Method) -> Result<Self, Failure> {
+        method::check(scene, method)?;
+        Ok(Self {
+            scene,
+            theories: Applicability::of_planes(scene),
+            method,
+        })
+    }
+
+    /// Checks that the work and its memory are within the limits.
+    pub fn check_limits(&self) -> Result<(), Failure> {
+        limits::check(self.scene, &self.theories, rayon::current_num_threads())?;
+        check_memory(&self.scene.planes)
+    }
+
+    /// Measures and predicts all planes, and compares their covariances.
+    pub fn run(&self, reporter: &dyn Reporter) -> Result<SceneCovariances, Failure> {
+        let Self {
+            scene,
+            theories,
+            method,
+        } = self;
+        let measurement = measured(scene, *method, 0..scene.run.batches, reporter)?;
+        let predictions = predicted(scene, theories, *method, None, reporter)?;
+        let source = method::source(scene, *method)?;
+        let planes = predictions.iter().enumerate();
+        let reports = planes.map(|(index, prediction)| {
+            of_plane(
+                (&*source, &measurement, index),
+                (&theories[index], prediction),
+                reporter,
+            )
+        });
+        Ok(SceneCovariances {
+            reports: reports.collect::<Result<_, _>>()?,
+            measurement,
+        })
+    }
+
+    /// Returns the content of the index, without its list of files.
+    #[must_use]
+    pub fn index(&self, found: &SceneCovariances) -> serde_json::Value {
+        let scene = self.scene;
+        serde_json::json!({
+            "scene": scene.name,
+            "scene_hash": scene.hash(),
+            "scene_file": scene.file,
+            "version": VERSION,
+            "seed": scene.run.seed,
+            "method": self.method,
+            "photons": scene.run.photons,
+            "axes": AXES,
+            "planes": found.reports,
+        })
+    }
+}
+
+/// Returns the covariances of a plane. The photons are traced once more for this plane, on a 4D
+/// grid.
+fn of_plane(
+    (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
+    (theory, prediction): (&Applicability, &Prediction),
+    reporter: &dyn Reporter,
+) -> Result<CovarianceReport, Failure> {
+    let plane = &measurement.planes()[index];
+    let options = fitting(plane);
+    let passes = if options.keep { 1 } else { 2 };
+    let bar = reporter.begin(Work::Photons(passes * measurement.emitted()));
+    let batches = 0..u32::try_from(measurement.batches().len()).unwrap_or(u32::MAX);
+    let field = measure_field(source, index, plane, batches, &options, &|photons| {
+        bar.advance(photons);
+    });
+    drop(bar);
+    let field = field.map_err(Failure::cannot_run)?;
+    let Some(covariance) = &field.covariance else {
+        return Err(Failure::cannot_run(
+            "a plane has no covariance: this is a bug in etendue",
+        ));
+    };
+    CovarianceReport::new(
+        (measurement, index),
+        (&field.grid, covariance),
+        theory,
+        prediction,
+    )
+    .map_err(Failure::cannot_run)
+}

@@ -1,0 +1,55 @@
+//! Draws the spectrum of a plane with the ellipses of its covariances.
+
+use crate::pictures;
+use etendue_compare::SliceMoment;
+use etendue_figures::{AxisQuantity, Ellipse, Ellipses, Figure, Picture, ellipses};
+use etendue_pipeline::covariance::SceneCovariances;
+use etendue_pipeline::table::{grouped, spaced};
+use etendue_scene::Scene;
+use etendue_spectrum::CrossPower;
+use etendue_store::Failure;
+
+/// Lowest level of the colors of a spectrum, in decibels below the spectrum's peak.
+const FLOOR: f64 = -50.0;
+
+/// Returns the spectrum of plane number `index` at azimuth 0 with the ellipses of the spectrum's
+/// second moments.
+pub fn drawn(scene: &Scene, found: &SceneCovariances, index: usize) -> Result<Figure, Failure> {
+    let (plane, measurement) = (&scene.planes[index], &found.measurement);
+    let report = &found.reports[index];
+    let power = CrossPower::of_slice(measurement, index, 0).map_err(Failure::cannot_run)?;
+    let power = power.power();
+    let [x, y] = pictures::spectrum_axes(plane);
+    let ellipse = |name: &str, of: fn(&SliceMoment) -> Option<f64>| {
+        let [a, b, c] = report.slice.each_ref().map(of);
+        let covariance = [a?, b?, c?];
+        Some(Ellipse {
+            name: format!("{name}, two standard deviations"),
+            covariance,
+        })
+    };
+    let all = [
+        ellipse("covariance tracing", |m| m.traced),
+        ellipse("exact spectrum", |m| m.found.predicted),
+        ellipse("photons", |m| m.found.measured),
+    ];
+    let title = format!("{}: power at azimuth 0", spaced(&plane.name));
+    let photons = grouped(measurement.emitted());
+    let note = format!(
+        "{}, {photons} photons; moments over the frequencies shown",
+        scene.name
+    );
+    ellipses(&Ellipses {
+        title: &title,
+        note: &note,
+        picture: Picture {
+            x,
+            y,
+            values: power.view(),
+        },
+        quantity: AxisQuantity::new("|*S*_{0}|^{2}", ""),
+        floor: FLOOR,
+        ellipses: all,
+    })
+    .map_err(Failure::cannot_run)
+}
