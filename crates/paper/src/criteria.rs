@@ -2,6 +2,7 @@
 //! are evaluated as printed and with corrections.
 
 use crate::quality::Quality;
+use crate::rows::letter_panels;
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
@@ -49,7 +50,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let [environment, edge] = [&taken.also[0], &taken.also[1]];
     let values = &[-1.0, -0.7, -0.3, 0.0, 0.4, 0.8];
     let behind = &[-0.7, -0.3, 0.0, 0.4, 0.8];
-    let panels = [
+    let mut panels = [
         panel(
             taken,
             environment,
@@ -62,6 +63,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             &curvature("Eq. 21, with an edge at 0.4 m", behind),
         )?,
     ];
+    letter_panels('a', &mut panels);
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \

@@ -1,5 +1,6 @@
 //! Curves of kernels in the paper: cosines and Fresnel factors, and their transforms.
 
+use crate::rows::letter_panels;
 use crate::subject::FigureData;
 use etendue_figures::{
     Axis, AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow,
@@ -190,10 +191,12 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "Glass: *n* = 1.5. Diamond: 2.417. Aluminium: 1.488 + 7.821 i, at 650 nm. Frequencies below which 80, 95 and 99 % of the energy lie (cycles/rad): {}.",
         told.collect::<Vec<_>>().join("; ")
     );
+    let mut panels: Vec<CurvePanel> = functions.chain(transforms).collect();
+    letter_panels('a', &mut panels);
     let mut figure = taken.curves(&values(
         "The clamped cosine, alone and with Fresnel factors",
         &note,
-        functions.chain(transforms).collect(),
+        panels,
     ))?;
     figure
         .csv

@@ -3,7 +3,7 @@
 use crate::scene_run::Shot;
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
-use etendue_figures::{AxisQuantity, Picture, PlateRow, Scale};
+use etendue_figures::{AxisQuantity, CurvePanel, Picture, PlateRow, Scale};
 use etendue_report::pictures::{
     full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
     spectrum_quantity, verdict_lines,
@@ -125,6 +125,13 @@ pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
     letters
         .map(|(letter, head)| format!("({letter}) {head}"))
         .collect()
+}
+
+/// Puts letters before the titles of panels, beginning with `first`.
+pub(crate) fn letter_panels(first: char, panels: &mut [CurvePanel]) {
+    for (letter, panel) in (first..='z').zip(panels) {
+        panel.title = format!("({letter}) {}", panel.title);
+    }
 }
 
 pub(crate) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {

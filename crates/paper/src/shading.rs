@@ -48,7 +48,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
         both.map(|(rho, value)| [*rho, value / peak, 0.0]).collect()
     };
     let panel = CurvePanel {
-        title: "leaving the sphere".to_owned(),
+        title: "(e) leaving the sphere".to_owned(),
         x: AxisQuantity::new("*ρ*", "cycles/m"),
         curves: vec![
             Curve::new(

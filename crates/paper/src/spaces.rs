@@ -1,7 +1,7 @@
 //! Draws Figs. 3 and 13: coordinates of rays, and the error if one kind of coordinates is treated
 //! as another.
 
-use crate::rows::{Seen, compared, feet, lettered, row};
+use crate::rows::{Seen, compared, feet, letter_panels, lettered, row};
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, Convergence, converge};
@@ -34,7 +34,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "The error of using *u* in place of *θ*",
         "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, for a window *e* times as wide: tan *θ* equals *θ* up to terms of second order.",
         &panels,
-        2,
+        (2, 'd'),
     )?;
     Ok(stacked(&[spaces, error]))
 }
@@ -96,7 +96,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "The error of a flat (*θ*, *φ*)",
         "‖first order − exact‖/‖exact‖ at the mirror, for neighbourhoods *e* times as wide.",
         &panels,
-        1,
+        (1, 'e'),
     )?;
     Ok(stacked(&[plate, error]))
 }
@@ -114,13 +114,14 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
     Ok(found.collect())
 }
 
-/// Returns curves of first-order errors, and reference lines for an order of convergence.
+/// Returns curves of first-order errors, and reference lines for an order of convergence. The
+/// letters of the panels begin with `first`.
 fn orders(
     taken: &FigureData<'_>,
     title: &str,
     note: &str,
     planes: &[Convergence],
-    order: i32,
+    (order, first): (i32, char),
 ) -> Result<Figure, Failure> {
     let panel = |plane: &Convergence| {
         let [widest, error] = plane.steps[0];
@@ -147,10 +148,12 @@ fn orders(
             is_log: [true; 2],
         }
     };
+    let mut panels: Vec<CurvePanel> = planes.iter().map(panel).collect();
+    letter_panels(first, &mut panels);
     taken.curves(&Curves {
         title: title.to_owned(),
         note: note.to_owned(),
         y: AxisQuantity::new("error", ""),
-        panels: planes.iter().map(panel).collect(),
+        panels,
     })
 }
