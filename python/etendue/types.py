@@ -100,6 +100,23 @@ class BlockersMeshFields(TypedDict):
     """Scale factor of the mesh's coordinates. 1e-9 to 1e9"""
 
 
+class BlockersPicture(TypedDict):
+    """Opaque pixels of a picture: a pixel is opaque if its value is below 0.5. X points to the right of the picture and Y to its top; outside, all is clear."""
+
+    Picture: "BlockersPictureFields"
+
+
+class BlockersPictureFields(TypedDict):
+    center: Sequence[float]
+    """Centre of the picture, in world coordinates"""
+    file: str
+    """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and must stay inside its folder"""
+    name: str
+    """Name"""
+    size: Sequence[float]
+    """Width along X and height along Y, in metres"""
+
+
 class BlockersShapes(TypedDict):
     """Individual opaque shapes, which must not overlap."""
 
@@ -756,7 +773,7 @@ class Window(TypedDict):
 AxisName = Union[Literal["X"], Literal["Y"]]
 """An axis orthogonal to the central ray."""
 
-Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
+Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersPicture", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
 """Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]

@@ -1,6 +1,7 @@
 //! Resolves a scene file to a checked scene.
 
 mod blockers;
+mod dark_rectangles;
 mod faults;
 mod fields;
 mod jitter;
@@ -83,7 +84,6 @@ impl Resolver<'_> {
         let frame = self.frame(&file);
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
-        self.layers(&file);
         // If the frame is unknown or not finite, the checks continue with the identity frame,
         // which leaves all values unchanged.
         let checked = frame.filter(|frame| frame.origin.is_finite());
@@ -93,6 +93,7 @@ impl Resolver<'_> {
         let meshes = self.meshes(&file, &checked);
         let patches = self.patches(&file, &checked);
         let mut blockers = self.blockers(&file, &checked);
+        self.layers(&file.light, &blockers);
         let things = Things {
             blockers: &blockers,
             surfaces: &surfaces,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_field::{Environment, EnvironmentMap, LatLong, Light, Pattern, Raster};
+use etendue_field::{Environment, EnvironmentMap, LatLong, Light, Mask, Pattern, Raster};
 use etendue_scene::{Event, Scene, SceneError, SceneFile, resolve};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage,
@@ -349,4 +349,58 @@ fn each_bad_value_is_named() {
             "{to}: {error}"
         );
     }
+}
+
+/// A scene whose only blockers are a picture.
+const MASKED: &str = r#"(
+    light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
+    blockers: [Picture(name: "mask", center: (0.1, 0, 1), file: "wall.png", size: (0.6, 0.2))],
+    path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
+    surfaces: [Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))],
+    planes: [(name: "behind", at: After("mask"))],
+    window: (x: Hann(0.5), u: Hann(0.5)),
+    frequencies: (rho: (max: 4), nu: (max: 4)),
+)"#;
+
+#[test]
+fn dark_pixels_are_opaque() {
+    let folder = folder();
+    let scene = resolved(MASKED, folder.path()).unwrap();
+    let mask = &scene.blockers[0].mask;
+    // The first row has levels of 0, 0.2 and 0.4, which make one rectangle. The second row is
+    // bright.
+    let Mask::Opaque { shapes, .. } = mask else {
+        panic!("{mask:?}");
+    };
+    assert_eq!(shapes.len(), 1);
+    for (x, y, passes) in [
+        (-0.19, 0.09, 0.0),
+        (0.39, 0.01, 0.0),
+        (0.1, -0.01, 1.0),
+        (-0.21, 0.05, 1.0),
+        (0.41, 0.05, 1.0),
+        (0.1, 0.11, 1.0),
+    ] {
+        assert!(
+            mask.transmittance(x, y).total_cmp(&passes).is_eq(),
+            "{x}, {y}"
+        );
+    }
+}
+
+#[test]
+fn a_picture_without_dark_pixels_is_refused_as_a_mask() {
+    let folder = folder();
+    let levels = [128, 255, 255, 255, 255, 255];
+    write_png(
+        &folder.path().join("wall.png"),
+        png::ColorType::Grayscale,
+        png::BitDepth::Eight,
+        &levels,
+    );
+    let error = resolved(MASKED, folder.path()).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "blockers[0].file is \"wall.png\" with 0 opaque rectangles; allowed: a picture whose pixels below 0.5 form 1 to 100000 rectangles"
+    );
 }

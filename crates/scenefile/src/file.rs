@@ -123,6 +123,23 @@ pub enum BlockersFile {
         #[schemars(transform = told("a share of the pitch", "0.5"), transform = within(1e-9, 1.0))]
         fill: f64,
     },
+    /// Opaque pixels of a picture: a pixel is opaque if its value is below 0.5. X points to the right
+    /// of the picture and Y to its top; outside, all is clear.
+    Picture {
+        /// Name.
+        #[schemars(transform = name_of_blockers)]
+        name: String,
+        /// Centre of the picture, in world coordinates.
+        #[schemars(transform = place)]
+        center: [f64; 3],
+        /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
+        /// and must stay inside its folder.
+        #[schemars(transform = told("a file in quotes", r#""mask.png""#))]
+        file: String,
+        /// Width along X and height along Y, in metres.
+        #[schemars(transform = sides)]
+        size: [f64; 2],
+    },
     /// Individual opaque shapes, which must not overlap.
     Shapes {
         /// Name.
@@ -181,6 +198,7 @@ impl BlockersFile {
         match self {
             Self::JitteredSquares { name, .. }
             | Self::Bars { name, .. }
+            | Self::Picture { name, .. }
             | Self::Shapes { name, .. }
             | Self::Grating { name, .. }
             | Self::Mesh { name, .. } => name,

@@ -2,11 +2,12 @@
 //! use as blend and texture.
 
 use super::check::{SecondCheck, worse};
+use super::masks::{against, layer};
 use super::pattern::{Levels, Pattern, Varied};
 use super::smooth::Smooth;
 use super::textures::apart;
 use super::vector::{between, scale};
-use super::world::{World, pair};
+use super::world::{World, pair, triple};
 use crate::hostile::dice::Dice;
 use etendue_field::{Brdf, Fresnel, Grating, Lobe};
 use etendue_scene::Event;
@@ -35,15 +36,71 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
+const MASK: &[&str] = &[
+    "flipped",
+    "left and right swapped",
+    "sizes swapped",
+    "bright pixels opaque",
+    "from the central ray",
+];
+
 pub(super) fn checks(folder: &Rc<TempDir>, picture: &Levels) -> Vec<SecondCheck> {
-    let (folder, picture) = (Rc::clone(folder), picture.clone());
-    vec![SecondCheck {
-        name: "blend over a picture of a file",
-        rounds: [150, EACH],
-        tolerance: (1e-11, "rounding of places and levels"),
-        faults: FAULTS,
-        difference: Box::new(move |dice, fault| pictured(dice, fault, folder.path(), &picture)),
-    }]
+    let check = |name, faults, tolerance, difference: Pictured| {
+        let (folder, picture) = (Rc::clone(folder), picture.clone());
+        SecondCheck {
+            name,
+            rounds: [150, EACH],
+            tolerance,
+            faults,
+            difference: Box::new(move |dice, fault| {
+                difference(dice, fault, folder.path(), &picture)
+            }),
+        }
+    };
+    let places = (1e-11, "rounding of places and levels");
+    let exact = (0.0, "a number of two"); // 0 or 1 on both sides
+    vec![
+        check("blend over a picture of a file", FAULTS, places, pictured),
+        check("mask of a picture", MASK, exact, masked),
+    ]
+}
+
+/// A comparison that uses the picture in a folder.
+type Pictured = fn(&mut Dice, &str, &Path, &Levels) -> f64;
+
+/// Checks masks from pictures. Pixels below one half are opaque, and all outside is clear.
+fn masked(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let size = [between(dice, 0.5, 2.0), between(dice, 0.5, 2.0)];
+    world.blockers = format!(
+        "Picture(name: \"b\", center: {}, file: \"{FILE}\", size: {})",
+        triple(origin),
+        pair(size),
+    );
+    let scene = world.scene(folder);
+    let [width, height] = match fault {
+        "sizes swapped" => [size[1], size[0]],
+        _ => size,
+    };
+    against(dice, &scene, center, |at| {
+        let at = match fault {
+            "left and right swapped" => [-at[0], at[1]],
+            "flipped" => [at[0], -at[1]],
+            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
+            _ => at,
+        };
+        let across = (at[0] / width + 0.5) * picture.width as f64;
+        let down = (0.5 - at[1] / height) * picture.height as f64;
+        let is_inside = (0.0..picture.width as f64).contains(&across)
+            && (0.0..picture.height as f64).contains(&down);
+        if !is_inside {
+            return 1.0;
+        }
+        let level = picture.values[down as usize * picture.width + across as usize];
+        let is_dark = (level < 0.5) != (fault == "bright pixels opaque");
+        if is_dark { 0.0 } else { 1.0 }
+    })
 }
 
 fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 {

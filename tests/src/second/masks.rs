@@ -63,14 +63,14 @@ pub(super) fn checks() -> Vec<SecondCheck> {
 
 /// Returns the center of a random layer, both as coordinates along X and Y and as a position in
 /// the world.
-fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
+pub(super) fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
 /// Compares the transmittance of the resolved mask, at points around its center, with the
 /// definition of the mask.
-fn against(
+pub(super) fn against(
     dice: &mut Dice,
     scene: &Scene,
     center: [f64; 2],

@@ -2,7 +2,7 @@
 
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
-use super::pictures::sheet;
+use super::pictures::{mask, sheet};
 use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, ShapeFile};
 use glam::DVec3;
 use std::io;
@@ -13,6 +13,8 @@ const LEAST: f64 = 1e-9;
 const MOST: f64 = 3e4;
 /// The prediction for one disc costs as much as the prediction for this number of rectangles.
 const STRIPS: f64 = 64.0;
+/// The largest number of rectangles in a random picture of 9 × 9 pixels.
+const PIXELS: f64 = 41.0;
 
 /// Draws up to three layers before the first surface. The distance of this surface from the light
 /// is given.
@@ -49,6 +51,7 @@ fn terms(layer: &BlockersFile) -> f64 {
     match layer {
         BlockersFile::JitteredSquares { count, .. } => count.map(f64::from).iter().product(),
         BlockersFile::Bars { count, .. } => f64::from(*count),
+        BlockersFile::Picture { .. } => PIXELS,
         BlockersFile::Shapes { shapes, .. } => {
             let strips = |s: &ShapeFile| match s {
                 ShapeFile::Disc { .. } => STRIPS,
@@ -68,7 +71,7 @@ fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<Blocke
         [0.0; 2]
     };
     let center = draw.place(DVec3::new(aside[0], aside[1], distance));
-    Ok(match draw.below(12) {
+    Ok(match draw.below(14) {
         0..=2 => squares(draw, name, center),
         3 | 4 => BlockersFile::Shapes {
             name,
@@ -87,6 +90,20 @@ fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<Blocke
             frequency: draw.value([1.0, 8.0], [1e-3, 500.0]) / draw.unit,
             modulation: modulation(draw),
             phase: draw.between(-3.0, 3.0),
+        },
+        11 => BlockersFile::Bars {
+            name,
+            center,
+            axis: axis(draw),
+            count: draw.whole(1, 9),
+            pitch: draw.length([0.05, 0.4], [1e-5, 50.0]),
+            fill: draw.value([0.2, 0.8], [1e-3, 1.0]),
+        },
+        12 => BlockersFile::Picture {
+            name,
+            center,
+            file: mask(draw)?,
+            size: [(); 2].map(|()| draw.length([0.2, 1.0], [1e-4, 50.0])),
         },
         _ => mesh(draw, name, center, distance)?,
     })

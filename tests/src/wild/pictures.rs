@@ -10,25 +10,31 @@ use std::io;
 /// Writes a random environment map, and returns the name of its file.
 pub(super) fn sky(draw: &mut SceneDraw) -> io::Result<String> {
     let width = 1 << draw.whole(1, 6);
-    let bright = draw.one_in(2);
-    picture(draw, [width, (width / 2).max(1)], bright)
+    let peak = if draw.one_in(2) { 1e3 } else { 1.0 };
+    picture(draw, [width, (width / 2).max(1)], peak)
 }
 
 /// Writes a random picture for a surface, with values from 0 to 1, and returns the name of its
 /// file.
 pub(super) fn texture(draw: &mut SceneDraw) -> io::Result<String> {
     let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
-    picture(draw, size, false)
+    picture(draw, size, 1.0)
 }
 
-/// Writes a picture with pixels from 0 to 1; if `bright` is set, one pixel has the value 1000.
-fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
+/// Writes a random picture with a dark pixel, and returns the name of its file.
+pub(super) fn mask(draw: &mut SceneDraw) -> io::Result<String> {
+    let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
+    picture(draw, size, 0.0)
+}
+
+/// Writes a picture with pixels from 0 to 1, of which one has the given value.
+fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], one: f32) -> io::Result<String> {
     let mut pixels: Vec<f32> = Vec::new();
     for _ in 0..width * height {
         pixels.push(f32::from(u8::try_from(draw.below(256)).unwrap_or(0)) / 255.0);
     }
     let at = draw.below(pixels.len());
-    pixels[at] = if bright { 1e3 } else { 1.0 };
+    pixels[at] = one;
     let name = next(draw, "exr");
     let path = draw.folder.join(&name);
     write_rgb_file(path, width, height, |x, y| {

@@ -1,6 +1,7 @@
 //! Checks blockers: layers of shapes and gratings.
 
 use super::Resolver;
+use super::dark_rectangles::dark_rectangles;
 use super::jitter::jittered_squares;
 use super::overlap::{Thing, overlap};
 use crate::scene::BlockerLayer;
@@ -43,6 +44,7 @@ impl Resolver<'_> {
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Bars { name, center, .. }
+        | BlockersFile::Picture { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
         | BlockersFile::Grating { name, center, .. }) = blockers
         else {
@@ -81,6 +83,10 @@ impl Resolver<'_> {
                 let axis = axis.index();
                 let shapes = self.bars(axis, count, pitch, fill, center[axis]);
                 Some((opaque(shapes, Vec::new()), Some(pitch)))
+            }
+            BlockersFile::Picture { file, size, .. } => {
+                let shapes = self.dark_pixels(of, file, center, *size);
+                Some((opaque(shapes, Vec::new()), None))
             }
             BlockersFile::Shapes { shapes, .. } => Some((self.shapes(of, shapes, center), None)),
             BlockersFile::Grating {
@@ -159,6 +165,31 @@ impl Resolver<'_> {
         (0..count).map(bar).collect()
     }
 
+    /// Returns the dark pixels of a picture about `center`, as rectangles.
+    fn dark_pixels(
+        &mut self,
+        of: &str,
+        file: &str,
+        center: [f64; 2],
+        size: [f64; 2],
+    ) -> Vec<Shape> {
+        let field = format!("{of}.file");
+        let Some(raster) = self.picture(&field, file, &["exr", "png"], 1.0) else {
+            return Vec::new();
+        };
+        let rectangles = dark_rectangles(&raster, center, size);
+        if !(1..=limits::SHAPES).contains(&rectangles.len()) {
+            let found = format!("{file:?} with {} opaque rectangles", rectangles.len());
+            let allowed = format!(
+                "a picture whose pixels below 0.5 form 1 to {} rectangles",
+                limits::SHAPES
+            );
+            self.faults.add(field, found, allowed);
+            return Vec::new();
+        }
+        rectangles.into_iter().map(Shape::Rectangle).collect()
+    }
+
     /// Returns the mask of the shapes, moved to `center`.
     fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
         if !(1..=limits::SHAPES).contains(&files.len()) {
@@ -228,33 +259,41 @@ impl Resolver<'_> {
 
     /// Limits the product of the numbers of shapes of all layers, because a prediction sums over
     /// all combinations of shapes.
-    pub(super) fn layers(&mut self, file: &SceneFile) {
-        let terms = |b: &BlockersFile| match b {
-            BlockersFile::JitteredSquares { count, .. } => {
-                f64::from(count[0]) * f64::from(count[1])
-            }
-            BlockersFile::Bars { count, .. } => f64::from(*count),
-            BlockersFile::Shapes { shapes, .. } => shapes
-                .iter()
-                .map(|s| match s {
-                    ShapeFile::Disc { .. } => STRIPS,
-                    _ => 1.0,
-                })
-                .sum(),
-            BlockersFile::Grating { .. } => 3.0,
-            BlockersFile::Mesh { .. } => 1.0,
+    pub(super) fn layers(&mut self, light: &LightFile, layers: &[BlockerLayer]) {
+        let of_shape = |shape: &Shape| match shape {
+            Shape::Disc(_) => STRIPS,
+            Shape::Rectangle(_) => 1.0,
         };
-        let light = match file.light {
+        let terms = |layer: &BlockerLayer| match &layer.mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => shapes.iter().map(of_shape).sum::<f64>() + half_planes.len() as f64,
+            Mask::Grating(_) => 3.0,
+        };
+        let shapes = layers.iter().map(|layer| match &layer.mask {
+            Mask::Opaque { shapes, .. } => shapes.len(),
+            Mask::Grating(_) => 0,
+        });
+        let (shapes, most) = (shapes.sum::<usize>(), limits::SHAPES);
+        self.at_most(
+            "blockers: shapes of all layers",
+            shapes as u64,
+            "shapes",
+            most as u64,
+        );
+        let light = match light {
             LightFile::Disc { .. } => STRIPS,
             _ => 1.0,
         };
-        let product: f64 = light * file.blockers.iter().map(terms).product::<f64>();
+        let product: f64 = light * layers.iter().map(terms).product::<f64>();
         if product > limits::PRODUCTS {
             let most = limits::PRODUCTS;
             let allowed = format!(
                 "at most {most:.0e}: the numbers of shapes of the light and of all layers are multiplied"
             );
-            self.faults.add("blockers: count", number(product), allowed);
+            self.faults
+                .add("blockers: shapes", number(product), allowed);
         }
     }
 }

@@ -42,7 +42,7 @@ impl Resolver<'_> {
         self.faults.all.is_empty()
     }
 
-    fn at_most(&mut self, field: &str, count: u64, what: &str, most: u64) {
+    pub(super) fn at_most(&mut self, field: &str, count: u64, what: &str, most: u64) {
         if count > most {
             let allowed = format!("at most {most}");
             self.faults.add(field, format!("{count} {what}"), allowed);

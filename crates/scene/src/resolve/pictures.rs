@@ -115,7 +115,13 @@ impl Resolver<'_> {
     }
 
     /// Returns the picture in a file, with values from 0 to `most`.
-    fn picture(&mut self, of: &str, path: &str, extensions: &[&str], most: f64) -> Option<Raster> {
+    pub(super) fn picture(
+        &mut self,
+        of: &str,
+        path: &str,
+        extensions: &[&str],
+        most: f64,
+    ) -> Option<Raster> {
         let bytes = self.named_file(of, path)?;
         let raster = picture::parse(Path::new(path), &bytes, extensions).map_err(|fault| {
             let field = format!("{of}, {path:?}: {}", fault.field);
