@@ -5,6 +5,7 @@
 //! Conventions were checked against Mitsuba 3.9.1.
 
 mod ask;
+mod attributes;
 mod cube;
 mod include;
 mod index;

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 /// Returns the texture's value in the first square of a checkerboard.
 fn first(texture: &Texture) -> f64 {
-    texture.value(DVec2::splat(0.1))
+    texture.value(&DVec2::splat(0.1).into())
 }
 
 #[test]

@@ -8,15 +8,19 @@
 mod camera;
 mod light;
 mod material;
+mod mesh_values;
 mod shape;
 mod texture;
+mod texture_point;
 
 pub use camera::{Camera, Lens, Look, Projection};
 pub use etendue_field::MicrofacetDistribution;
 pub use light::{EmittedRadiance, Falloff, Light, SkyMap};
 pub use material::{Conductor, Dielectric, Material, Plastic, Principled, Roughness};
+pub use mesh_values::MeshValues;
 pub use shape::{Geometry, Shape, Triangles};
 pub use texture::{Bitmap, Filter, Texture, Wrap};
+pub use texture_point::TexturePoint;
 
 /// Everything that a camera may see.
 #[derive(Clone, Debug, Default)]

@@ -1,6 +1,5 @@
 //! Shapes, groups of shapes, and instances of groups.
 
-use super::mesh::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
@@ -8,6 +7,7 @@ use crate::placement::{fault, is_similarity, similar};
 use crate::report::quoted;
 use etendue_world::{Geometry, Shape};
 use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
 
 /// Plugins supported as shapes.
 const ALLOWED: &str =
@@ -60,6 +60,10 @@ impl<'a> MitsubaReader<'a> {
         object.is_used.set(true);
         let own = self.to_world(object);
         let placed = self.geometry(object, own);
+        if placed.is_none() && !self.wanted(object).is_empty() {
+            // The attributes of a mesh that was not read are unknown.
+            return self.drop_all(object);
+        }
         let emission = self.shape_emission(object, is_instance);
         let material = match self.child(object, ObjectKind::Bsdf) {
             Some(bsdf) => self.material(bsdf),
@@ -94,14 +98,22 @@ impl<'a> MitsubaReader<'a> {
         object: &'a MitsubaObject,
         own: DAffine3,
     ) -> Option<(Geometry, DAffine3, bool)> {
-        let meshed = |mesh: MitsubaMesh| (Geometry::Mesh(mesh.triangles), own, mesh.is_flipped);
+        self.current_mesh = match object.plugin.as_str() {
+            "cube" => self.cube(object),
+            "obj" | "ply" | "serialized" => self.mesh(object, own),
+            _ => None,
+        };
+        let mesh = self.current_mesh.as_ref();
+        let meshed = mesh.map(|mesh| {
+            let geometry = Geometry::Mesh(Arc::clone(&mesh.triangles));
+            (geometry, own, mesh.is_flipped)
+        });
         match object.plugin.as_str() {
             "rectangle" => Some((Geometry::Rectangle, own, self.flips(object))),
             "disk" => Some((Geometry::Disc, own, self.flips(object))),
             "sphere" => self.sphere(object, own),
             "cylinder" => self.cylinder(object, own),
-            "cube" => self.cube(object).map(meshed),
-            "obj" | "ply" | "serialized" => self.mesh(object, own).map(meshed),
+            "cube" | "obj" | "ply" | "serialized" => meshed,
             _ => {
                 self.unsupported(object, ALLOWED);
                 None

@@ -145,11 +145,12 @@ fn samples_follow_value_and_density() {
             let (mut sampled, mut shining, mut squares) = (0.0, 0.0, 0.0);
             let (mut plain, mut density) = (0.0, 0.0);
             for i in 0..COUNT {
-                if let Some(bounce) = scatter.sample(DVec2::ZERO, wo, numbers(i))
+                if let Some(bounce) = scatter.sample(&TexturePoint::default(), wo, numbers(i))
                     && let Some(of) = bounce.density
                 {
                     assert!(
-                        (scatter.density(DVec2::ZERO, bounce.wi, wo) / of - 1.0).abs() < 1e-9,
+                        (scatter.density(&TexturePoint::default(), bounce.wi, wo) / of - 1.0).abs()
+                            < 1e-9,
                         "{name}"
                     );
                     sampled += bounce.weight;
@@ -157,8 +158,8 @@ fn samples_follow_value_and_density() {
                     shining += 1.0;
                 }
                 let wi = anywhere(numbers(i));
-                plain += scatter.value(DVec2::ZERO, wi, wo) * 4.0 * PI;
-                density += scatter.density(DVec2::ZERO, wi, wo) * 4.0 * PI;
+                plain += scatter.value(&TexturePoint::default(), wi, wo) * 4.0 * PI;
+                density += scatter.density(&TexturePoint::default(), wi, wo) * 4.0 * PI;
             }
             let count = f64::from(COUNT);
             let [sampled, plain, density, shining] =

@@ -6,9 +6,9 @@ mod mesh;
 mod triangle;
 
 use etendue_bvh::WideHierarchy;
-use etendue_world::{Geometry, Shape, Triangles, World};
+use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
 use form::Form;
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use local::Local;
 use mesh::WorldMesh;
 use std::sync::Arc;
@@ -42,8 +42,8 @@ pub struct Hit {
     /// The shading frame, as a map to world coordinates. Z is the normal, interpolated on smooth
     /// meshes, and X is along u.
     pub frame: DMat3,
-    /// Texture coordinates.
-    pub uv: DVec2,
+    /// The position as textures see it.
+    pub point: TexturePoint,
 }
 
 /// All surfaces of a world.
@@ -220,16 +220,16 @@ impl Placed {
             shape,
             normal,
             frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
-            uv: local.uv,
+            point: local.point,
         }
     }
 
-    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal and
-    /// texture coordinates.
-    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
+    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal, and as
+    /// textures see it.
+    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
         let (place, local) = self.form.sample(piece, random);
         let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
-        (self.to_world.transform_point3(place), normal, local.uv)
+        (self.to_world.transform_point3(place), normal, local.point)
     }
 
     /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
