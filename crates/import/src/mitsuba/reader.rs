@@ -7,7 +7,7 @@ use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
 use crate::report::{Report, quoted};
-use etendue_world::World;
+use etendue_world::{Shape, World};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -35,6 +35,8 @@ pub(super) struct MitsubaReader<'a> {
     /// The material of each bsdf; `None` if the bsdf is invalid. If textures of the bsdf use
     /// attributes of meshes, each mesh, known by its address, has its own material.
     pub(super) materials: HashMap<(usize, usize), Option<usize>>,
+    /// The shapes of each group.
+    pub(super) groups: HashMap<usize, Rc<[Shape]>>,
     /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
     /// The indices of the default material of surfaces and of the default material of emitters, if
@@ -63,6 +65,7 @@ impl<'a> MitsubaReader<'a> {
             wanted: HashMap::new(),
             current_mesh: None,
             materials: HashMap::new(),
+            groups: HashMap::new(),
             made_materials: 0,
             defaults: [None; 2],
         }

@@ -11,6 +11,7 @@ use form::Form;
 use glam::{DAffine3, DMat3, DVec3};
 use local::Local;
 use mesh::WorldMesh;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A ray. Distances along the ray are multiples of `along`, which has length 1.
@@ -77,7 +78,7 @@ impl SceneGeometry {
     /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let mut meshes: Vec<(*const Triangles, Arc<WorldMesh>)> = Vec::new();
+        let mut meshes = HashMap::new();
         let placed: Vec<Placed> = world
             .shapes
             .iter()
@@ -156,20 +157,17 @@ impl SceneGeometry {
 }
 
 impl Placed {
-    fn new(shape: &Shape, meshes: &mut Vec<(*const Triangles, Arc<WorldMesh>)>) -> Self {
+    fn new(shape: &Shape, meshes: &mut HashMap<*const Triangles, Arc<WorldMesh>>) -> Self {
         let form = match &shape.geometry {
             Geometry::Rectangle => Form::Rectangle,
             Geometry::Disc => Form::Disc,
             Geometry::Sphere => Form::Sphere,
             Geometry::Cylinder => Form::Cylinder,
             Geometry::Mesh(triangles) => {
-                let known = meshes.iter().find(|(of, _)| *of == Arc::as_ptr(triangles));
-                let mesh = known.map(|(_, mesh)| Arc::clone(mesh)).unwrap_or_else(|| {
-                    let mesh = Arc::new(WorldMesh::new(Arc::clone(triangles)));
-                    meshes.push((Arc::as_ptr(triangles), Arc::clone(&mesh)));
-                    mesh
-                });
-                Form::Mesh(mesh)
+                let mesh = meshes
+                    .entry(Arc::as_ptr(triangles))
+                    .or_insert_with(|| Arc::new(WorldMesh::new(Arc::clone(triangles))));
+                Form::Mesh(Arc::clone(mesh))
             }
         };
         Self {
