@@ -77,6 +77,7 @@ impl<'a> MitsubaReader<'a> {
 fn lets_through(material: &Material) -> bool {
     match material {
         Material::Dielectric(_) | Material::Mask { .. } => true,
+        Material::Principled(of) => of.transmission.largest() > 0.0,
         Material::Blend { of, .. } => of.iter().any(lets_through),
         _ => false,
     }

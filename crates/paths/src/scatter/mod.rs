@@ -73,13 +73,17 @@ impl Scatter {
                 let (wi, wo) = (turned(wi), turned(wo));
                 factor(of, point, wi) * rough.value(wi, wo) * wi.z.abs()
             }),
+            Self::Principled(of) if wo.z <= 0.0 => {
+                let (wi, wo) = (to_front(wo)(wi), to_front(wo)(wo));
+                principled(of, point).inside().value(wi, wo) * wi.z.abs()
+            }
+            Self::Principled(of) => principled(of, point).value(wi, wo) * wi.z.abs(),
             _ if !is_front => 0.0,
             Self::Diffuse(reflectance) => reflectance.value(point) * lambertian::density(wi),
             Self::Conductor(of) => conductor(of, point).map_or(0.0, |rough| {
                 of.reflectance.value(point) * rough.value(wi, wo) * wi.z
             }),
             Self::Plastic(of) => of.at(point).value(wi, wo) * wi.z,
-            Self::Principled(of) => principled(of, point).value(wi, wo) * wi.z,
             Self::Phong(of) => phong(of, point).value(wi, wo) * wi.z,
         }
     }
@@ -101,13 +105,19 @@ impl Scatter {
                 let turned = to_front(wo);
                 rough.density(turned(wi), turned(wo))
             }),
+            Self::Principled(of) if wo.z <= 0.0 => {
+                let turned = to_front(wo);
+                principled(of, point)
+                    .inside()
+                    .density(turned(wi), turned(wo))
+            }
+            Self::Principled(of) => principled(of, point).density(wi, wo),
             _ if !is_front => 0.0,
             Self::Diffuse(_) => lambertian::density(wi),
             Self::Conductor(of) => {
                 facets(of.roughness.as_ref(), point).map_or(0.0, |facets| facets.density(wi, wo))
             }
             Self::Plastic(of) => of.at(point).density(wi, wo),
-            Self::Principled(of) => principled(of, point).density(wi, wo),
             Self::Phong(of) => phong(of, point).density(wi, wo),
         }
     }
@@ -150,6 +160,14 @@ impl Scatter {
                 Some(BsdfSample {
                     wi: turned(bounce.wi),
                     weight: bounce.weight * factor(of, point, bounce.wi),
+                    ..bounce
+                })
+            }
+            Self::Principled(of) if wo.z <= 0.0 => {
+                let turned = to_front(wo);
+                let bounce = principled(of, point).inside().sample(turned(wo), random)?;
+                Some(BsdfSample {
+                    wi: turned(bounce.wi),
                     ..bounce
                 })
             }
@@ -210,6 +228,14 @@ impl Scatter {
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
+                let index = if from.z > 0.0 {
+                    of.index
+                } else {
+                    1.0 / of.index
+                };
+                index * index
+            }
+            Self::Principled(of) if from.z * to.z < 0.0 => {
                 let index = if from.z > 0.0 {
                     of.index
                 } else {

@@ -98,6 +98,7 @@ pub(super) fn principled(of: &world::Principled, point: &TexturePoint) -> Princi
         index: of.index,
         color: of.color.value(point),
         metallic: of.metallic.value(point),
+        transmission: of.transmission.value(point),
         roughness,
         tint: of.tint.value(point),
         flatness: of.flatness.value(point),

@@ -79,6 +79,7 @@ fn materials() -> Vec<(&'static str, Material)> {
             Material::Principled(Box::new(Principled {
                 color: constant(0.6),
                 metallic: constant(0.3),
+                transmission: constant(0.0),
                 roughness: constant(0.5),
                 anisotropic: constant(0.8),
                 index: 1.5,
@@ -89,6 +90,7 @@ fn materials() -> Vec<(&'static str, Material)> {
                 gloss: constant(0.3),
             })),
         ),
+        ("transmitting principled", transmitting_principled()),
         (
             "two sides",
             Material::TwoSided(Box::new([diffuse(), metal(rough(Ggx, [0.3, 0.3]))])),
@@ -117,6 +119,22 @@ fn materials() -> Vec<(&'static str, Material)> {
             },
         ),
     ]
+}
+
+fn transmitting_principled() -> Material {
+    Material::Principled(Box::new(Principled {
+        color: constant(0.6),
+        metallic: constant(0.1),
+        transmission: constant(0.7),
+        roughness: constant(0.5),
+        anisotropic: constant(0.8),
+        index: 1.5,
+        tint: constant(0.5),
+        flatness: constant(0.3),
+        sheen: constant(0.2),
+        clearcoat: constant(0.8),
+        gloss: constant(0.3),
+    }))
 }
 
 fn numbers(i: u32) -> [f64; 3] {

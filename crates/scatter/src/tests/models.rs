@@ -158,7 +158,7 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
 }
 
 /// A mixture with all lobes.
-const MIXTURE: Principled = Principled {
+pub(super) const MIXTURE: Principled = Principled {
     facets: Microfacets {
         distribution: MicrofacetDistribution::Ggx,
         alpha: [0.16, 0.16],
@@ -166,6 +166,7 @@ const MIXTURE: Principled = Principled {
     index: 1.5,
     color: 0.7,
     metallic: 0.0,
+    transmission: 0.0,
     roughness: 0.4,
     tint: 0.5,
     flatness: 0.3,
@@ -177,7 +178,14 @@ const MIXTURE: Principled = Principled {
 pub(super) fn principled(mixture: Principled) -> Model {
     // The facets sample at least a tenth of the directions, and the clear coat is sampled in
     // proportion to D without masking.
-    model(format!("{mixture:?}"), 10.0, mixture)
+    let index = match mixture.transmission > 0.0 {
+        true => mixture.index,
+        false => 1.0,
+    };
+    Model {
+        index,
+        ..model(format!("{mixture:?}"), 10.0, mixture)
+    }
 }
 
 pub(super) fn beckmann(alpha: [f64; 2]) -> Microfacets {
@@ -225,6 +233,19 @@ pub(super) fn all() -> Vec<Model> {
                 roughness: 0.3,
                 ..MIXTURE
             },
+            Principled {
+                transmission: 0.6,
+                ..MIXTURE
+            },
+            Principled {
+                facets: ggx([0.3, 0.1]),
+                color: 1.0,
+                transmission: 1.0,
+                tint: 0.0,
+                sheen: 0.0,
+                clearcoat: 0.0,
+                ..MIXTURE
+            },
             // Only the clear coat reflects light from near the normal.
             Principled {
                 index: 1.0,
@@ -236,6 +257,16 @@ pub(super) fn all() -> Vec<Model> {
         ]
         .map(principled),
     );
+    let glass = Principled {
+        transmission: 0.7,
+        metallic: 0.2,
+        ..MIXTURE
+    };
+    let name = format!("inside of {glass:?}");
+    models.push(Model {
+        index: 1.0 / glass.index,
+        ..model(name, 10.0, glass.inside())
+    });
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
     for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {
