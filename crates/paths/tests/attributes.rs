@@ -1,5 +1,7 @@
 //! Reflectances given at the vertices or on the faces of a mesh.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use etendue_import::{Options, import_mitsuba};
 use etendue_paths::Paths;
 use etendue_world::{Look, World};

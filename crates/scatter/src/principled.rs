@@ -220,7 +220,10 @@ pub struct PrincipledInside {
 impl Bsdf for PrincipledInside {
     fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let tint = if wi.z > 0.0 { 1.0 } else { self.tint };
-        self.strength * tint * self.interface.value(wi, wo)
+        match self.strength {
+            0.0 => 0.0,
+            strength => strength * tint * self.interface.value(wi, wo),
+        }
     }
 
     fn density(&self, wi: DVec3, wo: DVec3) -> f64 {

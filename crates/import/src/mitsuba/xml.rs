@@ -82,27 +82,9 @@ impl<'a> Tree<'a> {
             let message = format!("an element has more than {MAX_ATTRIBUTES} attributes");
             return self.report.cause(&place, message);
         }
-        let options = ParsingOptions {
-            nodes_limit: MOST_NODES,
-            ..ParsingOptions::default()
-        };
-        let document = match Document::parse_with_options(text, options) {
+        let document = match parsed(text, &name) {
             Ok(document) => document,
-            Err(roxmltree::Error::NodesLimitReached) => {
-                let message = format!(
-                    "more than {MOST_NODES} elements, texts and comments; allowed: at most {MOST_ELEMENTS} elements"
-                );
-                return self.report.cause(&SourcePlace::whole(&name), message);
-            }
-            Err(error) => {
-                let at = error.pos();
-                let place = SourcePlace {
-                    file: name,
-                    line: at.row as usize,
-                    column: at.col as usize,
-                };
-                return self.report.cause(&place, format!("no XML: {error}"));
-            }
+            Err((place, message)) => return self.report.cause(&place, message),
         };
         let root = document.root_element();
         let mut source = SourceFile {
@@ -346,6 +328,29 @@ impl<'a> Tree<'a> {
             }
         }
     }
+}
+
+/// Parses a file; `Err` holds the place and the description of a fault.
+fn parsed<'t>(text: &'t str, name: &Rc<str>) -> Result<Document<'t>, (SourcePlace, String)> {
+    let options = ParsingOptions {
+        nodes_limit: MOST_NODES,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options).map_err(|error| {
+        if matches!(error, roxmltree::Error::NodesLimitReached) {
+            let message = format!(
+                "more than {MOST_NODES} elements, texts and comments; allowed: at most {MOST_ELEMENTS} elements"
+            );
+            return (SourcePlace::whole(name), message);
+        }
+        let at = error.pos();
+        let place = SourcePlace {
+            file: Rc::clone(name),
+            line: at.row as usize,
+            column: at.col as usize,
+        };
+        (place, format!("no XML: {error}"))
+    })
 }
 
 /// Returns the offset of an element with too many attributes, if any.

@@ -6,6 +6,7 @@
 //! medium. This quotient does not change where light is refracted.
 
 mod place;
+mod principled_side;
 mod reflects;
 
 use etendue_field::Lobe;
@@ -17,6 +18,7 @@ use place::{
     Coated, conductor, facets, factor, fresnel, phong, principled, rough_dielectric, share,
     smooth_dielectric,
 };
+use principled_side::PrincipledSide;
 pub use reflects::Reflects;
 
 /// A material that is prepared for scattering.
@@ -73,11 +75,7 @@ impl Scatter {
                 let (wi, wo) = (turned(wi), turned(wo));
                 factor(of, point, wi) * rough.value(wi, wo) * wi.z.abs()
             }),
-            Self::Principled(of) if wo.z <= 0.0 => {
-                let (wi, wo) = (to_front(wo)(wi), to_front(wo)(wo));
-                principled(of, point).inside().value(wi, wo) * wi.z.abs()
-            }
-            Self::Principled(of) => principled(of, point).value(wi, wo) * wi.z.abs(),
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).value(wi, wo),
             _ if !is_front => 0.0,
             Self::Diffuse(reflectance) => reflectance.value(point) * lambertian::density(wi),
             Self::Conductor(of) => conductor(of, point).map_or(0.0, |rough| {
@@ -105,13 +103,7 @@ impl Scatter {
                 let turned = to_front(wo);
                 rough.density(turned(wi), turned(wo))
             }),
-            Self::Principled(of) if wo.z <= 0.0 => {
-                let turned = to_front(wo);
-                principled(of, point)
-                    .inside()
-                    .density(turned(wi), turned(wo))
-            }
-            Self::Principled(of) => principled(of, point).density(wi, wo),
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).density(wi, wo),
             _ if !is_front => 0.0,
             Self::Diffuse(_) => lambertian::density(wi),
             Self::Conductor(of) => {
@@ -163,14 +155,7 @@ impl Scatter {
                     ..bounce
                 })
             }
-            Self::Principled(of) if wo.z <= 0.0 => {
-                let turned = to_front(wo);
-                let bounce = principled(of, point).inside().sample(turned(wo), random)?;
-                Some(BsdfSample {
-                    wi: turned(bounce.wi),
-                    ..bounce
-                })
-            }
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).sample(wo, random),
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
                 let wi = lambertian::sample([a, b]);
@@ -191,7 +176,6 @@ impl Scatter {
                 })
             }
             Self::Plastic(of) => of.at(point).sample(wo, random),
-            Self::Principled(of) => principled(of, point).sample(wo, random),
             Self::Phong(of) => phong(of, point).sample(wo, random),
         }
     }
@@ -266,19 +250,20 @@ impl Scatter {
             Self::Mask(_, of) => of.kind(point, wo),
             Self::Blend(weight, of) => of[usize::from(weight.value(point) > 0.5)].kind(point, wo),
             Self::Dielectric(of) => rough(of.roughness.as_ref().filter(|_| !of.is_thin)),
-            _ if wo.z <= 0.0 => Reflects::Nothing,
-            Self::Diffuse(_) => Reflects::Diffuse,
-            Self::Conductor(of) => rough(of.roughness.as_ref()),
-            Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
-                Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
-            }),
-            Self::Principled(of) => {
+            Self::Principled(of) if wo.z > 0.0 || of.transmission.value(point) > 0.0 => {
                 let Microfacets {
                     distribution,
                     alpha: [a, b],
                 } = principled(of, point).facets;
                 Reflects::Lobe(distribution.lobe((a * b).sqrt()))
             }
+            Self::Principled(_) => Reflects::Nothing,
+            _ if wo.z <= 0.0 => Reflects::Nothing,
+            Self::Diffuse(_) => Reflects::Diffuse,
+            Self::Conductor(of) => rough(of.roughness.as_ref()),
+            Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
+                Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
+            }),
             Self::Phong([_, _, exponent]) => Reflects::Lobe(Lobe::Phong {
                 exponent: exponent.value(point),
             }),
@@ -310,6 +295,8 @@ impl Scatter {
                 side.base_share(point, turned(wi), turned(wo))
             }
             Self::Plastic(of) => of.base_share(point, wi, wo),
+            // Only the front reflects light from the base.
+            Self::Principled(_) if wi.z <= 0.0 || wo.z <= 0.0 => 0.0,
             Self::Principled(of) => {
                 let at = principled(of, point);
                 share(at.base_value(wi, wo), at.value(wi, wo))

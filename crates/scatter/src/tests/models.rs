@@ -202,6 +202,61 @@ pub(super) fn ggx(alpha: [f64; 2]) -> Microfacets {
     }
 }
 
+/// Returns mixtures with different lobes, and the inside of one.
+fn mixtures() -> Vec<Model> {
+    let fronts = [
+        MIXTURE,
+        Principled {
+            facets: ggx([0.49, 0.49]),
+            color: 0.5,
+            metallic: 0.5,
+            roughness: 0.7,
+            ..MIXTURE
+        },
+        Principled {
+            facets: ggx([0.09, 0.09]),
+            color: 0.9,
+            metallic: 1.0,
+            roughness: 0.3,
+            ..MIXTURE
+        },
+        Principled {
+            transmission: 0.6,
+            ..MIXTURE
+        },
+        Principled {
+            facets: ggx([0.3, 0.1]),
+            color: 1.0,
+            transmission: 1.0,
+            tint: 0.0,
+            sheen: 0.0,
+            clearcoat: 0.0,
+            ..MIXTURE
+        },
+        // Only the clear coat reflects light from near the normal.
+        Principled {
+            index: 1.0,
+            color: 0.0,
+            sheen: 0.0,
+            clearcoat: 1.0,
+            ..MIXTURE
+        },
+    ];
+    let glass = Principled {
+        transmission: 0.7,
+        metallic: 0.2,
+        ..MIXTURE
+    };
+    let name = format!("inside of {glass:?}");
+    let inside = Model {
+        index: 1.0 / glass.index,
+        ..model(name, 10.0, glass.inside())
+    };
+    let mut models: Vec<Model> = fronts.map(principled).into();
+    models.push(inside);
+    models
+}
+
 /// Returns all models.
 pub(super) fn all() -> Vec<Model> {
     let mut models = vec![
@@ -216,57 +271,7 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
-    models.extend(
-        [
-            MIXTURE,
-            Principled {
-                facets: ggx([0.49, 0.49]),
-                color: 0.5,
-                metallic: 0.5,
-                roughness: 0.7,
-                ..MIXTURE
-            },
-            Principled {
-                facets: ggx([0.09, 0.09]),
-                color: 0.9,
-                metallic: 1.0,
-                roughness: 0.3,
-                ..MIXTURE
-            },
-            Principled {
-                transmission: 0.6,
-                ..MIXTURE
-            },
-            Principled {
-                facets: ggx([0.3, 0.1]),
-                color: 1.0,
-                transmission: 1.0,
-                tint: 0.0,
-                sheen: 0.0,
-                clearcoat: 0.0,
-                ..MIXTURE
-            },
-            // Only the clear coat reflects light from near the normal.
-            Principled {
-                index: 1.0,
-                color: 0.0,
-                sheen: 0.0,
-                clearcoat: 1.0,
-                ..MIXTURE
-            },
-        ]
-        .map(principled),
-    );
-    let glass = Principled {
-        transmission: 0.7,
-        metallic: 0.2,
-        ..MIXTURE
-    };
-    let name = format!("inside of {glass:?}");
-    models.push(Model {
-        index: 1.0 / glass.index,
-        ..model(name, 10.0, glass.inside())
-    });
+    models.extend(mixtures());
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
     for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {
