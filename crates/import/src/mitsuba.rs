@@ -14,6 +14,7 @@ mod leftover;
 mod light;
 mod material;
 mod mesh;
+mod mesh_data;
 mod mesh_key;
 mod metals;
 mod nested;

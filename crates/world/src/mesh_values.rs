@@ -1,7 +1,7 @@
 //! Numbers that belong to the vertices or to the triangles of a mesh.
 
-use crate::shape::Triangles;
 use crate::texture_point::TexturePoint;
+use crate::triangles::Triangles;
 use std::sync::Arc;
 
 /// Numbers that belong to the vertices or to the triangles of a mesh.

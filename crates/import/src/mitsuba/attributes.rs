@@ -1,66 +1,15 @@
 //! Textures of type `mesh_attribute`: numbers of the vertices or faces of a PLY mesh.
 
-use super::mesh::MitsubaMesh;
+use super::mesh_data::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind, Value};
 use super::reader::MitsubaReader;
 use crate::range::MAX_NUMBER;
 use crate::report::quoted;
 use crate::spectrum::Role;
-use etendue_scene::{DetailedMesh, MeshAttribute};
 use etendue_world::{MeshValues, Texture};
 use std::collections::HashSet;
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// The largest number of attributes that a message lists.
-const MOST_LISTED: usize = 8;
-
-/// The attributes of a mesh.
-#[derive(Debug, Default)]
-pub(super) struct MitsubaAttributes {
-    /// The names of all attributes of the file.
-    names: Vec<String>,
-    /// The attributes that textures of the shape use.
-    read: Vec<MeshAttribute>,
-}
-
-impl MitsubaAttributes {
-    /// Moves the attributes out of a mesh.
-    pub(super) fn take(mesh: &mut DetailedMesh) -> Self {
-        Self {
-            names: std::mem::take(&mut mesh.attribute_names),
-            read: std::mem::take(&mut mesh.attributes),
-        }
-    }
-
-    /// Drops the numbers of triangles that were dropped.
-    pub(super) fn keep(&mut self, kept: &[bool]) {
-        for attribute in self.read.iter_mut().filter(|of| !of.is_of_vertices) {
-            let rows = attribute.values.chunks(attribute.channels.max(1));
-            let rows = rows.zip(kept).filter(|(_, is_kept)| **is_kept);
-            attribute.values = rows.flat_map(|(row, _)| row).copied().collect();
-        }
-    }
-
-    /// Returns the approximate size in memory, in bytes.
-    pub(super) fn bytes(&self) -> u64 {
-        let all = self.read.iter().map(|of| size_of_val(of.values.as_slice()));
-        all.sum::<usize>() as u64
-    }
-
-    /// Returns the names of the file's attributes, for messages.
-    fn listed(&self) -> String {
-        if self.names.is_empty() {
-            return "the mesh has no attributes".to_owned();
-        }
-        let mut listed: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        listed.truncate(MOST_LISTED);
-        if self.names.len() > MOST_LISTED {
-            listed.push("…");
-        }
-        format!("allowed: {}", listed.join(", "))
-    }
-}
 
 impl<'a> MitsubaReader<'a> {
     /// Returns the names of the attributes that the textures within an object use, in alphabetical

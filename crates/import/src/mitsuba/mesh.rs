@@ -1,6 +1,6 @@
 //! Shapes that are meshes.
 
-use super::attributes::MitsubaAttributes;
+use super::mesh_data::{MitsubaAttributes, MitsubaMesh, ReadMesh};
 use super::mesh_key::MitsubaMeshKey;
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
@@ -8,23 +8,10 @@ use super::{cube, serialized};
 use crate::meshes::MeshParts;
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
-use etendue_world::Triangles;
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// The triangles of a mesh and its attributes, or the reason why the mesh cannot be read.
-pub(super) type ReadMesh = Result<(Arc<Triangles>, Rc<MitsubaAttributes>), String>;
-
-/// The mesh of a shape.
-#[derive(Clone, Debug)]
-pub(super) struct MitsubaMesh {
-    pub(super) triangles: Arc<Triangles>,
-    pub(super) attributes: Rc<MitsubaAttributes>,
-    /// Whether the front of the mesh is opposite to its normals.
-    pub(super) is_flipped: bool,
-}
 
 impl<'a> MitsubaReader<'a> {
     pub(super) fn cube(&self, object: &'a MitsubaObject) -> Option<MitsubaMesh> {

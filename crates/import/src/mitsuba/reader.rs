@@ -1,6 +1,6 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
-use super::mesh::{MitsubaMesh, ReadMesh};
+use super::mesh_data::{MitsubaMesh, ReadMesh};
 use super::mesh_key::MitsubaMeshKey;
 use super::object::{MitsubaObject, ObjectKind};
 use crate::Color;

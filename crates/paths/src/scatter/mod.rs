@@ -8,6 +8,7 @@
 mod place;
 mod principled_side;
 mod reflects;
+mod turn;
 
 use etendue_field::Lobe;
 pub(crate) use etendue_scatter::BsdfSample;
@@ -20,6 +21,7 @@ use place::{
 };
 use principled_side::PrincipledSide;
 pub use reflects::Reflects;
+use turn::{Turn, to_front};
 
 /// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
@@ -328,18 +330,6 @@ impl Scatter {
             Self::Mask(_, of) => of.is_smooth(),
             Self::Diffuse(_) | Self::Plastic(_) | Self::Principled(_) | Self::Phong(_) => false,
         }
-    }
-}
-
-/// A function that flips directions so that a chosen side is in front.
-type Turn = fn(DVec3) -> DVec3;
-
-/// Returns the flip after which `wo` is in front.
-fn to_front(wo: DVec3) -> Turn {
-    if wo.z > 0.0 {
-        |v| v
-    } else {
-        |v| v.with_z(-v.z)
     }
 }
 

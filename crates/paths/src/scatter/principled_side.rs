@@ -1,7 +1,7 @@
 //! The two sides of a principled material.
 
 use super::place::principled;
-use super::to_front;
+use super::turn::to_front;
 use etendue_scatter::{Bsdf, BsdfSample, Principled, PrincipledInside};
 use etendue_world::{self as world, TexturePoint};
 use glam::DVec3;
