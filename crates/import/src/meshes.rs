@@ -32,11 +32,14 @@ impl MeshParts {
         all as u64
     }
 
-    /// Drops triangles of zero area, which no ray hits.
-    pub(crate) fn drop_empty(&mut self) {
+    /// Drops triangles of zero area, which no ray hits. Returns, for each triangle, whether it was
+    /// kept.
+    pub(crate) fn drop_empty(&mut self) -> Vec<bool> {
         let vertices = &self.vertices;
-        self.corners
-            .retain(|corners| across(vertices, *corners) != DVec3::ZERO);
+        let has_area = |corners: &[u32; 3]| across(vertices, *corners) != DVec3::ZERO;
+        let kept: Vec<bool> = self.corners.iter().map(has_area).collect();
+        self.corners.retain(has_area);
+        kept
     }
 
     /// Computes each vertex normal as a sum over the adjacent triangles (Thürmer and Wüthrich

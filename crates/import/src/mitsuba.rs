@@ -5,6 +5,7 @@
 //! Conventions were checked against Mitsuba 3.9.1.
 
 mod ask;
+mod attributes;
 mod cube;
 mod include;
 mod index;
@@ -13,6 +14,7 @@ mod leftover;
 mod light;
 mod material;
 mod mesh;
+mod mesh_data;
 mod mesh_key;
 mod metals;
 mod nested;
@@ -42,7 +44,7 @@ use std::path::Path;
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let file = MainFile::open(file, options)?;
     let text = files::text(file.read()?).map_err(|error| file.refused(error))?;
-    read(&text, &file, options)
+    read(text, &file, options)
 }
 
 pub(crate) fn import_text(
@@ -51,16 +53,17 @@ pub(crate) fn import_text(
     options: &Options,
 ) -> Result<Imported, Refused> {
     read(
-        text,
+        text.to_owned(),
         &MainFile::of_text(folder, "text.xml", options)?,
         options,
     )
 }
 
-fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
+fn read(text: String, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
     let (files, report) = (&file.files, Report::default());
     let mut tree = xml::Tree::new(files, &report, &options.set);
-    tree.read(text, &file.name, &file.path);
+    tree.read(&text, &file.name, &file.path);
+    drop(text);
     let (objects, ids) = (tree.objects, tree.ids);
     let mut world = World::default();
     if !objects.is_empty() {

@@ -165,7 +165,7 @@ fn levels_of_pictures_are_linear_unless_raw() {
     let luminance = 0.212_671 * linear[0] + 0.715_160 * linear[1] + 0.072_169 * linear[2];
     let at = |inside: &str, u: f64| {
         ALL.map(|c| {
-            reflectance(&bitmap("a.png", inside), files.path(), c).value(DVec2::new(u, 0.5))
+            reflectance(&bitmap("a.png", inside), files.path(), c).value(&DVec2::new(u, 0.5).into())
         })
     };
     assert_close(
@@ -192,7 +192,7 @@ fn jpeg_and_radiance_pictures_are_read() {
     .concat();
     let files = folder(&[("a.hdr", &hdr), ("b.jpg", include_bytes!("data/two.jpg"))]);
     let at = |file: &str, inside: &str, u: f64, color| {
-        reflectance(&bitmap(file, inside), files.path(), color).value(DVec2::new(u, 0.5))
+        reflectance(&bitmap(file, inside), files.path(), color).value(&DVec2::new(u, 0.5).into())
     };
     let found = ALL.map(|c| at("a.hdr", "", 0.25, c));
     assert_close(&found[1..], &[1.0, 0.5, 0.0], 0.0);
@@ -240,7 +240,7 @@ fn bmp_pictures_are_read() {
         ] {
             let found = ALL.map(|c| {
                 let texture = reflectance(&bitmap(file, raw), files.path(), c);
-                texture.value(DVec2::new(u, v)) * 255.0
+                texture.value(&DVec2::new(u, v).into()) * 255.0
             });
             assert_close(&found[1..], &levels, 1e-9);
         }

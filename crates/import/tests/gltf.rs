@@ -129,7 +129,7 @@ fn base_colours_are_linear_and_their_pictures_srgb() {
     };
     // The upper row of the picture, at v = 0, is white. The lower row has level 188, which is
     // 0.502886 in linear light.
-    let at = |u, v| reflectance.value(DVec2::new(u, v));
+    let at = |u, v| reflectance.value(&DVec2::new(u, v).into());
     assert_close(
         &[at(0.5, 0.25), at(0.5, 0.75)],
         &[0.5, 0.5 * 0.502_886],

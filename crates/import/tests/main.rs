@@ -2,6 +2,7 @@
 
 #![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
 
+mod attributes;
 mod bounds;
 mod cameras;
 mod colors;

@@ -118,7 +118,7 @@ fn pictures_begin_below() {
             .vertices()
             .iter()
             .position(|v| (v.y - y).abs() < 1e-9);
-        reflectance.value(DVec2::new(0.5, uvs[found.unwrap()].y))
+        reflectance.value(&DVec2::new(0.5, uvs[found.unwrap()].y).into())
     };
     // The lower row of the picture, at v = 0, has level 188, which is 0.502886 in linear light.
     assert_close(&[at(0.0), at(1.0)], &[0.5 * 0.502_886, 0.5], 1e-6);

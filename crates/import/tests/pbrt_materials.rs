@@ -153,7 +153,7 @@ fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
     let world = world(&declared);
     match &world.materials[world.shapes[0].material] {
         Material::TwoSided(both) => match &both[0] {
-            Material::Diffuse { reflectance } => reflectance.value(DVec2::from(uv)),
+            Material::Diffuse { reflectance } => reflectance.value(&DVec2::from(uv).into()),
             other => panic!("{other:?}"),
         },
         other => panic!("{other:?}"),
@@ -229,7 +229,7 @@ fn pictures_have_an_encoding_and_stand_upright() {
         let read = read_in(&scene("", &inside), folder.path(), Color::Luminance).unwrap();
         match &read.world.materials[read.world.shapes[0].material] {
             Material::TwoSided(both) => match &both[0] {
-                Material::Diffuse { reflectance } => reflectance.value(DVec2::new(0.5, v)),
+                Material::Diffuse { reflectance } => reflectance.value(&DVec2::new(0.5, v).into()),
                 other => panic!("{other:?}"),
             },
             other => panic!("{other:?}"),

@@ -244,6 +244,29 @@ fn instances_share_triangles() {
 }
 
 #[test]
+fn instances_share_what_their_group_holds() {
+    let group = "<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\" id=\"ball\"><bsdf type=\"conductor\"/></shape><shape type=\"cube\"/></shape>";
+    let instance = |scale: &str| {
+        format!(
+            "\n<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><scale value=\"{scale}\"/></transform></shape>"
+        )
+    };
+    let read = world(&[group, &instance("2"), &instance("3")].concat());
+    let materials: Vec<usize> = read.shapes.iter().map(|shape| shape.material).collect();
+    assert_eq!(materials, [0, 1, 0, 1]);
+    assert_eq!(read.shapes[2].name, "ball");
+    assert!(Arc::ptr_eq(mesh(&read.shapes[1]), mesh(&read.shapes[3])));
+    // A fault of a placement is reported at the instance, and a fault of the group once.
+    let small = common::causes(&[group, &instance("1"), &instance("1e-12")].concat());
+    assert_eq!(small.len(), 2, "{small:#?}");
+    assert!(small[0].starts_with("text:4:"), "{small:#?}");
+    assert!(small[0].contains("shape `instance` is placed out of range"));
+    let fault = group.replace("conductor", "velvet");
+    let fault = common::causes(&[&fault, &*instance("1"), &instance("2")].concat());
+    assert_eq!(fault.len(), 1, "{fault:#?}");
+}
+
+#[test]
 fn shapes_without_a_material_are_grey_or_black() {
     let inside = "<shape type=\"sphere\"/><shape type=\"sphere\"><emitter type=\"area\"><rgb name=\"radiance\" value=\"2\"/></emitter></shape>";
     let world = world(inside);

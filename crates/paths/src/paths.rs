@@ -105,7 +105,7 @@ impl Paths {
                 let (wi, light) = self.looked_for(&hit, scatter, wo, numbers.draw());
                 found(first.unwrap_or(wi), weight * light);
             }
-            let Some(bounce) = scatter.sample(hit.uv, wo, numbers.draw()) else {
+            let Some(bounce) = scatter.sample(&hit.point, wo, numbers.draw()) else {
                 break;
             };
             weight *= bounce.weight;
@@ -171,7 +171,7 @@ impl Paths {
             return (DVec3::Z, 0.0);
         };
         let wi = hit.frame.transpose() * light.toward;
-        let value = scatter.value(hit.uv, wi, wo);
+        let value = scatter.value(&hit.point, wi, wo);
         if value <= 0.0 {
             return (wi, 0.0);
         }
@@ -183,7 +183,7 @@ impl Paths {
             return (wi, 0.0);
         }
         let share = light.density.map_or(1.0, |looked| {
-            looked / (looked + scatter.density(hit.uv, wi, wo))
+            looked / (looked + scatter.density(&hit.point, wi, wo))
         });
         (wi, value * light.weight * share)
     }

@@ -100,13 +100,13 @@ impl Paths {
     /// Returns the kind of reflection of the surface.
     #[must_use]
     pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
-        self.scatter(&seen.hit).kind(seen.hit.uv, seen.wo())
+        self.scatter(&seen.hit).kind(&seen.hit.point, seen.wo())
     }
 
     /// Returns the texture factors of base and lobe. A material with one part has only a base.
     #[must_use]
     pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
-        self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
+        self.scatter(&seen.hit).factors(&seen.hit.point, seen.wo())
     }
 
     /// Returns the radiance, in W m⁻² sr⁻¹, that base and lobe scatter to the eye. The two
@@ -163,7 +163,7 @@ impl Paths {
             numbers,
             &mut |wi, light| {
                 if light > 0.0 {
-                    let base = scatter.base_share(seen.hit.uv, wi, seen.wo());
+                    let base = scatter.base_share(&seen.hit.point, wi, seen.wo());
                     parts[0] += light * base;
                     parts[1] += light * (1.0 - base);
                 }
@@ -199,7 +199,7 @@ impl Paths {
                 }
             }
             reflected += scatter
-                .sample(seen.hit.uv, seen.wo(), numbers.draw())
+                .sample(&seen.hit.point, seen.wo(), numbers.draw())
                 .and_then(|bounce| {
                     let along = (seen.hit.frame * bounce.wi).normalize();
                     let from = seen.hit.position;
@@ -225,12 +225,12 @@ impl Paths {
         let Hit {
             position: from,
             frame,
-            uv,
+            point,
             ..
         } = seen.hit;
         let light = self.lights.sample(&self.geometry, from, random)?;
         let wi = frame.transpose() * light.toward;
-        let value = light.weight * self.scatter(&seen.hit).value(uv, wi, seen.wo());
+        let value = light.weight * self.scatter(&seen.hit).value(&point, wi, seen.wo());
         if value <= 0.0 {
             return None;
         }

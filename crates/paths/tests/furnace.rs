@@ -113,18 +113,21 @@ fn cases() -> Vec<Case> {
         specular: constant(0.6),
         exponent: constant(20.0),
     };
-    let principled = Material::Principled(Box::new(Principled {
-        color: constant(0.6),
-        metallic: constant(0.4),
-        roughness: constant(0.5),
-        anisotropic: constant(0.7),
-        index: 1.5,
-        tint: constant(0.5),
-        flatness: constant(0.3),
-        sheen: constant(0.2),
-        clearcoat: constant(0.8),
-        gloss: constant(0.3),
-    }));
+    let principled = |metallic, transmission| {
+        Material::Principled(Box::new(Principled {
+            color: constant(0.6),
+            metallic: constant(metallic),
+            transmission: constant(transmission),
+            roughness: constant(0.5),
+            anisotropic: constant(0.7),
+            index: 1.5,
+            tint: constant(0.5),
+            flatness: constant(0.3),
+            sheen: constant(0.2),
+            clearcoat: constant(0.8),
+            gloss: constant(0.3),
+        }))
+    };
     let lossless = [
         ("glass", Medium(1.5), glass(1.5, false, None)),
         ("bubble", Medium(1.0 / 1.5), glass(1.0 / 1.5, false, None)),
@@ -172,7 +175,8 @@ fn cases() -> Vec<Case> {
         ),
         ("rough plastic", Nothing, two_sided(plastic(ggx(0.2), true))),
         ("phong", Nothing, two_sided(phong)),
-        ("principled", Nothing, two_sided(principled)),
+        ("principled", Nothing, two_sided(principled(0.4, 0.0))),
+        ("transmitting principled", Medium(1.5), principled(0.1, 0.8)),
     ];
     let case = |is_lossless| {
         move |(name, behind, material)| Case {

@@ -26,7 +26,7 @@ pub use fresnel::reflectance;
 pub use microfacet::Microfacets;
 pub use phong::{ModifiedPhong, Phong};
 pub use plastic::{Coat, Plastic};
-pub use principled::Principled;
+pub use principled::{Principled, PrincipledInside};
 
 #[cfg(test)]
 mod tests;

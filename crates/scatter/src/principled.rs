@@ -3,7 +3,7 @@
 
 use crate::bsdf::{before, mirrored};
 use crate::fresnel::Interface;
-use crate::{Bsdf, Microfacets, lambertian};
+use crate::{Bsdf, Microfacets, RoughDielectric, lambertian};
 use etendue_field::{MicrofacetDistribution, power};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 /// grazing angles than the share of the lobe that is estimated.
 const MIN_SHARE: f64 = 0.1;
 
-/// The mixture at one point. All directions are in front of the surface.
+/// The mixture at one point. wo is in front of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Principled {
     /// The facets of the metal and of the dielectric interface.
@@ -23,6 +23,8 @@ pub struct Principled {
     pub color: f64,
     /// The share of the metal.
     pub metallic: f64,
+    /// The share of the base that is replaced by light through the interface.
+    pub transmission: f64,
     /// Burley's roughness of the base.
     pub roughness: f64,
     /// The share of Schlick's approximation in the reflectance of the interface.
@@ -57,7 +59,39 @@ impl Principled {
     /// Returns the albedo of the base times its share.
     #[must_use]
     pub fn base(&self) -> f64 {
-        (1.0 - self.metallic) * self.color
+        (1.0 - self.metallic) * (1.0 - self.transmission) * self.color
+    }
+
+    /// Returns the same point as seen from the back.
+    #[must_use]
+    pub fn inside(&self) -> PrincipledInside {
+        PrincipledInside {
+            interface: RoughDielectric {
+                facets: self.facets,
+                index: 1.0 / self.index,
+            },
+            strength: self.through(),
+            tint: self.tint_through(),
+        }
+    }
+
+    /// Returns the share of the transmitting interface.
+    fn through(&self) -> f64 {
+        (1.0 - self.metallic) * self.transmission
+    }
+
+    /// Returns the factor on transmitted light, whose square is the colour: light usually passes
+    /// two surfaces of an object.
+    fn tint_through(&self) -> f64 {
+        self.color.max(0.0).sqrt()
+    }
+
+    /// Returns the interface as seen from the front.
+    fn interface(&self) -> RoughDielectric {
+        RoughDielectric {
+            facets: self.facets,
+            index: self.index,
+        }
     }
 
     /// Returns the reflectance of the facets at an angle of this cosine. Schlick's approximation
@@ -104,24 +138,29 @@ impl Principled {
         self.coat_d(normal) * normal.z / (4.0 * normal.dot(wo))
     }
 
-    /// Returns the shares of directions that the facets and the clear coat sample: approximately
-    /// their shares of the light.
-    fn shares(&self, wo: DVec3) -> [f64; 2] {
+    /// Returns the shares of directions that the facets, the clear coat and the transmitting
+    /// interface sample: approximately their shares of the light.
+    fn shares(&self, wo: DVec3) -> [f64; 3] {
         let facets = self.reflected(wo.z);
         let coat = 0.25 * self.clearcoat;
-        let all = facets + coat + self.base() + (1.0 - self.metallic) * self.sheen;
+        let through = self.through() * self.tint_through();
+        let all = facets + coat + through + self.base() + (1.0 - self.metallic) * self.sheen;
         if all <= 0.0 {
-            return [0.5, 0.0];
+            return [0.5, 0.0, 0.0];
         }
         let facets = (facets / all).max(MIN_SHARE);
-        [facets, (coat / all).min(1.0 - facets)]
+        let coat = (coat / all).min(1.0 - facets);
+        [facets, coat, (through / all).min(1.0 - facets - coat)]
     }
 }
 
 impl Bsdf for Principled {
     fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 {
-            return 0.0;
+            return match self.through() {
+                0.0 => 0.0,
+                share => share * self.tint_through() * self.interface().value(wi, wo),
+            };
         }
         let (value, cosine) = self.facets.value(wi, wo);
         let sheen = (1.0 - self.metallic) * self.sheen * schlick(cosine);
@@ -133,20 +172,31 @@ impl Bsdf for Principled {
     }
 
     fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let [facets, coat, through] = self.shares(wo);
+        let of_interface = match through {
+            0.0 => 0.0,
+            _ => through * self.interface().density(wi, wo),
+        };
         if wi.z <= 0.0 {
-            return 0.0;
+            return of_interface;
         }
-        let [facets, coat] = self.shares(wo);
         let of_coat = match coat {
             0.0 => 0.0,
             _ => coat * self.coat_density(wi, wo),
         };
-        let rest = (1.0 - facets - coat).max(0.0);
-        facets * self.facets.density(wi, wo) + of_coat + rest * lambertian::density(wi)
+        let rest = (1.0 - facets - coat - through).max(0.0);
+        let of_facets = facets * self.facets.density(wi, wo);
+        of_facets + of_coat + rest * lambertian::density(wi) + of_interface
     }
 
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
-        let [facets, coat] = self.shares(wo);
+        let [facets, coat, through] = self.shares(wo);
+        let opaque = 1.0 - through;
+        if c >= opaque {
+            return self
+                .interface()
+                .direction(wo, [a, b, (c - opaque) / through]);
+        }
         before(if c < facets {
             self.facets.sample(wo, [a, b])
         } else if c < facets + coat {
@@ -154,6 +204,37 @@ impl Bsdf for Principled {
         } else {
             lambertian::sample([a, b])
         })
+    }
+}
+
+/// The back of a [`Principled`]: only its transmitting interface. wo is in front of this side.
+#[derive(Clone, Copy, Debug)]
+pub struct PrincipledInside {
+    interface: RoughDielectric,
+    /// The share of the interface.
+    strength: f64,
+    /// The factor on transmitted light.
+    tint: f64,
+}
+
+impl Bsdf for PrincipledInside {
+    fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let tint = if wi.z > 0.0 { 1.0 } else { self.tint };
+        match self.strength {
+            0.0 => 0.0,
+            strength => strength * tint * self.interface.value(wi, wo),
+        }
+    }
+
+    fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        match self.strength {
+            0.0 => 0.0,
+            _ => self.interface.density(wi, wo),
+        }
+    }
+
+    fn direction(&self, wo: DVec3, random: [f64; 3]) -> Option<DVec3> {
+        (self.strength > 0.0).then(|| self.interface.direction(wo, random))?
     }
 }
 

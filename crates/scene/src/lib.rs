@@ -36,7 +36,7 @@ pub use etendue_scenefile::{
     SceneFile, SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
     limits, nearest, page, schema, shown, unit,
 };
-pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
+pub use mesh::{DetailedMesh, Mesh, MeshAttribute, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;

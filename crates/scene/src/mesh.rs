@@ -9,6 +9,7 @@
 //! element without properties. The tests use tobj and ply-rs-bw as independent readers of valid
 //! files.
 
+mod attribute;
 mod detailed;
 mod extension;
 mod files;
@@ -19,6 +20,7 @@ mod shared;
 mod star;
 mod text;
 
+pub use attribute::MeshAttribute;
 pub use detailed::DetailedMesh;
 pub use obj::parts::{ObjFile, ObjPart};
 pub use shared::Mesh;

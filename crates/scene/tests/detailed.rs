@@ -78,3 +78,48 @@ fn properties_of_a_ply_file_may_stand_in_any_order() {
     }
     assert!(parse("a.ply", &ply(["u", "t"])).unwrap().uvs.is_none());
 }
+
+#[test]
+fn attributes_of_a_ply_file_are_read_if_wanted() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property float foo_0\nproperty float foo_1\nproperty float nx\nproperty float foo_2\nproperty float bad_y\n\
+        property float one_w_1\nproperty float plain\nproperty float bent_x\nproperty float bent_z\n\
+        element face 2\nproperty list uchar int vertex_index\nproperty list uchar int many_0\nproperty float red\nproperty float green\nproperty float blue\nend_header\n\
+        0 0 0 1 2 9 3 0 5 0 0 0\n1 0 0 4 5 9 6 0 6 0 0 0\n1 1 0 0 0 9 0 0 7 0 0 0\n0 1 0 0 0 9 0 0 8 0 0 0\n\
+        4 0 1 2 3 0 1 2 3\n3 0 1 2 1 7 4 5 6\n";
+    let wanted = ["face_color", "vertex_foo", "vertex_none", "vertex_one_w"].map(str::to_owned);
+    let mesh = DetailedMesh::parse_with("a.ply".as_ref(), ply.as_bytes(), &wanted).unwrap();
+    let names = ["vertex_foo", "vertex_one_w", "face_color"];
+    assert_eq!(mesh.attribute_names, names);
+    let found = mesh.attributes.iter();
+    let found: Vec<_> = found
+        .map(|of| {
+            (
+                of.name.as_str(),
+                of.channels,
+                of.values.as_slice(),
+                of.is_of_vertices,
+            )
+        })
+        .collect();
+    let foo = [1., 2., 3., 4., 5., 6., 0., 0., 0., 0., 0., 0.];
+    // The face of four corners gives its numbers to two triangles.
+    let color = [1., 2., 3., 1., 2., 3., 4., 5., 6.];
+    assert_eq!(
+        found,
+        [
+            (names[0], 3, foo.as_slice(), true),
+            (names[1], 1, &[5., 6., 7., 8.], true),
+            (names[2], 3, &color, false),
+        ]
+    );
+    let plain = DetailedMesh::parse("a.ply".as_ref(), ply.as_bytes()).unwrap();
+    assert!(plain.attributes.is_empty());
+    let broken = ply.replace("0 0 0 1 2 9 3", "0 0 0 1 2 9 nan");
+    let error = DetailedMesh::parse_with("a.ply".as_ref(), broken.as_bytes(), &wanted).unwrap_err();
+    let error = error.to_string();
+    assert!(
+        error.starts_with("line 23, vertex 0, vertex_foo"),
+        "{error}"
+    );
+}

@@ -4,6 +4,8 @@ use crate::world_source::{WorldSource, has_light, load, no_camera, no_light, not
 use etendue_pipeline::table::aligned;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_world::{Camera, Geometry, Light, Projection, World};
+use std::collections::HashSet;
+use std::sync::Arc;
 
 /// The content of a scene, with its omissions and approximations.
 #[derive(Clone, Debug)]
@@ -67,6 +69,7 @@ fn counts(world: &World) -> Vec<(&'static str, usize)> {
         Some((_, count)) => *count += by,
         None => counts.push((kind, by)),
     };
+    let mut distinct = HashSet::new();
     for shape in &world.shapes {
         match &shape.geometry {
             Geometry::Rectangle => count("rectangles", 1),
@@ -76,6 +79,10 @@ fn counts(world: &World) -> Vec<(&'static str, usize)> {
             Geometry::Mesh(mesh) => {
                 count("meshes", 1);
                 count("triangles", mesh.corners().len());
+                if distinct.insert(Arc::as_ptr(mesh)) {
+                    count("distinct meshes", 1);
+                    count("triangles of distinct meshes", mesh.corners().len());
+                }
             }
         }
         if shape.emission.is_some() {
@@ -94,6 +101,16 @@ fn counts(world: &World) -> Vec<(&'static str, usize)> {
         count(kind, 1);
     }
     count("materials", world.materials.len());
+    // Instances share a mesh. Without instances, all meshes are distinct.
+    let of = |kind| {
+        counts
+            .iter()
+            .find(|(known, _)| *known == kind)
+            .map(|(_, n)| *n)
+    };
+    if of("meshes") == of("distinct meshes") {
+        counts.retain(|(kind, _)| !kind.ends_with("distinct meshes"));
+    }
     counts
 }
 

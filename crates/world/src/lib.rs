@@ -8,15 +8,21 @@
 mod camera;
 mod light;
 mod material;
+mod mesh_values;
 mod shape;
 mod texture;
+mod texture_point;
+mod triangles;
 
 pub use camera::{Camera, Lens, Look, Projection};
 pub use etendue_field::MicrofacetDistribution;
 pub use light::{EmittedRadiance, Falloff, Light, SkyMap};
 pub use material::{Conductor, Dielectric, Material, Plastic, Principled, Roughness};
-pub use shape::{Geometry, Shape, Triangles};
+pub use mesh_values::MeshValues;
+pub use shape::{Geometry, Shape};
 pub use texture::{Bitmap, Filter, Texture, Wrap};
+pub use texture_point::TexturePoint;
+pub use triangles::Triangles;
 
 /// Everything that a camera may see.
 #[derive(Clone, Debug, Default)]

@@ -20,7 +20,8 @@ pub enum Material {
     Dielectric(Dielectric),
     /// A diffuse base below a dielectric coat, on the front.
     Plastic(Plastic),
-    /// A mixture of a metal and a diffuse base below a dielectric interface, on the front.
+    /// A mixture of a metal and a diffuse base below a dielectric interface, on the front, and of
+    /// an interface that transmits light, on both sides.
     Principled(Box<Principled>),
     /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, where α is the angle
     /// to the mirror direction (Lafortune and Willems 1994).
@@ -95,7 +96,8 @@ pub struct Plastic {
     pub roughness: Option<Roughness>,
 }
 
-/// A mixture of a metal and a diffuse base below a dielectric interface (Burley 2012, *Physically
+/// A mixture of a metal, a diffuse base below a dielectric interface, and such an interface that
+/// transmits light (Burley 2012, *Physically
 /// Based Shading at Disney*). GGX microfacets have α = roughness² / q along u and roughness² q along
 /// v, with q = √(1 − 0.9 anisotropic).
 #[derive(Clone, Debug)]
@@ -104,6 +106,8 @@ pub struct Principled {
     pub color: Texture,
     /// The share of the metal, 0 to 1.
     pub metallic: Texture,
+    /// The share of transmission in the rest, 0 to 1.
+    pub transmission: Texture,
     /// The roughness, 0 to 1.
     pub roughness: Texture,
     /// The anisotropy, 0 to 1.

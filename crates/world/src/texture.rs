@@ -1,10 +1,13 @@
 //! Textures: numbers that vary over a surface.
 
+use crate::mesh_values::MeshValues;
+use crate::texture_point::TexturePoint;
 use etendue_field::Raster;
 use glam::{DAffine2, DVec2};
 use std::sync::Arc;
 
-/// A number that may vary over a surface. It is a function of the texture coordinates (u, v).
+/// A number that may vary over a surface. It is a function of the texture coordinates (u, v), or of
+/// the place on a triangle of a mesh.
 #[derive(Clone, Debug)]
 pub enum Texture {
     /// A constant.
@@ -19,6 +22,9 @@ pub enum Texture {
     },
     /// A picture.
     Bitmap(Bitmap),
+    /// Numbers of the vertices or of the triangles of a mesh. Only surfaces with this mesh have
+    /// such a texture.
+    OfMesh(MeshValues),
 }
 
 /// A picture over the unit square of texture coordinates. The first pixel is at the top left. From
@@ -56,27 +62,42 @@ pub enum Filter {
 }
 
 impl Texture {
-    /// Returns the value at texture coordinates of the surface.
+    /// Returns the value at a point of the surface.
     #[must_use]
-    pub fn value(&self, uv: DVec2) -> f64 {
+    pub fn value(&self, point: &TexturePoint) -> f64 {
         match self {
             Self::Constant(value) => *value,
             Self::Checkerboard { to_uv, values } => {
-                let at = to_uv.transform_point2(uv);
+                let at = to_uv.transform_point2(point.uv);
                 let is_low = |x: f64| x - x.floor() < 0.5;
                 values[usize::from(is_low(at.x) != is_low(at.y))]
             }
-            Self::Bitmap(bitmap) => bitmap.value(uv),
+            Self::Bitmap(bitmap) => bitmap.value(point.uv),
+            Self::OfMesh(values) => values.value(point),
         }
     }
 
     /// Its largest value.
     #[must_use]
     pub fn largest(&self) -> f64 {
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         match self {
             Self::Constant(value) => *value,
             Self::Checkerboard { values, .. } => values[0].max(values[1]),
-            Self::Bitmap(bitmap) => bitmap.pixels.values().iter().copied().fold(0.0, f64::max),
+            Self::Bitmap(bitmap) => most(bitmap.pixels.values()),
+            Self::OfMesh(values) => most(values.values()),
+        }
+    }
+
+    /// Its smallest value.
+    #[must_use]
+    pub fn smallest(&self) -> f64 {
+        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        match self {
+            Self::Constant(value) => *value,
+            Self::Checkerboard { values, .. } => values[0].min(values[1]),
+            Self::Bitmap(bitmap) => least(bitmap.pixels.values()),
+            Self::OfMesh(values) => least(values.values()),
         }
     }
 }
@@ -138,7 +159,7 @@ mod tests {
                 wrap,
                 filter,
             };
-            Texture::Bitmap(bitmap).value(DVec2::new(u / 3.0, 0.5))
+            Texture::Bitmap(bitmap).value(&DVec2::new(u / 3.0, 0.5).into())
         };
         for (wrap, u, nearest) in [
             (Wrap::Repeat, 3.5, 1.0),
@@ -172,7 +193,7 @@ mod tests {
         ] {
             // The tolerance admits only equal values.
             assert!(
-                (board.value(DVec2::new(u, v)) - value).abs() < 1e-300,
+                (board.value(&DVec2::new(u, v).into()) - value).abs() < 1e-300,
                 "({u}, {v})"
             );
         }

@@ -101,7 +101,7 @@ impl<'a> MitsubaReader<'a> {
 
     pub(super) fn transform(&self, object: &'a MitsubaObject, name: &str) -> Option<DAffine3> {
         self.ask(object, name, "a transform", |value| match value {
-            Value::Transform(value) => Some(*value),
+            Value::Transform(value) => Some(**value),
             _ => None,
         })
     }

@@ -19,7 +19,7 @@ impl Tree<'_> {
         &mut self,
         attributes: &Attributes,
         parent: usize,
-        source: &mut SourceFile,
+        source: &mut SourceFile<'_>,
     ) -> Result<(), String> {
         allow(attributes, &["value"])?;
         if parent != 0 {
@@ -42,7 +42,7 @@ impl Tree<'_> {
         &mut self,
         attributes: &Attributes,
         parent: usize,
-        source: &SourceFile,
+        source: &SourceFile<'_>,
         depth: usize,
     ) -> Result<(), String> {
         allow(attributes, &["filename", "name"])?;

@@ -10,6 +10,7 @@ use crate::spectrum::Role;
 use etendue_world::{
     Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
 };
+use std::sync::Arc;
 
 /// Maximum nesting depth of materials.
 const MAX_DEPTH: usize = 8;
@@ -23,7 +24,12 @@ const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindiele
 impl<'a> MitsubaReader<'a> {
     /// Returns the index of a material, or `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
-        let at = object.number;
+        let mesh = self.current_mesh.as_ref();
+        let mesh = mesh.map_or(0, |mesh| Arc::as_ptr(&mesh.triangles).addr());
+        let at = match self.wanted(object).is_empty() {
+            true => (object.number, 0),
+            false => (object.number, mesh),
+        };
         if let Some(known) = self.materials.get(&at) {
             return *known;
         }
@@ -178,6 +184,13 @@ impl<'a> MitsubaReader<'a> {
         let specular = self.reflectance(object, "specular_reflectance", 1.0);
         let is_nonlinear = self.truth(object, "nonlinear");
         let roughness = self.roughness_if(is_rough, object);
+        let is_constant = |of: &Roughness| matches!(of.alpha[0], Texture::Constant(_));
+        if let Some(Some(of)) = &roughness
+            && !is_constant(of)
+        {
+            let message = "alpha of roughplastic is a texture; allowed: a number";
+            self.report.cause(self.place_of(object, "alpha"), message);
+        }
         Some(Material::Plastic(Plastic {
             index: index?,
             diffuse: diffuse?,

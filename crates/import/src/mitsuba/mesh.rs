@@ -1,5 +1,6 @@
 //! Shapes that are meshes.
 
+use super::mesh_data::{MitsubaAttributes, MitsubaMesh, ReadMesh};
 use super::mesh_key::MitsubaMeshKey;
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
@@ -7,23 +8,17 @@ use super::{cube, serialized};
 use crate::meshes::MeshParts;
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
-use etendue_world::Triangles;
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
-
-/// The mesh of a shape.
-pub(super) struct MitsubaMesh {
-    pub(super) triangles: Arc<Triangles>,
-    /// Whether the front of the mesh is opposite to its normals.
-    pub(super) is_flipped: bool,
-}
 
 impl<'a> MitsubaReader<'a> {
     pub(super) fn cube(&self, object: &'a MitsubaObject) -> Option<MitsubaMesh> {
         let triangles = cube::parts().finish()?;
         Some(MitsubaMesh {
             triangles: Arc::new(triangles),
+            attributes: Rc::default(),
             is_flipped: self.truth(object, "flip_normals"),
         })
     }
@@ -50,12 +45,13 @@ impl<'a> MitsubaReader<'a> {
             number,
             is_flat,
             is_flipped: flips_uv,
+            attributes: self.wanted(object),
             linear: (!is_flat).then(|| bits(to_world.matrix3)),
         };
         let is_new = !self.meshes.contains_key(&key);
         let (triangles, is_made) = self.triangles(object, &key, to_world, is_new);
-        let triangles = match triangles {
-            Ok(triangles) => triangles,
+        let (triangles, attributes) = match triangles {
+            Ok(read) => read,
             Err(error) => {
                 self.unread(object, name, &error);
                 return None;
@@ -66,6 +62,7 @@ impl<'a> MitsubaReader<'a> {
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,
+            attributes,
             is_flipped: flips != (is_mirrored && is_made),
         })
     }
@@ -106,7 +103,7 @@ impl<'a> MitsubaReader<'a> {
         key: &MitsubaMeshKey,
         to_world: DAffine3,
         is_new: bool,
-    ) -> (Result<Arc<Triangles>, String>, bool) {
+    ) -> (ReadMesh, bool) {
         // A mesh that has its own normals can be shared by all its placements.
         let everywhere = MitsubaMeshKey {
             linear: None,
@@ -122,23 +119,30 @@ impl<'a> MitsubaReader<'a> {
             return (known.clone(), true);
         }
         let read = self.parts(key);
-        let has_normals = !key.is_flat && read.as_ref().is_ok_and(|p| p.normals.is_some());
-        let made = read.and_then(|parts| self.finish(object, parts, key, to_world.matrix3));
+        let has_normals = !key.is_flat
+            && read
+                .as_ref()
+                .is_ok_and(|(parts, _)| parts.normals.is_some());
+        let made = read.and_then(|read| self.finish(object, read, key, to_world.matrix3));
         let key = if has_normals { everywhere } else { key.clone() };
         self.meshes.insert(key, made.clone());
         (made, !has_normals)
     }
 
-    fn parts(&mut self, key: &MitsubaMeshKey) -> Result<MeshParts, String> {
+    fn parts(&mut self, key: &MitsubaMeshKey) -> Result<(MeshParts, MitsubaAttributes), String> {
         let bytes = self.mesh_bytes(&key.path)?;
         let is_packed = key
             .path
             .extension()
             .is_none_or(|e| !e.eq_ignore_ascii_case("obj") && !e.eq_ignore_ascii_case("ply"));
         match is_packed {
-            true => serialized::read(&bytes, key.number, self.files),
-            false => DetailedMesh::parse(&key.path, &bytes)
-                .map(MeshParts::from)
+            true => serialized::read(&bytes, key.number, self.files)
+                .map(|parts| (parts, MitsubaAttributes::default())),
+            false => DetailedMesh::parse_with(&key.path, &bytes, &key.attributes)
+                .map(|mut mesh| {
+                    let attributes = MitsubaAttributes::take(&mut mesh);
+                    (MeshParts::from(mesh), attributes)
+                })
                 .map_err(|fault| format!("is not a valid mesh: {fault}")),
         }
     }
@@ -155,14 +159,14 @@ impl<'a> MitsubaReader<'a> {
     fn finish(
         &self,
         object: &'a MitsubaObject,
-        mut parts: MeshParts,
+        (mut parts, mut attributes): (MeshParts, MitsubaAttributes),
         key: &MitsubaMeshKey,
         linear: DMat3,
-    ) -> Result<Arc<Triangles>, String> {
+    ) -> ReadMesh {
         // The memory is counted for each mesh, because shapes that share a file may have different
         // meshes.
-        self.files.spend(parts.bytes())?;
-        parts.drop_empty();
+        self.files.spend(parts.bytes() + attributes.bytes())?;
+        attributes.keep(&parts.drop_empty());
         if key.is_flipped {
             for uv in parts.uvs.iter_mut().flatten() {
                 uv.y = 1.0 - uv.y;
@@ -181,7 +185,8 @@ impl<'a> MitsubaReader<'a> {
             }
         }
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
+        made.map(|triangles| (triangles, Rc::new(attributes)))
+            .ok_or_else(|| "has no triangle with an area above 0".to_owned())
     }
 }
 

@@ -3,6 +3,7 @@
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use super::texture::as_number;
+use crate::spectrum::Role;
 use etendue_world::Material;
 
 impl<'a> MitsubaReader<'a> {
@@ -28,7 +29,7 @@ impl<'a> MitsubaReader<'a> {
     }
 
     pub(super) fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
-        let opacity = self.reflectance(object, "opacity", 0.5);
+        let opacity = self.share(object, "opacity", Role::Number, 0.5);
         let mut of = self.nested(object, depth)?;
         match (of.pop(), of.pop()) {
             (Some(of), None) => Some(Material::Mask {
@@ -43,7 +44,7 @@ impl<'a> MitsubaReader<'a> {
         if !self.has(object, "weight") {
             self.report.cause(&object.place, "blendbsdf without weight");
         }
-        let weight = self.reflectance(object, "weight", 0.5);
+        let weight = self.share(object, "weight", Role::Number, 0.5);
         match <[Material; 2]>::try_from(self.nested(object, depth)?) {
             Ok(of) => Some(Material::Blend {
                 weight: as_number(weight?),
@@ -76,6 +77,7 @@ impl<'a> MitsubaReader<'a> {
 fn lets_through(material: &Material) -> bool {
     match material {
         Material::Dielectric(_) | Material::Mask { .. } => true,
+        Material::Principled(of) => of.transmission.largest() > 0.0,
         Material::Blend { of, .. } => of.iter().any(lets_through),
         _ => false,
     }

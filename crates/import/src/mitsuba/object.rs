@@ -50,7 +50,8 @@ pub(super) enum Value {
     Uniform(f64),
     /// Pairs of a wavelength, nm, and a value.
     Spectrum(Rc<[[f64; 2]]>),
-    Transform(DAffine3),
+    /// The map is in a box, because it is much larger than other values.
+    Transform(Box<DAffine3>),
     /// The index of an object that is defined within the property.
     Object(usize),
     /// The id of an object that is defined elsewhere.

@@ -1,4 +1,4 @@
-//! Mitsuba's `principled` material without transmission.
+//! Mitsuba's `principled` material.
 
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
@@ -10,8 +10,13 @@ impl<'a> MitsubaReader<'a> {
     pub(super) fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
         // A tint does not change luminance.
         let _ = self.property(object, "sheen_tint");
-        let is_opaque = self.is_opaque(object);
+        let transmission = self.parameter(object, "spec_trans", 0.0)?;
         let index = self.principled_index(object);
+        let index = index.map(|index| match transmission.largest() > 0.0 {
+            // Mitsuba changes an index of 1, because an interface without a step does not refract.
+            true if index <= 1.0 => self.least_index(object),
+            _ => index,
+        });
         let color = self.reflectance(object, "base_color", 0.5);
         let metallic = self.parameter(object, "metallic", 0.0);
         let roughness = self.parameter(object, "roughness", 0.5);
@@ -28,6 +33,7 @@ impl<'a> MitsubaReader<'a> {
         let of = Principled {
             color: color?,
             metallic: metallic?,
+            transmission,
             roughness: roughness?,
             anisotropic: anisotropic?,
             tint: tint?,
@@ -37,7 +43,7 @@ impl<'a> MitsubaReader<'a> {
             gloss: gloss?,
             index: index?,
         };
-        is_opaque?.then(|| Material::Principled(Box::new(of)))
+        Some(Material::Principled(Box::new(of)))
     }
 
     /// Reads a parameter from 0 to 1.
@@ -51,15 +57,12 @@ impl<'a> MitsubaReader<'a> {
             .map(as_number)
     }
 
-    /// Checks that the material transmits no light; otherwise, this is a cause of refusal.
-    fn is_opaque(&mut self, object: &'a MitsubaObject) -> Option<bool> {
-        let largest = self.parameter(object, "spec_trans", 0.0)?.largest();
-        if largest > 0.0 {
-            let message = format!("spec_trans of principled is {largest}; allowed: 0");
-            let place = self.place_of(object, "spec_trans");
-            self.report.cause(place, message);
+    /// Returns the index that Mitsuba uses in place of 1 for a material that transmits light.
+    fn least_index(&self, object: &'a MitsubaObject) -> f64 {
+        match self.has(object, "eta") {
+            true => 1.001,
+            false => of_specular(1e-3),
         }
-        Some(largest <= 0.0)
     }
 
     /// Returns the index of refraction. The file states either the index or `specular`; the
@@ -73,7 +76,7 @@ impl<'a> MitsubaReader<'a> {
                 }
                 false => 0.5,
             };
-            return Some(2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0);
+            return Some(of_specular(specular));
         }
         if has_specular {
             let message = "specular is given together with eta; allowed: one of them";
@@ -83,4 +86,9 @@ impl<'a> MitsubaReader<'a> {
         }
         self.number_within(object, "eta", "1 or more", |v| v >= 1.0)
     }
+}
+
+/// Returns the index whose reflectance at normal incidence is 0.08 `specular`.
+fn of_specular(specular: f64) -> f64 {
+    2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0
 }

@@ -17,11 +17,13 @@ impl Tree<'_> {
         node: Node<'_, '_>,
         element: &str,
         attributes: &Attributes,
-        source: &mut SourceFile,
+        source: &mut SourceFile<'_>,
     ) -> Result<Value, String> {
         if element == "transform" {
             allow(attributes, &["name"])?;
-            return self.transform(node).map(Value::Transform);
+            return self
+                .transform(node)
+                .map(|map| Value::Transform(Box::new(map)));
         }
         if let Some(child) = node.children().find(Node::is_element) {
             let name = child.tag_name().name();
@@ -79,7 +81,7 @@ impl Tree<'_> {
         }
     }
 
-    fn spectrum(&self, file: &str, source: &SourceFile) -> Result<Value, String> {
+    fn spectrum(&self, file: &str, source: &SourceFile<'_>) -> Result<Value, String> {
         let read = || {
             let path = self.files.find(&source.folders, file)?;
             let bytes = self.files.read(&path)?;

@@ -1,14 +1,16 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
+use super::mesh_data::{MitsubaMesh, ReadMesh};
 use super::mesh_key::MitsubaMeshKey;
 use super::object::{MitsubaObject, ObjectKind};
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
 use crate::report::{Report, quoted};
-use etendue_world::{Triangles, World};
+use etendue_world::{Shape, World};
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum number of shapes of a world; the limit is needed because instances may repeat groups.
@@ -25,9 +27,16 @@ pub(super) struct MitsubaReader<'a> {
     pub(super) pictures: Pictures,
     /// The contents of mesh files that may hold several meshes.
     pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
-    pub(super) meshes: HashMap<MitsubaMeshKey, Result<Arc<Triangles>, String>>,
-    /// The material of each bsdf; `None` if the bsdf is invalid.
-    pub(super) materials: HashMap<usize, Option<usize>>,
+    pub(super) meshes: HashMap<MitsubaMeshKey, ReadMesh>,
+    /// The attributes that the textures within an object use.
+    pub(super) wanted: HashMap<usize, Rc<[String]>>,
+    /// The mesh of the shape that is read now, if it has one.
+    pub(super) current_mesh: Option<MitsubaMesh>,
+    /// The material of each bsdf; `None` if the bsdf is invalid. If textures of the bsdf use
+    /// attributes of meshes, each mesh, known by its address, has its own material.
+    pub(super) materials: HashMap<(usize, usize), Option<usize>>,
+    /// The shapes of each group.
+    pub(super) groups: HashMap<usize, Rc<[Shape]>>,
     /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
     /// The indices of the default material of surfaces and of the default material of emitters, if
@@ -53,7 +62,10 @@ impl<'a> MitsubaReader<'a> {
             pictures: Pictures::default(),
             packed: HashMap::new(),
             meshes: HashMap::new(),
+            wanted: HashMap::new(),
+            current_mesh: None,
             materials: HashMap::new(),
+            groups: HashMap::new(),
             made_materials: 0,
             defaults: [None; 2],
         }

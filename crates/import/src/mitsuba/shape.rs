@@ -1,6 +1,5 @@
 //! Shapes, groups of shapes, and instances of groups.
 
-use super::mesh::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
@@ -8,6 +7,8 @@ use crate::placement::{fault, is_similarity, similar};
 use crate::report::quoted;
 use etendue_world::{Geometry, Shape};
 use glam::{DAffine3, DMat3, DVec3};
+use std::rc::Rc;
+use std::sync::Arc;
 
 /// Plugins supported as shapes.
 const ALLOWED: &str =
@@ -20,7 +21,11 @@ impl<'a> MitsubaReader<'a> {
             // A group is shown only where an instance refers to it.
             "shapegroup" => {}
             "instance" => self.instance(object),
-            _ => self.shape(object, DAffine3::IDENTITY, false),
+            _ if self.has_room(object) => {
+                let shape = self.shape(object, false);
+                self.world.shapes.extend(shape);
+            }
+            _ => {}
         }
     }
 
@@ -38,48 +43,80 @@ impl<'a> MitsubaReader<'a> {
             );
             return self.report.cause(&object.place, message);
         }
+        for shape in self.group(group).iter() {
+            if !self.has_room(object) {
+                return;
+            }
+            let placed = Shape {
+                to_world: to_world * shape.to_world,
+                ..shape.clone()
+            };
+            if self.is_sound(object, &placed) {
+                self.world.shapes.push(placed);
+            }
+        }
+    }
+
+    /// Returns the shapes of a group, which are read once for all instances.
+    fn group(&mut self, group: &'a MitsubaObject) -> Rc<[Shape]> {
+        if let Some(known) = self.groups.get(&group.number) {
+            return Rc::clone(known);
+        }
+        let mut made = Vec::new();
         for (_, shape) in self.children(group, ObjectKind::Shape) {
             if matches!(shape.plugin.as_str(), "shapegroup" | "instance") {
                 let message = format!("{} within a shapegroup", quoted(&shape.plugin));
                 self.report.cause(&shape.place, message);
             } else {
-                self.shape(shape, to_world, true);
+                made.extend(self.shape(shape, true));
             }
         }
+        let made: Rc<[Shape]> = made.into();
+        self.groups.insert(group.number, Rc::clone(&made));
+        made
     }
 
-    /// Adds one shape, which is placed by the shape's own transform and then by `outer`.
-    fn shape(&mut self, object: &'a MitsubaObject, outer: DAffine3, is_instance: bool) {
-        if self.world.shapes.len() >= MOST_SHAPES {
-            if !self.report.has_causes() {
-                let message = format!("more than {MOST_SHAPES} shapes, counting instances");
-                self.report.cause(&object.place, message);
-            }
-            return;
+    /// Checks whether the world can have one more shape; otherwise, adds a cause of refusal.
+    fn has_room(&self, object: &'a MitsubaObject) -> bool {
+        if self.world.shapes.len() < MOST_SHAPES {
+            return true;
         }
+        if !self.report.has_causes() {
+            let message = format!("more than {MOST_SHAPES} shapes, counting instances");
+            self.report.cause(&object.place, message);
+        }
+        false
+    }
+
+    /// Reads one shape. The placement of a shape in a group is not checked, because instances place
+    /// the shape.
+    fn shape(&mut self, object: &'a MitsubaObject, is_in_group: bool) -> Option<Shape> {
         object.is_used.set(true);
         let own = self.to_world(object);
         let placed = self.geometry(object, own);
-        let emission = self.shape_emission(object, is_instance);
+        if placed.is_none() && !self.wanted(object).is_empty() {
+            // The attributes of a mesh that was not read are unknown.
+            self.drop_all(object);
+            return None;
+        }
+        let emission = self.shape_emission(object, is_in_group);
         let material = match self.child(object, ObjectKind::Bsdf) {
             Some(bsdf) => self.material(bsdf),
             None => Some(self.default_material(emission.is_some())),
         };
-        let Some(((geometry, placement, is_flipped), material)) = placed.zip(material) else {
-            return self.lost(object);
+        let Some(((geometry, to_world, is_flipped), material)) = placed.zip(material) else {
+            self.lost(object);
+            return None;
         };
-        let to_world = outer * placement;
-        if !self.is_sound(object, &geometry, to_world, emission.is_some()) {
-            return;
-        }
-        self.world.shapes.push(Shape {
+        let shape = Shape {
             name: object.id.clone().unwrap_or_default(),
             geometry,
             to_world,
             is_flipped,
             material,
             emission,
-        });
+        };
+        (is_in_group || self.is_sound(object, &shape)).then_some(shape)
     }
 
     fn to_world(&self, object: &'a MitsubaObject) -> DAffine3 {
@@ -94,14 +131,22 @@ impl<'a> MitsubaReader<'a> {
         object: &'a MitsubaObject,
         own: DAffine3,
     ) -> Option<(Geometry, DAffine3, bool)> {
-        let meshed = |mesh: MitsubaMesh| (Geometry::Mesh(mesh.triangles), own, mesh.is_flipped);
+        self.current_mesh = match object.plugin.as_str() {
+            "cube" => self.cube(object),
+            "obj" | "ply" | "serialized" => self.mesh(object, own),
+            _ => None,
+        };
+        let mesh = self.current_mesh.as_ref();
+        let meshed = mesh.map(|mesh| {
+            let geometry = Geometry::Mesh(Arc::clone(&mesh.triangles));
+            (geometry, own, mesh.is_flipped)
+        });
         match object.plugin.as_str() {
             "rectangle" => Some((Geometry::Rectangle, own, self.flips(object))),
             "disk" => Some((Geometry::Disc, own, self.flips(object))),
             "sphere" => self.sphere(object, own),
             "cylinder" => self.cylinder(object, own),
-            "cube" => self.cube(object).map(meshed),
-            "obj" | "ply" | "serialized" => self.mesh(object, own).map(meshed),
+            "cube" | "obj" | "ply" | "serialized" => meshed,
             _ => {
                 self.unsupported(object, ALLOWED);
                 None
@@ -175,19 +220,13 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns whether a shape can have the given placement; if it cannot, adds a cause of
-    /// refusal.
-    fn is_sound(
-        &self,
-        object: &'a MitsubaObject,
-        geometry: &Geometry,
-        to_world: DAffine3,
-        shines: bool,
-    ) -> bool {
-        let Some(fault) = fault(geometry, to_world, shines) else {
+    /// Returns whether a shape can have its placement, which `object` states; if it cannot, adds a
+    /// cause of refusal.
+    fn is_sound(&self, object: &'a MitsubaObject, shape: &Shape) -> bool {
+        let Some(fault) = fault(&shape.geometry, shape.to_world, shape.emission.is_some()) else {
             return true;
         };
-        let message = format!("a {} {fault}", object.plugin);
+        let message = format!("shape {} {fault}", quoted(&object.plugin));
         self.report
             .cause(self.place_of(object, "to_world"), message);
         false
@@ -196,14 +235,14 @@ impl<'a> MitsubaReader<'a> {
     fn shape_emission(
         &mut self,
         object: &'a MitsubaObject,
-        is_instance: bool,
+        is_in_group: bool,
     ) -> Option<etendue_world::EmittedRadiance> {
         let emitter = self.child(object, ObjectKind::Emitter)?;
         if emitter.plugin != "area" {
             self.unsupported(emitter, "area, within a shape");
             return None;
         }
-        if is_instance {
+        if is_in_group {
             self.report
                 .cause(&emitter.place, "an emitter within a shapegroup");
         }

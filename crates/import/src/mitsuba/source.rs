@@ -5,28 +5,28 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// A file that is being read.
-pub(super) struct SourceFile {
+pub(super) struct SourceFile<'t> {
     pub(super) name: Rc<str>,
     /// The search folders: first the folders that this file adds, then the folders of the
     /// including file.
     pub(super) folders: Rc<[PathBuf]>,
     /// Whether the format is older than version 2.
     pub(super) is_old: bool,
-    pub(super) cursor: LineCursor,
+    pub(super) cursor: LineCursor<'t>,
 }
 
 /// Counts lines and columns for increasing offsets.
-pub(super) struct LineCursor {
-    text: Rc<str>,
+pub(super) struct LineCursor<'t> {
+    text: &'t str,
     offset: usize,
     line: usize,
     column: usize,
 }
 
-impl LineCursor {
-    pub(super) fn new(text: &str) -> Self {
+impl<'t> LineCursor<'t> {
+    pub(super) fn new(text: &'t str) -> Self {
         Self {
-            text: text.into(),
+            text,
             offset: 0,
             line: 1,
             column: 1,

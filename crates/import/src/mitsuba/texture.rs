@@ -10,7 +10,7 @@ use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DAffine3, DMat2, DVec2};
 
 /// Plugins supported as textures.
-const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
+const ALLOWED: &str = "bitmap, checkerboard, mesh_attribute, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
     /// Returns the texture of a property. If the property is missing, returns a constant. Returns
@@ -82,14 +82,7 @@ impl<'a> MitsubaReader<'a> {
         name: &str,
         texture: Texture,
     ) -> Option<Texture> {
-        let lowest = match &texture {
-            Texture::Constant(value) => *value,
-            Texture::Checkerboard { values, .. } => values[0].min(values[1]),
-            Texture::Bitmap(bitmap) => {
-                let values = bitmap.pixels.values().iter().copied();
-                values.fold(f64::INFINITY, f64::min)
-            }
-        };
+        let lowest = texture.smallest();
         if lowest >= 0.0 {
             return Some(texture);
         }
@@ -140,6 +133,7 @@ impl<'a> MitsubaReader<'a> {
         match object.plugin.as_str() {
             "bitmap" => self.bitmap(object),
             "checkerboard" => self.checkerboard(object, role),
+            "mesh_attribute" => self.mesh_attribute(object, role),
             "uniform" => Some(Texture::Constant(
                 self.number(object, "value").unwrap_or(1.0),
             )),

@@ -51,7 +51,7 @@ pub(super) fn upgrade(object: &mut MitsubaObject) {
     let to_uv = DAffine3::from_scale(scale) * DAffine3::from_translation(offset);
     object.properties.push(ObjectProperty {
         name: "to_uv".to_owned(),
-        value: Value::Transform(to_uv),
+        value: Value::Transform(Box::new(to_uv)),
         place,
         is_read: false.into(),
     });

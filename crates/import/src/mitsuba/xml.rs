@@ -8,7 +8,7 @@ use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
 use crate::files::Files;
 use crate::report::{Report, SourcePlace, quoted};
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -18,7 +18,10 @@ const MAX_DEPTH: usize = 64;
 /// Maximum number of attributes of an element.
 const MAX_ATTRIBUTES: usize = 64;
 /// Maximum number of elements in all files.
-const MOST_ELEMENTS: usize = 1 << 21;
+const MOST_ELEMENTS: usize = 1 << 23;
+/// Maximum number of elements, texts and comments in one file. An element usually stands between
+/// two texts, which are line ends.
+const MOST_NODES: u32 = 1 << 25;
 
 /// The content of the files of a scene.
 pub(super) struct Tree<'a> {
@@ -79,17 +82,9 @@ impl<'a> Tree<'a> {
             let message = format!("an element has more than {MAX_ATTRIBUTES} attributes");
             return self.report.cause(&place, message);
         }
-        let document = match Document::parse(text) {
+        let document = match parsed(text, &name) {
             Ok(document) => document,
-            Err(error) => {
-                let at = error.pos();
-                let place = SourcePlace {
-                    file: name,
-                    line: at.row as usize,
-                    column: at.col as usize,
-                };
-                return self.report.cause(&place, format!("no XML: {error}"));
-            }
+            Err((place, message)) => return self.report.cause(&place, message),
         };
         let root = document.root_element();
         let mut source = SourceFile {
@@ -125,7 +120,13 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn children(&mut self, node: Node<'_, '_>, at: usize, source: &mut SourceFile, depth: usize) {
+    fn children(
+        &mut self,
+        node: Node<'_, '_>,
+        at: usize,
+        source: &mut SourceFile<'_>,
+        depth: usize,
+    ) {
         for child in node.children().filter(Node::is_element) {
             self.element(child, at, source, depth);
         }
@@ -136,7 +137,7 @@ impl<'a> Tree<'a> {
         &mut self,
         node: Node<'_, '_>,
         parent: usize,
-        source: &mut SourceFile,
+        source: &mut SourceFile<'_>,
         depth: usize,
     ) {
         let place = source.cursor.place(node.range().start, &source.name);
@@ -203,7 +204,7 @@ impl<'a> Tree<'a> {
         attributes: &Attributes,
         place: SourcePlace,
         parent: usize,
-        source: &mut SourceFile,
+        source: &mut SourceFile<'_>,
         depth: usize,
     ) {
         let at = self.objects.len();
@@ -228,6 +229,8 @@ impl<'a> Tree<'a> {
         }
         self.children(node, at, source, depth + 1);
         self.objects[at].folders = Rc::clone(&source.folders);
+        // Scenes may have millions of objects, so unused memory is freed.
+        self.objects[at].properties.shrink_to_fit();
         if source.is_old {
             upgrade::upgrade(&mut self.objects[at]);
         }
@@ -252,7 +255,7 @@ impl<'a> Tree<'a> {
         name: String,
         value: Value,
         place: &SourcePlace,
-        source: &SourceFile,
+        source: &SourceFile<'_>,
     ) {
         let name = match source.is_old {
             true => upgrade::underscored(&name),
@@ -279,7 +282,7 @@ impl<'a> Tree<'a> {
         attributes: &Attributes,
         place: &SourcePlace,
         parent: usize,
-        source: &mut SourceFile,
+        source: &mut SourceFile<'_>,
         depth: usize,
     ) -> Result<(), String> {
         match node.tag_name().name() {
@@ -325,6 +328,29 @@ impl<'a> Tree<'a> {
             }
         }
     }
+}
+
+/// Parses a file; `Err` holds the place and the description of a fault.
+fn parsed<'t>(text: &'t str, name: &Rc<str>) -> Result<Document<'t>, (SourcePlace, String)> {
+    let options = ParsingOptions {
+        nodes_limit: MOST_NODES,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options).map_err(|error| {
+        if matches!(error, roxmltree::Error::NodesLimitReached) {
+            let message = format!(
+                "more than {MOST_NODES} elements, texts and comments; allowed: at most {MOST_ELEMENTS} elements"
+            );
+            return (SourcePlace::whole(name), message);
+        }
+        let at = error.pos();
+        let place = SourcePlace {
+            file: Rc::clone(name),
+            line: at.row as usize,
+            column: at.col as usize,
+        };
+        (place, format!("no XML: {error}"))
+    })
 }
 
 /// Returns the offset of an element with too many attributes, if any.

@@ -206,6 +206,7 @@ impl PbrtReader<'_> {
                 pixels: self.mapped_pixels(entity, &bitmap.pixels, of)?,
                 ..bitmap
             }),
+            Texture::OfMesh(values) => Texture::OfMesh(values.mapped(of)),
         })
     }
 

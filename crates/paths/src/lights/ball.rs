@@ -46,7 +46,7 @@ impl ShiningSphere {
         };
         let far = 2.0 * (at.distance(self.center) + self.radius);
         let hit = geometry.meets(self.shape, &ray, [0.0, far])?;
-        let radiance = emitted(&self.emission, hit.uv, hit.normal, -toward);
+        let radiance = emitted(&self.emission, &hit.point, hit.normal, -toward);
         Some(Incoming {
             toward,
             distance: hit.distance,
@@ -58,13 +58,13 @@ impl ShiningSphere {
     /// Samples a point uniformly by area. Returns the point, its normal, and the radiance at this
     /// point divided by the density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
-        let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
+        let (place, normal, point) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;
-        (place, normal, self.emission.value(uv) * area)
+        (place, normal, self.emission.value(&point) * area)
     }
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
-        let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
+        let radiance = emitted(&self.emission, &hit.point, hit.normal, -along);
         // A hit counts as within the cone, even if rounding errors place it outside the edge.
         let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
         (radiance, density.unwrap_or(0.0))

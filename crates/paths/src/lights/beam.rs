@@ -46,7 +46,7 @@ impl Beam {
                 match picture {
                     Some(picture) if plain > 0.0 => {
                         let at = local.truncate() / (local.z * libm::tan(*cutoff));
-                        plain * picture.value(0.5 + 0.5 * at)
+                        plain * picture.value(&(0.5 + 0.5 * at).into())
                     }
                     _ => plain,
                 }
@@ -61,7 +61,7 @@ impl Beam {
                     return 0.0;
                 }
                 let secant = local.length() / local.z;
-                scale * picture.value(0.5 - 0.5 * at) * secant * secant * secant
+                scale * picture.value(&(0.5 - 0.5 * at).into()) * secant * secant * secant
             }
         }
     }

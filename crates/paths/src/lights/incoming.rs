@@ -1,7 +1,7 @@
 //! Incident light at a point.
 
-use etendue_world::Texture;
-use glam::{DVec2, DVec3};
+use etendue_world::{Texture, TexturePoint};
+use glam::DVec3;
 
 /// Incident light at a point from one direction.
 #[derive(Clone, Copy, Debug)]
@@ -25,11 +25,11 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     (between / distance, distance)
 }
 
-/// Returns the radiance that a shape emits in a direction, at given texture coordinates. The
+/// Returns the radiance that a shape emits in a direction from a given point. The
 /// radiance is the same in all directions on the front.
-pub(super) fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
+pub(super) fn emitted(emission: &Texture, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
-        emission.value(uv)
+        emission.value(point)
     } else {
         0.0
     }

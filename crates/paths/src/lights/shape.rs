@@ -3,8 +3,8 @@
 use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, SceneGeometry};
 use etendue_sampling::DiscreteDistribution;
-use etendue_world::Texture;
-use glam::{DVec2, DVec3};
+use etendue_world::{Texture, TexturePoint};
+use glam::DVec3;
 
 /// An emitting shape, sampled uniformly by area.
 #[derive(Debug)]
@@ -34,10 +34,10 @@ impl ShiningShape {
         at: DVec3,
         [a, b, c]: [f64; 3],
     ) -> Option<Incoming> {
-        let (place, normal, uv) = self.place(geometry, [a, b, c])?;
+        let (place, normal, point) = self.place(geometry, [a, b, c])?;
         let (toward, distance) = way(at, place);
         let density = self.density(distance, normal.dot(toward));
-        let radiance = emitted(&self.emission, uv, normal, -toward);
+        let radiance = emitted(&self.emission, &point, normal, -toward);
         (radiance > 0.0 && density.is_finite()).then(|| Incoming {
             toward,
             distance,
@@ -46,13 +46,13 @@ impl ShiningShape {
         })
     }
 
-    /// Samples a point uniformly by area. Returns the point, its normal and its texture
-    /// coordinates.
+    /// Samples a point uniformly by area. Returns the point, its normal, and the point as
+    /// textures see it.
     fn place(
         &self,
         geometry: &SceneGeometry,
         [a, b, c]: [f64; 3],
-    ) -> Option<(DVec3, DVec3, DVec2)> {
+    ) -> Option<(DVec3, DVec3, TexturePoint)> {
         let placed = geometry.placed(self.shape);
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
@@ -63,8 +63,8 @@ impl ShiningShape {
         geometry: &SceneGeometry,
         random: [f64; 3],
     ) -> Option<(DVec3, DVec3, f64)> {
-        let (place, normal, uv) = self.place(geometry, random)?;
-        Some((place, normal, self.emission.value(uv) * self.area()))
+        let (place, normal, point) = self.place(geometry, random)?;
+        Some((place, normal, self.emission.value(&point) * self.area()))
     }
 
     /// Returns the density, per solid angle, of a point at a distance. `cosine` is the cosine of
@@ -74,7 +74,7 @@ impl ShiningShape {
     }
 
     pub(super) fn of_hit(&self, along: DVec3, hit: &Hit) -> (f64, f64) {
-        let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
+        let radiance = emitted(&self.emission, &hit.point, hit.normal, -along);
         (radiance, self.density(hit.distance, hit.normal.dot(along)))
     }
 }

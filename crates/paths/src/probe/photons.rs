@@ -98,7 +98,7 @@ impl<'a> PhotonProbe<'a> {
             let scatter = paths.scatter(&hit);
             let intensity = |along: DVec3| {
                 let wo = hit.frame.transpose() * along;
-                flux * scatter.value(hit.uv, wi, wo) * tilt(&hit, ray.along, along)
+                flux * scatter.value(&hit.point, wi, wo) * tilt(&hit, ray.along, along)
             };
             if !scatter.is_smooth() {
                 self.windows.connect(
@@ -154,7 +154,7 @@ impl<'a> PhotonProbe<'a> {
         let along = match target {
             Some(target) => target.toward(hit.position, [a, b]),
             None => {
-                let bounce = scatter.sample(hit.uv, wi, numbers.draw())?;
+                let bounce = scatter.sample(&hit.point, wi, numbers.draw())?;
                 let along = (hit.frame * bounce.wi).normalize();
                 if bounce.density.is_none() {
                     // For mirrors and smooth glass, the factor undoes the division by squared
@@ -172,7 +172,7 @@ impl<'a> PhotonProbe<'a> {
         };
         let density = self.onward_density(hit, arriving, along);
         let wo = hit.frame.transpose() * along;
-        let share = scatter.value(hit.uv, wi, wo) * tilt(hit, arriving, along) / density;
+        let share = scatter.value(&hit.point, wi, wo) * tilt(hit, arriving, along) / density;
         (share > 0.0).then_some(Onward {
             along,
             share,
@@ -184,7 +184,7 @@ impl<'a> PhotonProbe<'a> {
     /// Delta components are left out.
     fn onward_density(&self, hit: &Hit, arriving: DVec3, along: DVec3) -> f64 {
         let [wi, wo] = [-arriving, along].map(|of| hit.frame.transpose() * of);
-        let plain = self.probe.paths.scatter(hit).density(hit.uv, wo, wi);
+        let plain = self.probe.paths.scatter(hit).density(&hit.point, wo, wi);
         mixed(plain, &self.targets, |target| {
             target.density(hit.position, along)
         })

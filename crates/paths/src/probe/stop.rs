@@ -77,7 +77,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
             distance: hit.distance,
             reflects: paths
                 .scatter(&hit)
-                .kind(hit.uv, hit.frame.transpose() * -ray.along),
+                .kind(&hit.point, hit.frame.transpose() * -ray.along),
             curvature: curvature(&paths.geometry, &hit, normal, -ray.along, half * travelled),
         });
         ray = Ray {

@@ -178,7 +178,7 @@ impl<'a> WindowConnector<'a> {
                 return None;
             }
             let wo = hit.frame.transpose() * -line.along;
-            let bounce = scatter.sample(hit.uv, wo, numbers.draw())?;
+            let bounce = scatter.sample(&hit.point, wo, numbers.draw())?;
             if bounce.density.is_some() {
                 return None;
             }
@@ -320,7 +320,7 @@ impl<'a> WindowConnector<'a> {
         };
         let scatter = self.probe.paths.scatter(&hit);
         let arriving = hit.frame.transpose() * -along;
-        let Some(bounce) = scatter.sample(hit.uv, arriving, numbers.draw()) else {
+        let Some(bounce) = scatter.sample(&hit.point, arriving, numbers.draw()) else {
             return;
         };
         let onward = (hit.frame * bounce.wi).normalize();

@@ -6,18 +6,22 @@
 //! medium. This quotient does not change where light is refracted.
 
 mod place;
+mod principled_side;
 mod reflects;
+mod turn;
 
 use etendue_field::Lobe;
 pub(crate) use etendue_scatter::BsdfSample;
 use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
-use etendue_world::{self as world, Material, Roughness, Texture};
-use glam::{DVec2, DVec3};
+use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
+use glam::DVec3;
 use place::{
     Coated, conductor, facets, factor, fresnel, phong, principled, rough_dielectric, share,
     smooth_dielectric,
 };
+use principled_side::PrincipledSide;
 pub use reflects::Reflects;
+use turn::{Turn, to_front};
 
 /// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
@@ -56,120 +60,125 @@ impl From<&Material> for Scatter {
 
 impl Scatter {
     /// Returns the BSDF times |cos| of wi, without delta components such as mirrors.
-    pub(crate) fn value(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+    pub(crate) fn value(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                side.value(uv, turned(wi), turned(wo))
+                side.value(point, turned(wi), turned(wo))
             }
-            Self::Mask(opacity, of) => opacity.value(uv) * of.value(uv, wi, wo),
+            Self::Mask(opacity, of) => opacity.value(point) * of.value(point, wi, wo),
             Self::Blend(weight, of) => {
-                let ([a, b], share) = (&**of, weight.value(uv).clamp(0.0, 1.0));
-                (1.0 - share) * a.value(uv, wi, wo) + share * b.value(uv, wi, wo)
+                let ([a, b], share) = (&**of, weight.value(point).clamp(0.0, 1.0));
+                (1.0 - share) * a.value(point, wi, wo) + share * b.value(point, wi, wo)
             }
-            Self::Dielectric(of) => rough_dielectric(of, uv, wo).map_or(0.0, |rough| {
+            Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or(0.0, |rough| {
                 let turned = to_front(wo);
                 let (wi, wo) = (turned(wi), turned(wo));
-                factor(of, uv, wi) * rough.value(wi, wo) * wi.z.abs()
+                factor(of, point, wi) * rough.value(wi, wo) * wi.z.abs()
             }),
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).value(wi, wo),
             _ if !is_front => 0.0,
-            Self::Diffuse(reflectance) => reflectance.value(uv) * lambertian::density(wi),
-            Self::Conductor(of) => conductor(of, uv).map_or(0.0, |rough| {
-                of.reflectance.value(uv) * rough.value(wi, wo) * wi.z
+            Self::Diffuse(reflectance) => reflectance.value(point) * lambertian::density(wi),
+            Self::Conductor(of) => conductor(of, point).map_or(0.0, |rough| {
+                of.reflectance.value(point) * rough.value(wi, wo) * wi.z
             }),
-            Self::Plastic(of) => of.at(uv).value(wi, wo) * wi.z,
-            Self::Principled(of) => principled(of, uv).value(wi, wo) * wi.z,
-            Self::Phong(of) => phong(of, uv).value(wi, wo) * wi.z,
+            Self::Plastic(of) => of.at(point).value(wi, wo) * wi.z,
+            Self::Phong(of) => phong(of, point).value(wi, wo) * wi.z,
         }
     }
 
     /// Returns the density of [`Self::sample`] per solid angle, without delta components.
-    pub(crate) fn density(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+    pub(crate) fn density(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                side.density(uv, turned(wi), turned(wo))
+                side.density(point, turned(wi), turned(wo))
             }
-            Self::Mask(opacity, of) => opacity.value(uv) * of.density(uv, wi, wo),
+            Self::Mask(opacity, of) => opacity.value(point) * of.density(point, wi, wo),
             Self::Blend(weight, of) => {
-                let ([a, b], share) = (&**of, weight.value(uv).clamp(0.0, 1.0));
-                (1.0 - share) * a.density(uv, wi, wo) + share * b.density(uv, wi, wo)
+                let ([a, b], share) = (&**of, weight.value(point).clamp(0.0, 1.0));
+                (1.0 - share) * a.density(point, wi, wo) + share * b.density(point, wi, wo)
             }
-            Self::Dielectric(of) => rough_dielectric(of, uv, wo).map_or(0.0, |rough| {
+            Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or(0.0, |rough| {
                 let turned = to_front(wo);
                 rough.density(turned(wi), turned(wo))
             }),
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).density(wi, wo),
             _ if !is_front => 0.0,
             Self::Diffuse(_) => lambertian::density(wi),
             Self::Conductor(of) => {
-                facets(of.roughness.as_ref(), uv).map_or(0.0, |facets| facets.density(wi, wo))
+                facets(of.roughness.as_ref(), point).map_or(0.0, |facets| facets.density(wi, wo))
             }
-            Self::Plastic(of) => of.at(uv).density(wi, wo),
-            Self::Principled(of) => principled(of, uv).density(wi, wo),
-            Self::Phong(of) => phong(of, uv).density(wi, wo),
+            Self::Plastic(of) => of.at(point).density(wi, wo),
+            Self::Phong(of) => phong(of, point).density(wi, wo),
         }
     }
 
     /// Samples a direction wi from three numbers in (0, 1); `None` if light is absorbed.
-    pub(crate) fn sample(&self, uv: DVec2, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
+    pub(crate) fn sample(
+        &self,
+        point: &TexturePoint,
+        wo: DVec3,
+        random: [f64; 3],
+    ) -> Option<BsdfSample> {
         let [a, b, c] = random;
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                let bounce = side.sample(uv, turned(wo), random)?;
+                let bounce = side.sample(point, turned(wo), random)?;
                 Some(BsdfSample {
                     wi: turned(bounce.wi),
                     ..bounce
                 })
             }
             Self::Mask(opacity, of) => {
-                let opacity = opacity.value(uv).clamp(0.0, 1.0);
+                let opacity = opacity.value(point).clamp(0.0, 1.0);
                 if c >= opacity {
                     return Some(BsdfSample::only(-wo, 1.0));
                 }
-                let bounce = of.sample(uv, wo, [a, b, c / opacity])?;
+                let bounce = of.sample(point, wo, [a, b, c / opacity])?;
                 let density = bounce.density.map(|density| opacity * density);
                 Some(BsdfSample { density, ..bounce })
             }
             Self::Blend(weight, of) => {
-                self.blended(weight.value(uv).clamp(0.0, 1.0), of, uv, wo, random)
+                self.blended(weight.value(point).clamp(0.0, 1.0), of, point, wo, random)
             }
             Self::Dielectric(of) => {
                 let turned = to_front(wo);
-                let bounce = match rough_dielectric(of, uv, wo) {
+                let bounce = match rough_dielectric(of, point, wo) {
                     Some(rough) => rough.sample(turned(wo), random)?,
                     None => smooth_dielectric(of, wo).sample(turned(wo), c),
                 };
                 Some(BsdfSample {
                     wi: turned(bounce.wi),
-                    weight: bounce.weight * factor(of, uv, bounce.wi),
+                    weight: bounce.weight * factor(of, point, bounce.wi),
                     ..bounce
                 })
             }
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).sample(wo, random),
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
                 let wi = lambertian::sample([a, b]);
                 Some(BsdfSample {
                     wi,
-                    weight: reflectance.value(uv),
+                    weight: reflectance.value(point),
                     density: Some(lambertian::density(wi)),
                 })
             }
             Self::Conductor(of) => {
-                let bounce = match conductor(of, uv) {
+                let bounce = match conductor(of, point) {
                     Some(rough) => rough.sample(wo, random)?,
                     None => mirror(&fresnel(of), wo),
                 };
                 Some(BsdfSample {
-                    weight: of.reflectance.value(uv) * bounce.weight,
+                    weight: of.reflectance.value(point) * bounce.weight,
                     ..bounce
                 })
             }
-            Self::Plastic(of) => of.at(uv).sample(wo, random),
-            Self::Principled(of) => principled(of, uv).sample(wo, random),
-            Self::Phong(of) => phong(of, uv).sample(wo, random),
+            Self::Plastic(of) => of.at(point).sample(wo, random),
+            Self::Phong(of) => phong(of, point).sample(wo, random),
         }
     }
 
@@ -179,20 +188,20 @@ impl Scatter {
         &self,
         share: f64,
         [first, second]: &[Self; 2],
-        uv: DVec2,
+        point: &TexturePoint,
         wo: DVec3,
         [a, b, c]: [f64; 3],
     ) -> Option<BsdfSample> {
         let bounce = if c < share {
-            second.sample(uv, wo, [a, b, c / share])
+            second.sample(point, wo, [a, b, c / share])
         } else {
-            first.sample(uv, wo, [a, b, (c - share) / (1.0 - share)])
+            first.sample(point, wo, [a, b, (c - share) / (1.0 - share)])
         }?;
         if bounce.density.is_none() {
             return Some(bounce);
         }
-        let density = self.density(uv, bounce.wi, wo);
-        let weight = self.value(uv, bounce.wi, wo) / density;
+        let density = self.density(point, bounce.wi, wo);
+        let weight = self.value(point, bounce.wi, wo) / density;
         Some(BsdfSample {
             weight,
             density: Some(density),
@@ -212,6 +221,14 @@ impl Scatter {
                 };
                 index * index
             }
+            Self::Principled(of) if from.z * to.z < 0.0 => {
+                let index = if from.z > 0.0 {
+                    of.index
+                } else {
+                    1.0 / of.index
+                };
+                index * index
+            }
             // Light that continues in a straight line is not scattered.
             Self::Mask(_, of) if (from + to).length_squared() > 1e-24 => of.squared_index(from, to),
             Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
@@ -221,70 +238,73 @@ impl Scatter {
 
     /// Returns the kind of reflection on the side of `wo`. For a mixture, returns the kind of the
     /// part with more weight.
-    pub(crate) fn kind(&self, uv: DVec2, wo: DVec3) -> Reflects {
+    pub(crate) fn kind(&self, point: &TexturePoint, wo: DVec3) -> Reflects {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
-                let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
+                let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(point));
                 // The isotropic roughness is the geometric mean of the roughness along both axes.
                 let roughness = (a * b).sqrt();
                 Reflects::Lobe(of.distribution.lobe(roughness))
             })
         };
         match self {
-            Self::TwoSided(sides) => side_of(sides, wo).0.kind(uv, wo.abs()),
-            Self::Mask(_, of) => of.kind(uv, wo),
-            Self::Blend(weight, of) => of[usize::from(weight.value(uv) > 0.5)].kind(uv, wo),
+            Self::TwoSided(sides) => side_of(sides, wo).0.kind(point, wo.abs()),
+            Self::Mask(_, of) => of.kind(point, wo),
+            Self::Blend(weight, of) => of[usize::from(weight.value(point) > 0.5)].kind(point, wo),
             Self::Dielectric(of) => rough(of.roughness.as_ref().filter(|_| !of.is_thin)),
+            Self::Principled(of) if wo.z > 0.0 || of.transmission.value(point) > 0.0 => {
+                let Microfacets {
+                    distribution,
+                    alpha: [a, b],
+                } = principled(of, point).facets;
+                Reflects::Lobe(distribution.lobe((a * b).sqrt()))
+            }
+            Self::Principled(_) => Reflects::Nothing,
             _ if wo.z <= 0.0 => Reflects::Nothing,
             Self::Diffuse(_) => Reflects::Diffuse,
             Self::Conductor(of) => rough(of.roughness.as_ref()),
             Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
                 Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
             }),
-            Self::Principled(of) => {
-                let Microfacets {
-                    distribution,
-                    alpha: [a, b],
-                } = principled(of, uv).facets;
-                Reflects::Lobe(distribution.lobe((a * b).sqrt()))
-            }
             Self::Phong([_, _, exponent]) => Reflects::Lobe(Lobe::Phong {
-                exponent: exponent.value(uv),
+                exponent: exponent.value(point),
             }),
         }
     }
 
     /// Returns the texture factors of both parts of a material. One part is the base, and the other
     /// part is the lobe or mirror above the base. A material with a single part has only a base.
-    pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
+    pub(crate) fn factors(&self, point: &TexturePoint, wo: DVec3) -> [f64; 2] {
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                side.factors(uv, turned(wo))
+                side.factors(point, turned(wo))
             }
-            Self::Diffuse(reflectance) => [reflectance.value(uv), 0.0],
-            Self::Conductor(of) => [of.reflectance.value(uv), 0.0],
-            Self::Plastic(of) => [of.at(uv).base_albedo(), of.specular.value(uv)],
-            Self::Phong([diffuse, specular, _]) => [diffuse.value(uv), specular.value(uv)],
-            Self::Principled(of) => [principled(of, uv).base(), 1.0],
+            Self::Diffuse(reflectance) => [reflectance.value(point), 0.0],
+            Self::Conductor(of) => [of.reflectance.value(point), 0.0],
+            Self::Plastic(of) => [of.at(point).base_albedo(), of.specular.value(point)],
+            Self::Phong([diffuse, specular, _]) => [diffuse.value(point), specular.value(point)],
+            Self::Principled(of) => [principled(of, point).base(), 1.0],
             _ => [1.0, 0.0],
         }
     }
 
     /// Returns the share of the base in the light scattered from `wi` to `wo`.
-    pub(crate) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+    pub(crate) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                side.base_share(uv, turned(wi), turned(wo))
+                side.base_share(point, turned(wi), turned(wo))
             }
-            Self::Plastic(of) => of.base_share(uv, wi, wo),
+            Self::Plastic(of) => of.base_share(point, wi, wo),
+            // Only the front reflects light from the base.
+            Self::Principled(_) if wi.z <= 0.0 || wo.z <= 0.0 => 0.0,
             Self::Principled(of) => {
-                let at = principled(of, uv);
+                let at = principled(of, point);
                 share(at.base_value(wi, wo), at.value(wi, wo))
             }
             Self::Phong(of) => {
-                let phong = phong(of, uv);
+                let phong = phong(of, point);
                 share(phong.diffuse * lambertian::VALUE, phong.value(wi, wo))
             }
             _ => 1.0,
@@ -310,18 +330,6 @@ impl Scatter {
             Self::Mask(_, of) => of.is_smooth(),
             Self::Diffuse(_) | Self::Plastic(_) | Self::Principled(_) | Self::Phong(_) => false,
         }
-    }
-}
-
-/// A function that flips directions so that a chosen side is in front.
-type Turn = fn(DVec3) -> DVec3;
-
-/// Returns the flip after which `wo` is in front.
-fn to_front(wo: DVec3) -> Turn {
-    if wo.z > 0.0 {
-        |v| v
-    } else {
-        |v| v.with_z(-v.z)
     }
 }
 

@@ -5,21 +5,21 @@ use etendue_scatter::{
     Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, Principled, RoughDielectric,
     SmoothDielectric,
 };
-use etendue_world::{self as world, Roughness, Texture};
-use glam::{DVec2, DVec3};
+use etendue_world::{self as world, Roughness, Texture, TexturePoint};
+use glam::DVec3;
 
 /// Returns the microfacet distribution at a point, or `None` for a smooth surface.
-pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
+pub(super) fn facets(roughness: Option<&Roughness>, point: &TexturePoint) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
         // Directions in f64 do not resolve a roughness below this minimum.
-        alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
+        alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(point).max(1e-4)),
     })
 }
 
 /// Returns a rough metal at a point, or `None` for a mirror.
-pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
-    facets(of.roughness.as_ref(), uv).map(|facets| Conductor {
+pub(super) fn conductor(of: &world::Conductor, point: &TexturePoint) -> Option<Conductor> {
+    facets(of.roughness.as_ref(), point).map(|facets| Conductor {
         facets,
         fresnel: fresnel(of),
     })
@@ -32,12 +32,15 @@ pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
 }
 
 /// Returns the modified Phong BRDF at a point.
-pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> ModifiedPhong {
+pub(super) fn phong(
+    [diffuse, specular, exponent]: &[Texture; 3],
+    point: &TexturePoint,
+) -> ModifiedPhong {
     ModifiedPhong {
-        diffuse: diffuse.value(uv),
-        specular: specular.value(uv),
+        diffuse: diffuse.value(point),
+        specular: specular.value(point),
         lobe: Phong {
-            exponent: exponent.value(uv),
+            exponent: exponent.value(point),
         },
     }
 }
@@ -55,10 +58,10 @@ fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
 /// Returns a rough interface as seen from the side of `wo`, or `None` if the interface is smooth.
 pub(super) fn rough_dielectric(
     of: &world::Dielectric,
-    uv: DVec2,
+    point: &TexturePoint,
     wo: DVec3,
 ) -> Option<RoughDielectric> {
-    let facets = facets(of.roughness.as_ref().filter(|_| !of.is_thin), uv)?;
+    let facets = facets(of.roughness.as_ref().filter(|_| !of.is_thin), point)?;
     let index = index(of, wo);
     Some(RoughDielectric { facets, index })
 }
@@ -73,19 +76,19 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
 
 /// Returns the factor that multiplies light. The light is reflected if wi is in front, as wo is;
 /// otherwise it is transmitted.
-pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
+pub(super) fn factor(of: &world::Dielectric, point: &TexturePoint, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
-        of.reflectance.value(uv)
+        of.reflectance.value(point)
     } else {
-        of.transmittance.value(uv)
+        of.transmittance.value(point)
     }
 }
 
 /// Returns a metal and a base at a point.
-pub(super) fn principled(of: &world::Principled, uv: DVec2) -> Principled {
-    let roughness = of.roughness.value(uv);
+pub(super) fn principled(of: &world::Principled, point: &TexturePoint) -> Principled {
+    let roughness = of.roughness.value(point);
     let squared = roughness * roughness;
-    let aspect = (1.0 - 0.9 * of.anisotropic.value(uv)).sqrt();
+    let aspect = (1.0 - 0.9 * of.anisotropic.value(point)).sqrt();
     Principled {
         facets: Microfacets {
             distribution: MicrofacetDistribution::Ggx,
@@ -93,14 +96,15 @@ pub(super) fn principled(of: &world::Principled, uv: DVec2) -> Principled {
             alpha: [squared / aspect, squared * aspect].map(|alpha| alpha.max(1e-3)),
         },
         index: of.index,
-        color: of.color.value(uv),
-        metallic: of.metallic.value(uv),
+        color: of.color.value(point),
+        metallic: of.metallic.value(point),
+        transmission: of.transmission.value(point),
         roughness,
-        tint: of.tint.value(uv),
-        flatness: of.flatness.value(uv),
-        sheen: of.sheen.value(uv),
-        clearcoat: of.clearcoat.value(uv),
-        coat_alpha: 0.1 - 0.099 * of.gloss.value(uv),
+        tint: of.tint.value(point),
+        flatness: of.flatness.value(point),
+        sheen: of.sheen.value(point),
+        clearcoat: of.clearcoat.value(point),
+        coat_alpha: 0.1 - 0.099 * of.gloss.value(point),
     }
 }
 
@@ -116,7 +120,7 @@ pub(crate) struct Coated {
 impl Coated {
     pub(super) fn new(plastic: &world::Plastic) -> Self {
         // The table of the coat needs only one roughness, because the roughness is constant.
-        let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
+        let facets = facets(plastic.roughness.as_ref(), &TexturePoint::default());
         Self {
             coat: Coat::new(plastic.index, facets),
             diffuse: plastic.diffuse.clone(),
@@ -126,23 +130,23 @@ impl Coated {
     }
 
     /// Returns the plastic at a point.
-    pub(super) fn at(&self, uv: DVec2) -> Plastic<'_> {
+    pub(super) fn at(&self, point: &TexturePoint) -> Plastic<'_> {
         Plastic {
             coat: &self.coat,
-            diffuse: self.diffuse.value(uv),
-            specular: self.specular.value(uv),
+            diffuse: self.diffuse.value(point),
+            specular: self.specular.value(point),
             is_nonlinear: self.is_nonlinear,
         }
     }
 
     /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
     /// a smooth coat, whose reflection is a delta component.
-    pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+    pub(super) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
         if self.coat.facets().is_none() && is_mirrored {
             return 0.0;
         }
-        let plastic = self.at(uv);
+        let plastic = self.at(point);
         share(plastic.base_value(wi, wo), plastic.value(wi, wo))
     }
 }

@@ -79,6 +79,7 @@ fn materials() -> Vec<(&'static str, Material)> {
             Material::Principled(Box::new(Principled {
                 color: constant(0.6),
                 metallic: constant(0.3),
+                transmission: constant(0.0),
                 roughness: constant(0.5),
                 anisotropic: constant(0.8),
                 index: 1.5,
@@ -89,6 +90,7 @@ fn materials() -> Vec<(&'static str, Material)> {
                 gloss: constant(0.3),
             })),
         ),
+        ("transmitting principled", transmitting_principled()),
         (
             "two sides",
             Material::TwoSided(Box::new([diffuse(), metal(rough(Ggx, [0.3, 0.3]))])),
@@ -119,6 +121,22 @@ fn materials() -> Vec<(&'static str, Material)> {
     ]
 }
 
+fn transmitting_principled() -> Material {
+    Material::Principled(Box::new(Principled {
+        color: constant(0.6),
+        metallic: constant(0.1),
+        transmission: constant(0.7),
+        roughness: constant(0.5),
+        anisotropic: constant(0.8),
+        index: 1.5,
+        tint: constant(0.5),
+        flatness: constant(0.3),
+        sheen: constant(0.2),
+        clearcoat: constant(0.8),
+        gloss: constant(0.3),
+    }))
+}
+
 fn numbers(i: u32) -> [f64; 3] {
     let [a, b, c, _] = words(7, Stream::Backward, u64::from(i), 0).map(unit);
     [a, b, c]
@@ -145,11 +163,12 @@ fn samples_follow_value_and_density() {
             let (mut sampled, mut shining, mut squares) = (0.0, 0.0, 0.0);
             let (mut plain, mut density) = (0.0, 0.0);
             for i in 0..COUNT {
-                if let Some(bounce) = scatter.sample(DVec2::ZERO, wo, numbers(i))
+                if let Some(bounce) = scatter.sample(&TexturePoint::default(), wo, numbers(i))
                     && let Some(of) = bounce.density
                 {
                     assert!(
-                        (scatter.density(DVec2::ZERO, bounce.wi, wo) / of - 1.0).abs() < 1e-9,
+                        (scatter.density(&TexturePoint::default(), bounce.wi, wo) / of - 1.0).abs()
+                            < 1e-9,
                         "{name}"
                     );
                     sampled += bounce.weight;
@@ -157,8 +176,8 @@ fn samples_follow_value_and_density() {
                     shining += 1.0;
                 }
                 let wi = anywhere(numbers(i));
-                plain += scatter.value(DVec2::ZERO, wi, wo) * 4.0 * PI;
-                density += scatter.density(DVec2::ZERO, wi, wo) * 4.0 * PI;
+                plain += scatter.value(&TexturePoint::default(), wi, wo) * 4.0 * PI;
+                density += scatter.density(&TexturePoint::default(), wi, wo) * 4.0 * PI;
             }
             let count = f64::from(COUNT);
             let [sampled, plain, density, shining] =

@@ -94,7 +94,7 @@ impl Form {
         Local {
             normal,
             shading: normal,
-            uv,
+            point: uv.into(),
             along_u,
         }
     }
@@ -176,7 +176,7 @@ fn round(normal: DVec3, uv: DVec2) -> Local {
     Local {
         normal,
         shading: normal,
-        uv,
+        point: uv.into(),
         along_u,
     }
 }

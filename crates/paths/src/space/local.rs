@@ -1,6 +1,7 @@
 //! A point of a geometry.
 
-use glam::{DVec2, DVec3};
+use etendue_world::TexturePoint;
+use glam::DVec3;
 
 /// A point of a geometry, in local coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +10,8 @@ pub(crate) struct Local {
     pub(crate) normal: DVec3,
     /// The shading normal.
     pub(crate) shading: DVec3,
-    pub(crate) uv: DVec2,
+    /// The point as textures see it.
+    pub(crate) point: TexturePoint,
     /// The direction in which u increases.
     pub(crate) along_u: DVec3,
 }

@@ -4,7 +4,7 @@ use super::local::Local;
 use super::triangle::TriangleRay;
 use etendue_bvh::WideHierarchy;
 use etendue_sampling::triangle;
-use etendue_world::Triangles;
+use etendue_world::{TexturePoint, Triangles};
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ impl WorldMesh {
             }
             end
         });
-        first.map(|(at, i, place)| (at, self.local(self.ordered[i], place)))
+        first.map(|(at, i, place)| (at, self.local(self.hierarchy.order()[i] as usize, place)))
     }
 
     /// Checks whether a ray hits the mesh at a distance strictly within bounds.
@@ -87,9 +87,10 @@ impl WorldMesh {
         is_met
     }
 
-    /// Returns the point of a triangle whose barycentric coordinates are `place`. The coordinates
-    /// belong to the second and the third corner.
-    fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
+    /// Returns the point of a triangle, given by its index in the mesh, whose barycentric
+    /// coordinates are `place`. The coordinates belong to the second and the third corner.
+    fn local(&self, number: usize, place: DVec2) -> Local {
+        let corners = self.triangles.corners()[number];
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);
         let weights = [1.0 - place.x - place.y, place.x, place.y];
@@ -113,7 +114,11 @@ impl WorldMesh {
         Local {
             normal,
             shading: shading.unwrap_or(normal),
-            uv,
+            point: TexturePoint {
+                uv,
+                triangle: number,
+                weights: place,
+            },
             along_u,
         }
     }
@@ -134,7 +139,7 @@ impl WorldMesh {
         let [p, q, r] = places(&self.triangles, corners);
         (
             p + place.x * (q - p) + place.y * (r - p),
-            self.local(corners, place),
+            self.local(number, place),
         )
     }
 }

@@ -6,11 +6,12 @@ mod mesh;
 mod triangle;
 
 use etendue_bvh::WideHierarchy;
-use etendue_world::{Geometry, Shape, Triangles, World};
+use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
 use form::Form;
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use local::Local;
 use mesh::WorldMesh;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A ray. Distances along the ray are multiples of `along`, which has length 1.
@@ -42,8 +43,8 @@ pub struct Hit {
     /// The shading frame, as a map to world coordinates. Z is the normal, interpolated on smooth
     /// meshes, and X is along u.
     pub frame: DMat3,
-    /// Texture coordinates.
-    pub uv: DVec2,
+    /// The position as textures see it.
+    pub point: TexturePoint,
 }
 
 /// All surfaces of a world.
@@ -77,7 +78,7 @@ impl SceneGeometry {
     /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let mut meshes: Vec<(*const Triangles, Arc<WorldMesh>)> = Vec::new();
+        let mut meshes = HashMap::new();
         let placed: Vec<Placed> = world
             .shapes
             .iter()
@@ -156,20 +157,17 @@ impl SceneGeometry {
 }
 
 impl Placed {
-    fn new(shape: &Shape, meshes: &mut Vec<(*const Triangles, Arc<WorldMesh>)>) -> Self {
+    fn new(shape: &Shape, meshes: &mut HashMap<*const Triangles, Arc<WorldMesh>>) -> Self {
         let form = match &shape.geometry {
             Geometry::Rectangle => Form::Rectangle,
             Geometry::Disc => Form::Disc,
             Geometry::Sphere => Form::Sphere,
             Geometry::Cylinder => Form::Cylinder,
             Geometry::Mesh(triangles) => {
-                let known = meshes.iter().find(|(of, _)| *of == Arc::as_ptr(triangles));
-                let mesh = known.map(|(_, mesh)| Arc::clone(mesh)).unwrap_or_else(|| {
-                    let mesh = Arc::new(WorldMesh::new(Arc::clone(triangles)));
-                    meshes.push((Arc::as_ptr(triangles), Arc::clone(&mesh)));
-                    mesh
-                });
-                Form::Mesh(mesh)
+                let mesh = meshes
+                    .entry(Arc::as_ptr(triangles))
+                    .or_insert_with(|| Arc::new(WorldMesh::new(Arc::clone(triangles))));
+                Form::Mesh(Arc::clone(mesh))
             }
         };
         Self {
@@ -220,16 +218,16 @@ impl Placed {
             shape,
             normal,
             frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
-            uv: local.uv,
+            point: local.point,
         }
     }
 
-    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal and
-    /// texture coordinates.
-    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
+    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal, and as
+    /// textures see it.
+    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
         let (place, local) = self.form.sample(piece, random);
         let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
-        (self.to_world.transform_point3(place), normal, local.uv)
+        (self.to_world.transform_point3(place), normal, local.point)
     }
 
     /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.

@@ -2,12 +2,12 @@
 
 mod models;
 
-use crate::{Bsdf, RoughDielectric, SmoothDielectric, mirror};
+use crate::{Bsdf, Principled, RoughDielectric, SmoothDielectric, mirror};
 use etendue_field::Fresnel;
 use glam::DVec3;
 use models::{
-    Model, SAMPLES, all, beckmann, conductor, dielectric, ggx, modified_phong, numbers, phong,
-    plastic,
+    MIXTURE, Model, SAMPLES, all, beckmann, conductor, dielectric, ggx, modified_phong, numbers,
+    phong, plastic,
 };
 
 /// Angles of incidence, up to grazing.
@@ -175,6 +175,25 @@ fn light_goes_both_ways() {
             }
         }
     }
+}
+
+/// Light passes a transmitting mixture equally in both directions.
+#[test]
+fn principled_transmits_both_ways() {
+    let front = Principled {
+        transmission: 0.7,
+        metallic: 0.2,
+        ..MIXTURE
+    };
+    let turned = |v: DVec3| v.with_z(-v.z);
+    let mut lit = 0;
+    for [a, b] in pairs() {
+        let there = front.index.powi(2) * front.value(-b, a);
+        let back = front.inside().value(turned(a), turned(-b));
+        assert!((there - back).abs() <= 1e-9 * there, "{there} {back}");
+        lit += u32::from(there > 0.0);
+    }
+    assert!(lit > 100, "{lit}");
 }
 
 /// The comparison of samples with densities detects each of the planted faults.

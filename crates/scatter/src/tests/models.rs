@@ -158,7 +158,7 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
 }
 
 /// A mixture with all lobes.
-const MIXTURE: Principled = Principled {
+pub(super) const MIXTURE: Principled = Principled {
     facets: Microfacets {
         distribution: MicrofacetDistribution::Ggx,
         alpha: [0.16, 0.16],
@@ -166,6 +166,7 @@ const MIXTURE: Principled = Principled {
     index: 1.5,
     color: 0.7,
     metallic: 0.0,
+    transmission: 0.0,
     roughness: 0.4,
     tint: 0.5,
     flatness: 0.3,
@@ -177,7 +178,14 @@ const MIXTURE: Principled = Principled {
 pub(super) fn principled(mixture: Principled) -> Model {
     // The facets sample at least a tenth of the directions, and the clear coat is sampled in
     // proportion to D without masking.
-    model(format!("{mixture:?}"), 10.0, mixture)
+    let index = match mixture.transmission > 0.0 {
+        true => mixture.index,
+        false => 1.0,
+    };
+    Model {
+        index,
+        ..model(format!("{mixture:?}"), 10.0, mixture)
+    }
 }
 
 pub(super) fn beckmann(alpha: [f64; 2]) -> Microfacets {
@@ -194,6 +202,61 @@ pub(super) fn ggx(alpha: [f64; 2]) -> Microfacets {
     }
 }
 
+/// Returns mixtures with different lobes, and the inside of one.
+fn mixtures() -> Vec<Model> {
+    let fronts = [
+        MIXTURE,
+        Principled {
+            facets: ggx([0.49, 0.49]),
+            color: 0.5,
+            metallic: 0.5,
+            roughness: 0.7,
+            ..MIXTURE
+        },
+        Principled {
+            facets: ggx([0.09, 0.09]),
+            color: 0.9,
+            metallic: 1.0,
+            roughness: 0.3,
+            ..MIXTURE
+        },
+        Principled {
+            transmission: 0.6,
+            ..MIXTURE
+        },
+        Principled {
+            facets: ggx([0.3, 0.1]),
+            color: 1.0,
+            transmission: 1.0,
+            tint: 0.0,
+            sheen: 0.0,
+            clearcoat: 0.0,
+            ..MIXTURE
+        },
+        // Only the clear coat reflects light from near the normal.
+        Principled {
+            index: 1.0,
+            color: 0.0,
+            sheen: 0.0,
+            clearcoat: 1.0,
+            ..MIXTURE
+        },
+    ];
+    let glass = Principled {
+        transmission: 0.7,
+        metallic: 0.2,
+        ..MIXTURE
+    };
+    let name = format!("inside of {glass:?}");
+    let inside = Model {
+        index: 1.0 / glass.index,
+        ..model(name, 10.0, glass.inside())
+    };
+    let mut models: Vec<Model> = fronts.map(principled).into();
+    models.push(inside);
+    models
+}
+
 /// Returns all models.
 pub(super) fn all() -> Vec<Model> {
     let mut models = vec![
@@ -208,34 +271,7 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
-    models.extend(
-        [
-            MIXTURE,
-            Principled {
-                facets: ggx([0.49, 0.49]),
-                color: 0.5,
-                metallic: 0.5,
-                roughness: 0.7,
-                ..MIXTURE
-            },
-            Principled {
-                facets: ggx([0.09, 0.09]),
-                color: 0.9,
-                metallic: 1.0,
-                roughness: 0.3,
-                ..MIXTURE
-            },
-            // Only the clear coat reflects light from near the normal.
-            Principled {
-                index: 1.0,
-                color: 0.0,
-                sheen: 0.0,
-                clearcoat: 1.0,
-                ..MIXTURE
-            },
-        ]
-        .map(principled),
-    );
+    models.extend(mixtures());
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
     for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {

@@ -1,5 +1,6 @@
 //! Meshes with normals and texture coordinates.
 
+use super::attribute::MeshAttribute;
 use super::extension::by_extension;
 use super::shared::check_coordinate;
 use super::{obj, ply};
@@ -23,6 +24,10 @@ pub struct DetailedMesh {
     pub normals: Option<Vec<DVec3>>,
     /// Texture coordinates as in the file; zero at vertices without texture coordinates.
     pub uvs: Option<Vec<DVec2>>,
+    /// The attributes that were wanted and found.
+    pub attributes: Vec<MeshAttribute>,
+    /// The names of all attributes of the file.
+    pub attribute_names: Vec<String>,
 }
 
 impl DetailedMesh {
@@ -34,8 +39,19 @@ impl DetailedMesh {
     /// # Errors
     /// The first fault found.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
+        Self::parse_with(file, bytes, &[])
+    }
+
+    /// Reads a mesh as [`Self::parse`] does, and also the wanted attributes of a PLY file. They have
+    /// the names that Mitsuba gives them: the properties red, green and blue (or r, g and b) of a
+    /// vertex are `vertex_color`, and `weight_0` of a face is `face_weight`. A face of more than
+    /// three corners gives its numbers to all its triangles.
+    ///
+    /// # Errors
+    /// The first fault found. An attribute that is missing is not a fault.
+    pub fn parse_with(file: &Path, bytes: &[u8], wanted: &[String]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::detailed::read, |bytes| {
-            ply::detailed::read(bytes, true)
+            ply::detailed::read(bytes, true, wanted)
         })
     }
 }

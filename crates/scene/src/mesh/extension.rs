@@ -9,7 +9,7 @@ pub(super) fn by_extension<T>(
     file: &Path,
     bytes: &[u8],
     obj: fn(&[u8]) -> Result<T, Fault>,
-    ply: fn(&[u8]) -> Result<T, Fault>,
+    ply: impl FnOnce(&[u8]) -> Result<T, Fault>,
 ) -> Result<T, Fault> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {

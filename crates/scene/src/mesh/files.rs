@@ -25,7 +25,7 @@ impl Mesh {
     /// files, as these formats do. Lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
-            let mesh = ply::detailed::read(bytes, false)?;
+            let mesh = ply::detailed::read(bytes, false, &[])?;
             Self::new(mesh.vertices, mesh.triangles)
         })
     }

@@ -1,5 +1,6 @@
 //! PLY files (Turk, The PLY Polygon File Format, 1994): vertices and faces.
 
+mod attributes;
 mod body;
 pub(super) mod detailed;
 mod header;
@@ -44,6 +45,19 @@ fn list(element: &PlyElement) -> Result<usize, Fault> {
         return Err(fault("faces", 0, "at least 1"));
     }
     Ok(found)
+}
+
+/// Returns the positions of the properties with the given names; `None` unless all of these
+/// properties are present as single numbers.
+fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
+    let found = names.map(|name| {
+        let mut properties = element.properties.iter();
+        properties.position(|p| p.name == name && p.length.is_none())
+    });
+    found
+        .iter()
+        .all(Option::is_some)
+        .then(|| found.map(Option::unwrap_or_default))
 }
 
 fn vertex(row: PlyRow<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {

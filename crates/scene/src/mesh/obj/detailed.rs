@@ -40,6 +40,8 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
             .map(|()| keys.iter().map(|key| normal(key.2)).collect()),
         uvs: has(keys.iter().any(|key| key.1.is_some()))
             .map(|()| keys.iter().map(|key| uv(key.1)).collect()),
+        attributes: Vec::new(),
+        attribute_names: Vec::new(),
     })
 }
 

@@ -2,9 +2,10 @@
 
 use super::super::detailed::{DetailedMesh, check};
 use super::super::shared::fan;
+use super::attributes::AttributeReader;
 use super::body::Body;
-use super::header::{PlyElement, PlyHeader};
-use super::{axes, face, list, vertex};
+use super::header::PlyHeader;
+use super::{axes, columns, face, list, vertex};
 use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 
@@ -12,8 +13,12 @@ use glam::{DVec2, DVec3};
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
 /// Reads the vertices and faces of a PLY file; with `has_shading`, also reads normals and texture
-/// coordinates.
-pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<DetailedMesh, Fault> {
+/// coordinates. Also reads the wanted attributes.
+pub(in super::super) fn read(
+    bytes: &[u8],
+    has_shading: bool,
+    wanted: &[String],
+) -> Result<DetailedMesh, Fault> {
     let (header, data) = PlyHeader::read(bytes)?;
     let element = header.element("vertex")?;
     let axes = axes(element)?;
@@ -21,12 +26,16 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
     let uv = UVS.iter().find_map(|names| columns(element, *names));
     let uv = uv.filter(|_| has_shading);
     let list = list(header.element("face")?)?;
+    let mut of_vertices = AttributeReader::new(element, "vertex_", wanted);
+    let mut of_faces = AttributeReader::new(header.element("face")?, "face_", wanted);
     let count = element.count;
     let mut mesh = DetailedMesh {
         vertices: Vec::new(),
         triangles: Vec::new(),
         normals: normal.map(|_| Vec::new()),
         uvs: uv.map(|_| Vec::new()),
+        attributes: Vec::new(),
+        attribute_names: Vec::new(),
     };
     let mut corners = Vec::new();
     let mut body = Body::new(data, header.encoding);
@@ -46,10 +55,13 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
                         let place = |i: usize| row.place(["u", "v"][i]);
                         uvs.push(DVec2::from(check(found, place)?));
                     }
+                    of_vertices.push(row, values, 1)?;
                 }
                 "face" => {
                     face(row, &values[list], count, &mut corners)?;
+                    let before = mesh.triangles.len();
                     mesh.triangles.extend(fan(&corners));
+                    of_faces.push(row, values, mesh.triangles.len() - before)?;
                 }
                 _ => {}
             }
@@ -57,18 +69,9 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
         })?;
     }
     body.end()?;
+    for reader in [of_vertices, of_faces] {
+        mesh.attributes.extend(reader.read);
+        mesh.attribute_names.extend(reader.names);
+    }
     Ok(mesh)
-}
-
-/// Returns the positions of the properties with the given names; `None` unless all of these
-/// properties are present as single numbers.
-fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
-    let found = names.map(|name| {
-        let mut properties = element.properties.iter();
-        properties.position(|p| p.name == name && p.length.is_none())
-    });
-    found
-        .iter()
-        .all(Option::is_some)
-        .then(|| found.map(Option::unwrap_or_default))
 }
