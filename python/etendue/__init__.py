@@ -22,6 +22,7 @@ from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
+from etendue.variance import SamplerVariance, Variance, VarianceCurve, variance
 from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_scene, probe, render
 
 __all__ = [
@@ -39,10 +40,13 @@ __all__ = [
     "ProbedPlane",
     "Radial",
     "Result",
+    "SamplerVariance",
     "Scene",
     "SceneError",
     "Slices",
     "Spectrum",
+    "Variance",
+    "VarianceCurve",
     "__version__",
     "check",
     "compare",
@@ -58,6 +62,7 @@ __all__ = [
     "run",
     "spectrum",
     "sweep",
+    "variance",
 ]
 
 __version__ = version("etendue")

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments<'a, 'py>(pub(crate) &'a Bound<'py, PyDict>);
 
 /// Returns the exception for a value that is not allowed.
-fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
+pub(crate) fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     let shown = value
         .repr()
         .map_or_else(|_| "?".to_owned(), |r| r.to_string());

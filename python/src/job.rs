@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// A scene with its measurement settings.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Job(Arc<etendue_pipeline::Job>);
+pub(crate) struct Job(pub(crate) Arc<etendue_pipeline::Job>);
 
 /// The measurement of some or all batches of a scene.
 #[pyclass(frozen, module = "etendue._etendue")]

@@ -17,6 +17,7 @@ mod rays;
 mod render;
 mod scene;
 mod sweep;
+mod variance;
 mod world;
 
 use pyo3::prelude::*;
@@ -42,6 +43,8 @@ mod _etendue {
     use crate::render::render;
     #[pymodule_export]
     use crate::sweep::sweep;
+    #[pymodule_export]
+    use crate::variance::variance;
 
     /// Runs the command `etendue` with the arguments of this process; returns its exit code.
     #[cfg(feature = "command")]

@@ -242,6 +242,7 @@ def test_the_command_writes_the_same_bytes(tmp_path):
         "etendue.probe(sys.argv[2], (70, 95), out=out, rays=2**32, progress=told)",
         "etendue.figure([etendue.Scene(sys.argv[1], photons=2**32)], out=out, progress=told)",
         "etendue.sweep(sys.argv[1], {'blockers.0.pitch': [0.1, 0.2]}, photons=2**32, out=out, progress=told)",
+        "etendue.variance(sys.argv[1], plane='receiver', photons=2**32, progress=told)",
     ],
 )
 def test_an_interrupt_leaves_nothing(tmp_path, call):

@@ -1,6 +1,9 @@
 """What pyright must accept: a scene and its results, with all types."""
 
+from pathlib import Path
+
 import etendue
+import numpy as np
 from etendue import types
 
 light: types.Light = {"Rectangle": {"center": [0, 0, 0], "size": [0.2, 0.2]}}
@@ -23,3 +26,6 @@ error: float = picture.error.max()
 probed = etendue.probe("cbox.xml", (3, 4), out="out", rays=1e6, window=8)
 surfaces: int = len(probed.surfaces)
 triangles: int = etendue.import_scene("cbox.xml", set={"res": 64}).counts["triangles"]
+mean = etendue.variance(scene, samplers=["sobol", np.zeros((4, 4)), Path("set.npy")], counts="4..64", unshifted=True, threads=2)
+gain: float = mean["sobol"].shifted.gain.max()
+share: float = mean.power["x", "u"][0]

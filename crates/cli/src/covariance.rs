@@ -4,12 +4,11 @@
 mod table;
 
 use crate::args::CovarianceArgs;
-use crate::planes;
 use crate::print::{deliver, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::covariance::CovarianceStudy;
-use etendue_pipeline::load;
+use etendue_pipeline::{load, planes};
 use etendue_report::covariance::drawn;
 use etendue_report::pictures;
 use etendue_scene::Scene;
@@ -61,7 +60,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
 /// Removes the planes that the user has not selected from the scene.
 fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     for name in names {
-        planes::named(scene, name)?;
+        planes::named(scene, name, ArgumentStyle::Command)?;
     }
     if !names.is_empty() {
         scene.planes.retain(|plane| names.contains(&plane.name));

@@ -17,7 +17,6 @@ mod figure;
 mod import;
 mod interrupt;
 mod measure;
-mod planes;
 mod predict;
 mod print;
 mod probe;

@@ -1,16 +1,12 @@
 //! Implements `etendue variance`, which predicts the Monte Carlo error of the mean over a window.
 
-mod table;
-
 use crate::args::{SamplerArg, VarianceArgs};
-use crate::planes;
 use crate::print::{deliver, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
-use etendue_pipeline::{load, method, point_file};
+use etendue_pipeline::{load, method, point_file, variance_table};
 use etendue_report::{pictures, variance};
-use etendue_scene::Scene;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE};
 use etendue_variance::Sampler;
@@ -25,17 +21,8 @@ const NAMES: [&str; 3] = ["variance.png", "variance.svg", "variance.csv"];
 /// Runs `etendue variance`; returns the exit code.
 pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
-    let index = chosen(&scene, args.plane.as_deref())?;
     method::check(&scene, args.photons.method)?;
     let samplers = samplers(&args.samplers)?;
-    let counts = &args.counts.0;
-    if samplers.iter().all(|s| s.counts(counts).is_empty()) {
-        let shown: Vec<String> = counts.iter().map(usize::to_string).collect();
-        return Err(Failure::bad_input(format!(
-            "--counts {}: no sampler has sets of so many points; allowed: n^4 for jitter, 2^k for sobol, n^2 for padded, any number for independent and lhs",
-            shown.join(",")
-        )));
-    }
     let mut inputs = load::inputs(&args.scene.source(), &scene);
     inputs.extend(files(&args.samplers).cloned());
     let plan = Plan {
@@ -50,18 +37,19 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
         method: args.photons.method,
         frequencies: args.frequencies,
         samplers,
-        counts: counts.clone(),
+        counts: args.counts.clone(),
         shifts: args.shifts,
         unshifted: args.unshifted,
+        arguments: ArgumentStyle::Command,
     };
-    let study = VarianceStudy::new(&scene, index, options)?;
+    let study = VarianceStudy::new(&scene, args.plane.as_deref(), options)?;
     let (mut results, found) = on_threads(&args.work.threads, || {
         study.check_memory()?;
         let results = Results::claim(&folder, plan.clone())?;
         Ok((results, study.run(&Terminal::new(args.work.quiet))?))
     })?;
     if !args.work.quiet {
-        deliver(&table::text(&found, args))?;
+        deliver(&variance_table::text(&found, study.options()))?;
     }
     let figure = variance::drawn(&scene.name, &found)?;
     pictures::write(&mut results, "variance", &figure)?;
@@ -77,18 +65,6 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     Ok(if found.is_undecided() { UNDECIDED } else { 0 })
 }
 
-/// Returns the index of the selected plane.
-fn chosen(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
-    match name {
-        Some(name) => planes::named(scene, name),
-        None if scene.planes.len() == 1 => Ok(0),
-        None => Err(Failure::bad_input(format!(
-            "the scene has several planes: select one with --plane; allowed: {}",
-            planes::names(scene)
-        ))),
-    }
-}
-
 /// Returns the files of points among the samplers.
 fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
     samplers.iter().filter_map(|sampler| match sampler {
@@ -101,7 +77,10 @@ fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
 fn samplers(named: &[SamplerArg]) -> Result<Vec<Sampler>, Failure> {
     let of = |sampler: &SamplerArg| match sampler {
         SamplerArg::Named(all) => Ok(all.clone()),
-        SamplerArg::File(path) => Ok(vec![Sampler::File(point_file::read(path)?)]),
+        SamplerArg::File(path) => {
+            let file = point_file::read(path, ArgumentStyle::Command)?;
+            Ok(vec![Sampler::File(file)])
+        }
     };
     let all: Vec<Vec<Sampler>> = named.iter().map(of).collect::<Result<_, Failure>>()?;
     Ok(all.concat())

@@ -91,6 +91,37 @@ fn predicted_errors_are_found() {
     }
 }
 
+/// The picture shows predicted and found variances, with and without shifts. If each sampler has one
+/// number of points, all samplers are in one chart.
+#[test]
+fn pictures_show_all_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = scene("variance/soft_shadow.ron");
+    for (counts, names) in [
+        ("16,256", ["jitter: ", "padded xy+uv: "]),
+        ("16", ["\"jitter, 16\"", "\"padded xy+uv, 16\""]),
+    ] {
+        let line = format!(
+            "variance {} --photons 2^16 --counts {counts} --unshifted --shifts 20 --frequencies 4 --out out",
+            soft.display()
+        );
+        assert_eq!(call(folder.path(), &line).status.code(), Some(0));
+        let csv = fs::read_to_string(folder.path().join("out/variance.csv")).unwrap();
+        for name in names {
+            assert!(csv.contains(name), "{name}: {csv}");
+        }
+        for curve in [
+            "independent points",
+            "predicted",
+            "found",
+            "\"predicted, not shifted\"",
+            "\"found, not shifted\"",
+        ] {
+            assert!(csv.contains(&format!(",{curve},")), "{curve}: {csv}");
+        }
+    }
+}
+
 #[test]
 fn variances_have_the_same_bytes_on_any_threads() {
     let folder = tempfile::tempdir().unwrap();

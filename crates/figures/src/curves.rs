@@ -19,6 +19,31 @@ pub enum CurveKind {
     Rival,
     /// Measured points with error bars.
     Measured,
+    /// A line of another colour with small gaps, for a second theory.
+    OtherTheory,
+    /// Large open points with error bars, for a second measurement.
+    OtherMeasured,
+}
+
+impl CurveKind {
+    /// Returns the stroke of a line, or `None` for points.
+    fn stroke(self) -> Option<Stroke> {
+        match self {
+            Self::Theory => Some(THEORY),
+            Self::Rival => Some(RIVAL),
+            Self::OtherTheory => Some(OTHER_THEORY),
+            Self::Measured | Self::OtherMeasured => None,
+        }
+    }
+
+    /// Returns the layer in which a curve is drawn: points over lines, and small over large points.
+    fn layer(self) -> usize {
+        match self {
+            Self::Theory | Self::Rival | Self::OtherTheory => 0,
+            Self::OtherMeasured => 1,
+            Self::Measured => 2,
+        }
+    }
 }
 
 /// A curve, or a set of points.
@@ -95,7 +120,19 @@ const RIVAL: Stroke = Stroke {
     width: 1.6,
     dash: "6 4",
 };
+/// The gaps show a line of theory below.
+const OTHER_THEORY: Stroke = Stroke {
+    color: "#3b8f5a",
+    width: 1.8,
+    dash: "10 4",
+};
 const POINT: &str = INK;
+/// Radius of an open point and of its hole, in which another point is visible.
+const OPEN: f64 = 5.0;
+const HOLE: f64 = 3.8;
+const PAPER: &str = "#ffffff";
+/// Half of the length of the stroke that stands for a line through one point.
+const DASH: f64 = 11.0;
 /// Length of the short line that the key shows for each curve.
 const SAMPLE: f64 = 30.0;
 
@@ -123,7 +160,8 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let inner = inner.max(TITLE.min(page));
     let top = style.title(&mut svg, left, inner, &curves.title, &curves.note);
-    let top = key(&mut svg, curves, [left, top + 16.0], inner) + 42.0;
+    let all = curves.panels.iter().flat_map(|panel| &panel.curves);
+    let top = key(&mut svg, all, [left, top + 16.0], inner) + 42.0;
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % columns, i / columns].map(|n| n as f64);
@@ -144,10 +182,15 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
 
 /// Draws the key, which shows each name once with its style, on as many lines as needed. Returns
 /// the last baseline.
-fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f64 {
+pub(crate) fn key<'a>(
+    svg: &mut Svg,
+    curves: impl Iterator<Item = &'a Curve>,
+    [left, mut y]: [f64; 2],
+    room: f64,
+) -> f64 {
     let mut x = left;
     let mut known: Vec<&str> = Vec::new();
-    for curve in curves.panels.iter().flat_map(|p| &p.curves) {
+    for curve in curves {
         if known.contains(&curve.name.as_str()) {
             continue;
         }
@@ -157,14 +200,11 @@ fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f6
             [x, y] = [left, y + 18.0];
         }
         let middle = y - 4.0;
-        match curve.kind {
-            CurveKind::Theory => svg.line([x, middle], [x + SAMPLE, middle], THEORY),
-            CurveKind::Rival => svg.line([x, middle], [x + SAMPLE, middle], RIVAL),
-            CurveKind::Measured => {
-                let at = [x + 0.5 * SAMPLE, middle];
-                bar(svg, at, [middle - 7.0, middle + 7.0]);
-                svg.circle(at, RADIUS, POINT);
-            }
+        if let Some(stroke) = curve.kind.stroke() {
+            svg.line([x, middle], [x + SAMPLE, middle], stroke);
+        } else {
+            let at = [x + 0.5 * SAMPLE, middle];
+            point(svg, curve.kind, at, [middle - 7.0, middle + 7.0]);
         }
         let start = x + SAMPLE + 8.0;
         svg.markup(
@@ -243,30 +283,51 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
         labelled: [Some(area.width), Some(area.height)],
     };
     svg.clipped(area, |svg| {
-        for curve in &panel.curves {
+        for curve in layered(&panel.curves) {
             let points = curve.points.iter().filter(|p| is_drawn(panel, p));
-            let points: Vec<&[f64; 3]> = points.collect();
-            let at: Vec<[f64; 2]> = points.iter().map(|p| frame.point(p[0], p[1])).collect();
-            match curve.kind {
-                CurveKind::Theory => svg.polyline(&at, THEORY),
-                CurveKind::Rival => svg.polyline(&at, RIVAL),
-                CurveKind::Measured => {
-                    for (p, at) in points.iter().zip(at) {
-                        // If the standard error is as large as the value, the error bar extends
-                        // below the frame.
-                        let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
-                        let ends = ends.map(|y| frame.point(p[0], y)[1]);
-                        bar(svg, at, ends);
-                        svg.circle(at, RADIUS, POINT);
-                    }
-                }
-            }
+            draw_curve(svg, &frame, curve.kind, &points.collect::<Vec<_>>());
         }
     });
     frame.axes(svg);
     let at = [area.x, area.y - 8.0];
     let style = TextStyle::new(at, HEAD_TEXT, Anchor::Start).bold();
     svg.fitted(style, &panel.title, area.width);
+}
+
+/// Returns curves in the order in which they are drawn.
+pub(crate) fn layered(curves: &[Curve]) -> Vec<&Curve> {
+    let mut curves: Vec<&Curve> = curves.iter().collect();
+    curves.sort_by_key(|curve| curve.kind.layer());
+    curves
+}
+
+/// Draws a line or points in a frame. A line through one point is a short stroke.
+pub(crate) fn draw_curve(svg: &mut Svg, frame: &Panel<'_>, kind: CurveKind, points: &[&[f64; 3]]) {
+    let at: Vec<[f64; 2]> = points.iter().map(|p| frame.point(p[0], p[1])).collect();
+    match (kind.stroke(), at.as_slice()) {
+        (Some(stroke), [[x, y]]) => svg.line([x - DASH, *y], [x + DASH, *y], stroke),
+        (Some(stroke), at) => svg.polyline(at, stroke),
+        (None, _) => {
+            for (p, at) in points.iter().zip(at) {
+                // If the standard error is as large as the value, the error bar extends below the
+                // frame.
+                let ends = [(p[1] - p[2]).max(frame.y.min), p[1] + p[2]];
+                let ends = ends.map(|y| frame.point(p[0], y)[1]);
+                point(svg, kind, at, ends);
+            }
+        }
+    }
+}
+
+/// Draws a point with its error bar.
+fn point(svg: &mut Svg, kind: CurveKind, at: [f64; 2], ends: [f64; 2]) {
+    bar(svg, at, ends);
+    if kind == CurveKind::OtherMeasured {
+        svg.circle(at, OPEN, POINT);
+        svg.circle(at, HOLE, PAPER);
+    } else {
+        svg.circle(at, RADIUS, POINT);
+    }
 }
 
 /// An error bar.
@@ -278,6 +339,7 @@ fn bar(svg: &mut Svg, [x, _]: [f64; 2], [low, high]: [f64; 2]) {
     }
 }
 
+/// Returns the CSV of the panels, with a row for each point.
 fn numbers(curves: &Curves) -> Result<String, Error> {
     let header = ["panel", "axis", "curve", "x", &curves.y.heading(), "error"].map(str::to_owned);
     let rows = curves.panels.iter().flat_map(|panel| {

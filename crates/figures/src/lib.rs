@@ -13,6 +13,7 @@
 //! * [`section()`]: the cut of `strip()` alone.
 //! * [`ellipses()`]: a spectrum, over which covariances are drawn as ellipses.
 //! * [`curves()`]: curves and measured points, in adjacent panels.
+//! * [`chart()`]: values with names beside each other.
 //! * [`stacked()`]: several figures on one page.
 //! * [`photograph()`]: the picture that a camera takes.
 //!
@@ -45,6 +46,7 @@
 
 mod axis;
 mod bar;
+mod chart;
 mod color;
 mod comparison;
 mod curves;
@@ -68,6 +70,7 @@ mod text;
 mod world;
 
 pub use axis::{Axis, AxisQuantity};
+pub use chart::{Chart, chart};
 pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};

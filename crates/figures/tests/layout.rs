@@ -5,8 +5,8 @@
 use crate::common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Scale, Style, curves, section,
-    stacked,
+    AxisQuantity, Chart, Curve, CurveKind, CurvePanel, Curves, Figure, Scale, Style, chart, curves,
+    section, stacked,
 };
 use resvg::usvg;
 
@@ -42,6 +42,9 @@ fn gallery() -> Vec<Figure> {
     for count in [1, 3, 5] {
         figures.push(curves(&lines(count), &Style::default()).unwrap());
     }
+    for count in [1, 2, 8, 14] {
+        figures.push(chart(&named(count), &Style::default()).unwrap());
+    }
     let [one, two] = [1, 3].map(|i| curves(&lines(i), &Style::default()).unwrap());
     figures.push(stacked(&[grid(4, values.view()), one, two]));
     figures
@@ -63,6 +66,8 @@ fn lines(count: usize) -> Curves {
                 curve(CurveKind::Theory, "corrected", scale),
                 curve(CurveKind::Rival, "as printed", 0.5 * scale),
                 curve(CurveKind::Measured, "measured", scale),
+                curve(CurveKind::OtherTheory, "corrected, elsewhere", 0.7 * scale),
+                curve(CurveKind::OtherMeasured, "measured elsewhere", 0.8 * scale),
             ],
             is_log: [false, i == 2],
         }
@@ -73,6 +78,64 @@ fn lines(count: usize) -> Curves {
         y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: (0..count).map(panel).collect(),
     }
+}
+
+/// Returns a chart of several names, one of which is long.
+fn named(count: usize) -> Chart {
+    let curve = |kind, name: &str, aside: f64, error: f64| {
+        let points = (0..count).map(|i| [i as f64 + aside, 1.0 / (i + 1) as f64, error]);
+        Curve::new(kind, name, points.collect())
+    };
+    let mut names = vec!["padded xy+uv, 4096".to_owned(); count];
+    names[0] += " with far more to its name than there is room for";
+    Chart {
+        title: "A chart with a title that is rather long for only one name".to_owned(),
+        note: "a note".to_owned(),
+        y: AxisQuantity::new("*N* Var/σ^{2}", ""),
+        names,
+        curves: vec![
+            curve(CurveKind::Rival, "independent", 0.0, 0.0),
+            curve(CurveKind::Theory, "predicted", -0.15, 0.0),
+            curve(CurveKind::Measured, "found", -0.15, 0.1),
+            curve(CurveKind::OtherTheory, "predicted, not shifted", 0.15, 0.0),
+            curve(CurveKind::OtherMeasured, "found, not shifted", 0.15, 2.0),
+        ],
+    }
+}
+
+/// A line through one point is a stroke, each value of a theory in a chart has a stroke of its own,
+/// and a row of the CSV has the name of its value.
+#[test]
+fn single_values_are_visible() {
+    let drawn = chart(&named(3), &Style::default()).unwrap();
+    let strokes = |color: &str| drawn.svg.matches(&format!("stroke=\"{color}\"")).count();
+    assert_eq!(
+        [strokes("#1f6fb4"), strokes("#3b8f5a")],
+        [4, 4],
+        "one in the key"
+    );
+    assert_eq!(strokes("#c8502e"), 2);
+    assert_eq!(
+        drawn.svg.matches("<circle").count(),
+        12,
+        "open points are two circles"
+    ); // 3 + 2 · 3, and the key
+    assert_eq!(drawn.csv.lines().count(), 16);
+    assert!(
+        drawn
+            .csv
+            .lines()
+            .nth(11)
+            .unwrap()
+            .contains("4096\",\"predicted, not shifted\",0.5,"),
+        "{}",
+        drawn.csv
+    );
+    let mut one = lines(1);
+    one.panels[0].curves.truncate(1);
+    one.panels[0].curves[0].points.truncate(1);
+    let drawn = curves(&one, &Style::default()).unwrap();
+    assert_eq!(drawn.svg.matches("stroke=\"#1f6fb4\"").count(), 2);
 }
 
 /// Returns the texts of a figure with the boxes of their lines, and the size of the canvas.
@@ -126,7 +189,8 @@ fn strips_plates_and_curves_are_no_wider_than_two_columns() {
     let strips = (1..=8).map(|count| path(&scene(count), values.view()));
     let plates = (1..=8).map(|count| grid(count, values.view()));
     let panels = (1..=5).map(|count| curves(&lines(count), &Style::default()).unwrap());
-    for figure in strips.chain(plates).chain(panels) {
+    let charts = [1, 8].map(|count| chart(&named(count), &Style::default()).unwrap());
+    for figure in strips.chain(plates).chain(panels).chain(charts) {
         let (_, size) = written(&figure);
         assert!(size.width() <= 672.0, "{} of 96 to the inch", size.width());
     }

@@ -70,6 +70,12 @@ impl Job {
         &self.scene
     }
 
+    /// Returns the method of measurement.
+    #[must_use]
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
     /// Returns which theory applies to each plane.
     #[must_use]
     pub fn theories(&self) -> &[Applicability] {

@@ -27,6 +27,7 @@ mod measure;
 pub mod method;
 pub mod moments;
 pub mod photons;
+pub mod planes;
 pub mod point_file;
 mod predict;
 pub mod ray_file;
@@ -36,6 +37,7 @@ mod summary;
 pub mod table;
 pub mod target;
 pub mod variance;
+pub mod variance_table;
 mod workers;
 
 pub use case::MeasuredScene;

@@ -2,7 +2,7 @@
 
 use etendue_rays::NpyHeader;
 use etendue_scene::read_file;
-use etendue_store::Failure;
+use etendue_store::{ArgumentStyle, Failure};
 use etendue_variance::{MAX_POINTS, PointFile, WindowPoint};
 use std::path::Path;
 
@@ -10,9 +10,10 @@ use std::path::Path;
 const MAX_BYTES: u64 = (MAX_POINTS * size_of::<WindowPoint>() + (1 << 16)) as u64;
 
 /// Reads an array f64 [N, 4] in C order.
-pub fn read(path: &Path) -> Result<PointFile, Failure> {
+pub fn read(path: &Path, arguments: ArgumentStyle) -> Result<PointFile, Failure> {
     let refused = |fault: &dyn std::fmt::Display| {
-        Failure::bad_input(format!("--samplers {}: {fault}", path.display()))
+        let argument = arguments.with("samplers", path.display());
+        Failure::bad_input(format!("{argument}: {fault}"))
     };
     let bytes = read_file(path, MAX_BYTES).map_err(|e| refused(&e))?;
     let array = array(&bytes).map_err(|found| {

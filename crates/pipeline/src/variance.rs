@@ -1,16 +1,16 @@
 //! Predicts and finds the Monte Carlo error of the mean radiance over a window.
 
 use crate::field::check_grid;
-use crate::method;
 use crate::reporter::{Reporter, Work};
+use crate::{method, planes};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
-use etendue_store::{Failure, Method, VERSION};
+use etendue_store::{ArgumentStyle, Failure, Method, VERSION};
 use etendue_variance::{
-    AXES, AxisSetPower, MeasuredPower, PowerEstimate, Sampler, SamplerReport, VarianceError,
-    WindowMoments, WindowRadiance, WindowStudy, axis_sets, dyadic_power, field_options,
-    with_box_window,
+    AXES, AxisSetPower, DEFAULT_FREQUENCIES, DEFAULT_SETS, MeasuredPower, PointCounts,
+    PowerEstimate, Sampler, SamplerReport, VarianceError, WindowMoments, WindowRadiance,
+    WindowStudy, axis_sets, dyadic_power, field_options, with_box_window,
 };
 
 /// A request for the variances of samplers at a plane.
@@ -32,15 +32,47 @@ pub struct VarianceOptions {
     /// The samplers, with the points of files.
     pub samplers: Vec<Sampler>,
     /// The numbers of points.
-    pub counts: Vec<usize>,
+    pub counts: PointCounts,
     /// Number of sets of points with which each variance is found.
     pub shifts: u32,
     /// Whether variances of sets without shifts are predicted and found too.
     pub unshifted: bool,
+    /// The style in which messages name arguments.
+    pub arguments: ArgumentStyle,
 }
 
-#[derive(Debug)]
+impl VarianceOptions {
+    /// Returns the default options: all samplers that are not files.
+    #[must_use]
+    pub fn new(method: Method, arguments: ArgumentStyle) -> Self {
+        let names = Sampler::NAMES.split(", ");
+        Self {
+            method,
+            frequencies: DEFAULT_FREQUENCIES,
+            samplers: names.filter_map(Sampler::named).flatten().collect(),
+            counts: PointCounts::default(),
+            shifts: DEFAULT_SETS,
+            unshifted: false,
+            arguments,
+        }
+    }
+
+    /// Fails if no sampler has sets of the numbers of points.
+    fn check(&self) -> Result<(), Failure> {
+        let counts = self.counts.all();
+        if self.samplers.iter().any(|s| !s.counts(counts).is_empty()) {
+            return Ok(());
+        }
+        let shown: Vec<String> = counts.iter().map(usize::to_string).collect();
+        Err(Failure::bad_input(format!(
+            "{}: no sampler has sets of so many points; allowed: n^4 for jitter, 2^k for sobol, n^2 for padded, any number for independent and lhs",
+            self.arguments.with("counts", shown.join(","))
+        )))
+    }
+}
+
 /// The predicted and found variances at a plane.
+#[derive(Debug)]
 pub struct PlaneVariance {
     /// Name of the plane.
     pub plane: String,
@@ -59,8 +91,14 @@ pub struct PlaneVariance {
 }
 
 impl VarianceStudy {
-    /// Checks that the plane number `plane` of a scene can be studied.
-    pub fn new(scene: &Scene, plane: usize, options: VarianceOptions) -> Result<Self, Failure> {
+    /// Checks that a plane of a scene can be studied. If no name is given, it is the only plane.
+    pub fn new(
+        scene: &Scene,
+        plane: Option<&str>,
+        options: VarianceOptions,
+    ) -> Result<Self, Failure> {
+        options.check()?;
+        let plane = planes::chosen(scene, plane, options.arguments)?;
         let scene = with_box_window(scene, plane, options.frequencies);
         let radiance = WindowRadiance::new(&scene).map_err(failure)?;
         Ok(Self {
@@ -80,7 +118,9 @@ impl VarianceStudy {
     pub fn check_memory(&self) -> Result<(), Failure> {
         let options = field_options();
         let grid = options.grid(&self.scene.planes[0]);
-        let name = format!("--frequencies {}: the grid", self.options.frequencies);
+        let arguments = self.options.arguments;
+        let argument = arguments.with("frequencies", self.options.frequencies);
+        let name = format!("{argument}: the grid");
         // Grids of groups are kept, and then their spectra are.
         check_grid(&name, &grid, &options)
     }
@@ -123,7 +163,8 @@ impl VarianceStudy {
             seed: scene.run.seed,
         };
         let samplers = options.samplers.iter();
-        let reports = samplers.map(|sampler| study.sampler(sampler, &options.counts, &progress));
+        let reports =
+            samplers.map(|sampler| study.sampler(sampler, options.counts.all(), &progress));
         Ok(PlaneVariance {
             plane: scene.planes[0].name.clone(),
             half_widths: self.half_widths(),
@@ -162,8 +203,16 @@ impl VarianceStudy {
             Sampler::Independent | Sampler::File(_) => 1,
             _ => 1 + usize::from(*unshifted),
         };
-        let sets = samplers.iter().map(|s| s.counts(counts).len() * curves(s));
+        let sets = samplers
+            .iter()
+            .map(|s| s.counts(counts.all()).len() * curves(s));
         sets.sum::<usize>() * *shifts as usize
+    }
+
+    /// Returns what is measured, predicted and found.
+    #[must_use]
+    pub fn options(&self) -> &VarianceOptions {
+        &self.options
     }
 
     /// Returns the content of the index, without its list of files. `scene` is the scene before its

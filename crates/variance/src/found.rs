@@ -6,6 +6,12 @@ use crate::sampler::Sampler;
 use etendue_spectrum::Uncertain;
 use rayon::prelude::*;
 
+/// The allowed numbers of sets of points with which a variance is found.
+pub const SETS: std::ops::RangeInclusive<u32> = 10..=1_000_000;
+
+/// The default number of sets of points.
+pub const DEFAULT_SETS: u32 = 200;
+
 /// A family of sets of points, which gives each set its own random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SetFamily {

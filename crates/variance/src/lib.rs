@@ -16,6 +16,7 @@ mod error;
 mod expected_power;
 mod found;
 mod measured_power;
+mod point_counts;
 mod points;
 mod power_estimate;
 mod power_law;
@@ -30,8 +31,11 @@ mod tests;
 pub use dyadic_power::dyadic_power;
 pub use error::VarianceError;
 pub use expected_power::ExpectedPower;
-pub use found::{SetFamily, variance_of};
-pub use measured_power::{FREQUENCIES, MeasuredPower, field_options, with_box_window};
+pub use found::{DEFAULT_SETS, SETS, SetFamily, variance_of};
+pub use measured_power::{
+    DEFAULT_FREQUENCIES, FREQUENCIES, MeasuredPower, field_options, with_box_window,
+};
+pub use point_counts::{MAX_COUNTS, PointCounts};
 pub use points::{points, shift};
 pub use power_estimate::PowerEstimate;
 pub use power_law::fitted_slope;

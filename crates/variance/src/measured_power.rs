@@ -14,6 +14,9 @@ const CELLS_PER_FREQUENCY: usize = 4;
 /// The range of the largest frequency along each axis.
 pub const FREQUENCIES: std::ops::RangeInclusive<usize> = 2..=16;
 
+/// The default largest frequency along each axis.
+pub const DEFAULT_FREQUENCIES: usize = 8;
+
 /// The power |f_m|² at the frequencies |m_k| ≤ M along each axis, (x, u, y, v).
 ///
 /// f_m = ∫ f(z) e^(−2πi m·z) dz over the window coordinates z in \[0, 1\]⁴, so the unit of the power

@@ -98,6 +98,24 @@ impl PointFile {
 }
 
 impl Sampler {
+    /// The names that [`named`](Self::named) knows, for messages.
+    pub const NAMES: &str = "independent, jitter, lhs, sobol, padded";
+
+    /// Returns the samplers with a name: one, or both padded samplers. Returns `None` if no sampler
+    /// has this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Vec<Self>> {
+        let padded = [AxisPairs::PositionWithSlope, AxisPairs::PositionAndSlope];
+        Some(match name {
+            "independent" => vec![Self::Independent],
+            "jitter" => vec![Self::Jitter],
+            "lhs" => vec![Self::LatinHypercube],
+            "sobol" => vec![Self::Sobol],
+            "padded" => padded.map(Self::Padded).to_vec(),
+            _ => return None,
+        })
+    }
+
     /// Checks whether the sampler has sets of `count` points.
     #[must_use]
     pub fn allows(&self, count: usize) -> bool {
@@ -175,6 +193,17 @@ mod tests {
         assert_eq!(padded.len(), 16);
         assert_eq!(Sampler::LatinHypercube.counts(&all), all);
         assert!(!Sampler::Independent.allows(1) && !Sampler::Independent.allows(MAX_POINTS + 1));
+    }
+
+    #[test]
+    fn samplers_have_names() {
+        let names = Sampler::NAMES.split(", ");
+        let all: Vec<Sampler> = names
+            .flat_map(|name| Sampler::named(name).unwrap())
+            .collect();
+        assert_eq!(all.len(), 6);
+        assert_eq!(all[3], Sampler::Sobol);
+        assert_eq!(Sampler::named("halton"), None);
     }
 
     #[test]

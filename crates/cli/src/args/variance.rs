@@ -2,7 +2,9 @@
 
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;
-use etendue_variance::{AxisPairs, FREQUENCIES, MAX_POINTS, Sampler};
+use etendue_variance::{
+    DEFAULT_FREQUENCIES, DEFAULT_SETS, FREQUENCIES, PointCounts, SETS, Sampler,
+};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -50,7 +52,7 @@ pub(crate) struct VarianceArgs {
     pub(crate) samplers: Vec<SamplerArg>,
 
     /// Numbers of points: A..B stands for A, 4A, 16A, ... up to B, and A,B,C for a list
-    #[arg(long, value_name = "A..B", value_parser = counts, default_value = "4..4096")]
+    #[arg(long, value_name = "A..B", default_value = "4..4096")]
     pub(crate) counts: PointCounts,
 
     /// Also predict and find the errors of sets that are not shifted, for jitter, lhs, sobol and
@@ -59,11 +61,11 @@ pub(crate) struct VarianceArgs {
     pub(crate) unshifted: bool,
 
     /// Number of sets of points with which errors are found
-    #[arg(long, value_name = "R", default_value_t = 200, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    #[arg(long, value_name = "R", default_value_t = DEFAULT_SETS, value_parser = clap::value_parser!(u32).range(i64::from(*SETS.start())..=i64::from(*SETS.end())))]
     pub(crate) shifts: u32,
 
     /// Largest measured frequency M along each axis, in cycles per window
-    #[arg(long, value_name = "M", default_value_t = 8, value_parser = frequencies)]
+    #[arg(long, value_name = "M", default_value_t = DEFAULT_FREQUENCIES, value_parser = frequencies)]
     pub(crate) frequencies: usize,
 
     #[command(flatten)]
@@ -85,61 +87,19 @@ pub(crate) enum SamplerArg {
     File(PathBuf),
 }
 
-/// Numbers of points, ascending.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct PointCounts(pub(crate) Vec<usize>);
-
 fn sampler(text: &str) -> Result<SamplerArg, String> {
-    let named = |sampler| Ok(SamplerArg::Named(vec![sampler]));
-    match text.trim() {
-        "independent" => named(Sampler::Independent),
-        "jitter" => named(Sampler::Jitter),
-        "lhs" => named(Sampler::LatinHypercube),
-        "sobol" => named(Sampler::Sobol),
-        "padded" => Ok(SamplerArg::Named(
-            [AxisPairs::PositionWithSlope, AxisPairs::PositionAndSlope]
-                .map(Sampler::Padded)
-                .to_vec(),
-        )),
-        file if file.to_ascii_lowercase().ends_with(".npy") => Ok(SamplerArg::File(file.into())),
-        _ => Err(
-            "no such sampler; allowed: independent, jitter, lhs, sobol, padded, and files that end with .npy"
-                .to_owned(),
-        ),
+    let text = text.trim();
+    if let Some(samplers) = Sampler::named(text) {
+        return Ok(SamplerArg::Named(samplers));
     }
-}
-
-/// Parses numbers of points.
-fn counts(text: &str) -> Result<PointCounts, String> {
-    let allowed = || {
-        format!(
-            "must be A..B, such as 4..4096, or a list, such as 16,81,256, of numbers from 2 to {MAX_POINTS}"
-        )
-    };
-    let number = |text: &str| {
-        let number = text.trim().parse::<usize>().ok();
-        number
-            .filter(|n| (2..=MAX_POINTS).contains(n))
-            .ok_or_else(allowed)
-    };
-    let mut all = if let Some((first, last)) = text.split_once("..") {
-        let [first, last] = [number(first)?, number(last)?];
-        let times_four = |n: &usize| n.checked_mul(4);
-        let all = std::iter::successors(Some(first), times_four);
-        all.take_while(|n| *n <= last).collect::<Vec<_>>()
-    } else {
-        text.split(',').map(number).collect::<Result<_, _>>()?
-    };
-    all.sort_unstable();
-    all.dedup();
-    if all.is_empty() || all.len() > MAX_COUNTS {
-        return Err(allowed());
+    if text.to_ascii_lowercase().ends_with(".npy") {
+        return Ok(SamplerArg::File(text.into()));
     }
-    Ok(PointCounts(all))
+    Err(format!(
+        "no such sampler; allowed: {}, and files that end with .npy",
+        Sampler::NAMES
+    ))
 }
-
-/// The largest number of numbers of points.
-const MAX_COUNTS: usize = 64;
 
 fn frequencies(text: &str) -> Result<usize, String> {
     let [first, last] = [FREQUENCIES.start(), FREQUENCIES.end()];
@@ -152,17 +112,6 @@ fn frequencies(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_of_points_are_ranges_or_lists() {
-        let of = |text| counts(text).map(|all| all.0);
-        assert_eq!(of("4..4096"), Ok(vec![4, 16, 64, 256, 1024, 4096]));
-        assert_eq!(of("16..100"), Ok(vec![16, 64]));
-        assert_eq!(of("81, 16,16"), Ok(vec![16, 81]));
-        for text in ["1..16", "16..4", "4..65537", "4..", "", "4,x", "-4"] {
-            assert!(of(text).unwrap_err().contains("from 2 to 65536"), "{text}");
-        }
-    }
 
     #[test]
     fn samplers_have_names_or_are_files() {

@@ -1,9 +1,8 @@
-//! The tables that `etendue variance` prints.
+//! The tables of a study of variance, for a terminal.
 
-use crate::args::VarianceArgs;
+use crate::table::{aligned, grouped};
+use crate::variance::{PlaneVariance, VarianceOptions};
 use etendue_field::{brief, fixed, percent, uncertain};
-use etendue_pipeline::table::{aligned, grouped};
-use etendue_pipeline::variance::PlaneVariance;
 use etendue_spectrum::Uncertain;
 use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 
@@ -15,12 +14,13 @@ const SETS_PER_ROW: usize = 3;
 const MAX_DIFFERENCE: f64 = 4.0;
 
 /// Returns all tables.
-pub(super) fn text(found: &PlaneVariance, args: &VarianceArgs) -> String {
-    let mut lines = head(found, args);
+#[must_use]
+pub fn text(found: &PlaneVariance, options: &VarianceOptions) -> String {
+    let mut lines = head(found, options);
     lines.push(String::new());
     lines.push(format!(
         "power by nonzero axes, as a share of the variance (frequencies up to {}):",
-        args.frequencies
+        options.frequencies
     ));
     lines.extend(sets(&found.axis_sets));
     for sampler in &found.samplers {
@@ -30,7 +30,7 @@ pub(super) fn text(found: &PlaneVariance, args: &VarianceArgs) -> String {
     lines.join("\n")
 }
 
-fn head(found: &PlaneVariance, args: &VarianceArgs) -> Vec<String> {
+fn head(found: &PlaneVariance, options: &VarianceOptions) -> Vec<String> {
     let [x, u, y, v] = found.half_widths.map(brief);
     let moments = &found.moments;
     let shown = |number: Uncertain| uncertain(number.value, number.error);
@@ -38,7 +38,7 @@ fn head(found: &PlaneVariance, args: &VarianceArgs) -> Vec<String> {
         format!(
             "{}: Box windows |x| < {x}, |u| < {u}, |y| < {y}, |v| < {v}; found with {} sets of points",
             found.plane,
-            grouped(args.shifts.into())
+            grouped(options.shifts.into())
         ),
         format!(
             "mean: {} by photons, {} by rays",
@@ -49,7 +49,7 @@ fn head(found: &PlaneVariance, args: &VarianceArgs) -> Vec<String> {
             "variance over the window: {}, of which {} at frequencies up to {}",
             shown(moments.variance),
             percent(found.inside, 1),
-            args.frequencies
+            options.frequencies
         ),
     ];
     if moments.noise.value > 0.0 {
