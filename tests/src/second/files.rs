@@ -92,14 +92,16 @@ fn masked(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 
         };
         let across = (at[0] / width + 0.5) * picture.width as f64;
         let down = (0.5 - at[1] / height) * picture.height as f64;
-        let is_inside = (0.0..picture.width as f64).contains(&across)
-            && (0.0..picture.height as f64).contains(&down);
-        if !is_inside {
-            return 1.0;
+        let is_opaque = |(i, level): (usize, &f64)| {
+            let [column, row] = [i % picture.width, i / picture.width].map(|k| k as f64);
+            let is_dark = (*level < 0.5) != (fault == "bright pixels opaque");
+            is_dark && (column..column + 1.0).contains(&across) && (row..row + 1.0).contains(&down)
+        };
+        if picture.values.iter().enumerate().any(is_opaque) {
+            0.0
+        } else {
+            1.0
         }
-        let level = picture.values[down as usize * picture.width + across as usize];
-        let is_dark = (level < 0.5) != (fault == "bright pixels opaque");
-        if is_dark { 0.0 } else { 1.0 }
     })
 }
 
