@@ -130,7 +130,7 @@ fn sampler(number: usize, item: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
     let path = path.filter(is_file).ok_or_else(|| {
         let allowed = format!(
             "{}, an array of float64 [N, 4], or a path of an NPY file that ends with .npy",
-            Sampler::NAMES
+            Sampler::NAMES.join(", ")
         );
         match array_kind(item) {
             Ok(kind) => PyValueError::new_err(format!("{name} is {kind}; allowed: {allowed}")),

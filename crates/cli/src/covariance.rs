@@ -4,7 +4,8 @@
 mod table;
 
 use crate::args::CovarianceArgs;
-use crate::print::{deliver, say_replaced};
+use crate::finish::finish;
+use crate::print::deliver;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::covariance::CovarianceStudy;
@@ -12,7 +13,6 @@ use etendue_pipeline::{load, planes};
 use etendue_report::covariance::drawn;
 use etendue_report::pictures;
 use etendue_scene::Scene;
-use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, COVARIANCE, Failure, Plan, Results};
 
 /// The files written for each plane: a picture in two formats, and the data of this picture.
@@ -45,15 +45,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     if !args.work.quiet {
         deliver(&table::text(&found.reports))?;
     }
-    let mut index = study.index(&found);
-    let finished = results.finish(|files| {
-        index["files"] = serde_json::json!(files);
-        json(&index)
-    })?;
-    say_replaced(&finished, args.work.quiet);
-    if !args.work.quiet {
-        deliver(&format!("results in {}", finished.folder.display()))?;
-    }
+    finish(results, study.index(&found), args.work.quiet)?;
     Ok(0)
 }
 

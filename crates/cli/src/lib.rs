@@ -14,6 +14,7 @@ mod diff;
 mod exit;
 mod export;
 mod figure;
+mod finish;
 mod import;
 mod interrupt;
 mod measure;

@@ -12,6 +12,7 @@ use std::path::Path;
 
 /// The largest size of a ray file, in bytes.
 const MOST_BYTES: u64 = 1 << 34;
+
 /// Runs `etendue rays`; returns the exit code.
 pub(crate) fn rays(args: &RaysArgs) -> Result<u8, Failure> {
     let format = args.out.as_deref().map(format_of).transpose()?;

@@ -1,13 +1,13 @@
 //! Implements `etendue variance`, which predicts the Monte Carlo error of the mean over a window.
 
 use crate::args::{SamplerArg, VarianceArgs};
-use crate::print::{deliver, say_replaced};
+use crate::finish::finish;
+use crate::print::deliver;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
 use etendue_pipeline::{load, method, point_file, variance_table};
 use etendue_report::{pictures, variance};
-use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE};
 use etendue_variance::Sampler;
 use std::path::PathBuf;
@@ -53,15 +53,7 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     }
     let figure = variance::drawn(&scene.name, &found)?;
     pictures::write(&mut results, "variance", &figure)?;
-    let mut index = study.index(&scene, &found);
-    let finished = results.finish(|files| {
-        index["files"] = serde_json::json!(files);
-        json(&index)
-    })?;
-    say_replaced(&finished, args.work.quiet);
-    if !args.work.quiet {
-        deliver(&format!("results in {}", finished.folder.display()))?;
-    }
+    finish(results, study.index(&scene, &found), args.work.quiet)?;
     Ok(if found.is_undecided() { UNDECIDED } else { 0 })
 }
 

@@ -28,17 +28,17 @@ pub struct Chart {
 
 /// Height of the frame.
 const HEIGHT: f64 = 200.0;
-/// Width that is reserved for a name, and the largest width of the frame.
-const NAME: f64 = 96.0;
+/// Width that is reserved for a name.
+const NAME_WIDTH: f64 = 96.0;
 const RIGHT: f64 = 20.0;
 /// Distance between the names and the lower edge of the page.
 const BELOW: f64 = 14.0;
 /// Distance between names.
 const BETWEEN: f64 = 6.0;
 /// Width of tick texts that fits beside the frame.
-const USUAL: f64 = 28.0;
+const TICK_WIDTH: f64 = 28.0;
 /// Minimum number of names that give the width of the frame, so that the title fits.
-const LEAST: usize = 4;
+const MIN_NAMES: usize = 4;
 
 /// Draws the chart. The CSV has a row for each value.
 ///
@@ -54,8 +54,9 @@ pub fn chart(chart: &Chart, style: &Style) -> Result<Figure, Error> {
     let x = Axis::edges("", "", [-0.5, chart.names.len() as f64 - 0.5]);
     let ticks = upright_ticks(&y, HEIGHT).into_iter();
     let widest = ticks.map(|tick| width(&tick.text, TICK_TEXT));
-    let left = LEFT + (widest.fold(0.0, f64::max) - USUAL).max(0.0);
-    let inner = (NAME * chart.names.len().max(LEAST) as f64).min(style.page() - left - RIGHT);
+    let left = LEFT + (widest.fold(0.0, f64::max) - TICK_WIDTH).max(0.0);
+    let inner =
+        (NAME_WIDTH * chart.names.len().max(MIN_NAMES) as f64).min(style.page() - left - RIGHT);
     let mut svg = Svg::default();
     let top = style.title(&mut svg, left, inner, &chart.title, &chart.note);
     let top = key(&mut svg, chart.curves.iter(), [left, top + 16.0], inner) + 20.0;

@@ -38,7 +38,8 @@ impl MeshParts {
         let vertices = &self.vertices;
         let has_area = |corners: &[u32; 3]| across(vertices, *corners) != DVec3::ZERO;
         let kept: Vec<bool> = self.corners.iter().map(has_area).collect();
-        self.corners.retain(has_area);
+        let mut is_kept = kept.iter();
+        self.corners.retain(|_| is_kept.next() == Some(&true));
         kept
     }
 

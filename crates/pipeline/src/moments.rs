@@ -1,5 +1,6 @@
 //! The 4D grid on which covariances of spectra are measured.
 
+use crate::field::check_grid;
 use etendue_field::VirtualPlane;
 use etendue_spectrum::field::FieldOptions;
 use etendue_store::{Failure, machine};
@@ -30,18 +31,9 @@ pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
 
 /// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
 pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
-    let memory = machine::available_memory();
     for plane in planes {
-        let grid = options().grid(plane);
-        let bytes = options().bytes(&grid, rayon::current_num_threads());
-        if bytes > memory {
-            let [nx, ny, nu, nv] = grid.cells;
-            let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
-            let name = &plane.name;
-            return Err(Failure::cannot_run(format!(
-                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; {memory:.1} GB are available"
-            )));
-        }
+        let name = format!("covariance: the grid of {}", plane.name);
+        check_grid(&name, &options().grid(plane), &options())?;
     }
     Ok(())
 }

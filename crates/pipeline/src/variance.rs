@@ -45,11 +45,14 @@ impl VarianceOptions {
     /// Returns the default options: all samplers that are not files.
     #[must_use]
     pub fn new(method: Method, arguments: ArgumentStyle) -> Self {
-        let names = Sampler::NAMES.split(", ");
         Self {
             method,
             frequencies: DEFAULT_FREQUENCIES,
-            samplers: names.filter_map(Sampler::named).flatten().collect(),
+            samplers: Sampler::NAMES
+                .into_iter()
+                .filter_map(Sampler::named)
+                .flatten()
+                .collect(),
             counts: PointCounts::default(),
             shifts: DEFAULT_SETS,
             unshifted: false,

@@ -98,8 +98,8 @@ impl PointFile {
 }
 
 impl Sampler {
-    /// The names that [`named`](Self::named) knows, for messages.
-    pub const NAMES: &str = "independent, jitter, lhs, sobol, padded";
+    /// The names that [`named`](Self::named) knows.
+    pub const NAMES: [&str; 5] = ["independent", "jitter", "lhs", "sobol", "padded"];
 
     /// Returns the samplers with a name: one, or both padded samplers. Returns `None` if no sampler
     /// has this name.
@@ -197,8 +197,8 @@ mod tests {
 
     #[test]
     fn samplers_have_names() {
-        let names = Sampler::NAMES.split(", ");
-        let all: Vec<Sampler> = names
+        let all: Vec<Sampler> = Sampler::NAMES
+            .into_iter()
             .flat_map(|name| Sampler::named(name).unwrap())
             .collect();
         assert_eq!(all.len(), 6);

@@ -97,9 +97,8 @@ pub struct Plastic {
 }
 
 /// A mixture of a metal, a diffuse base below a dielectric interface, and such an interface that
-/// transmits light (Burley 2012, *Physically
-/// Based Shading at Disney*). GGX microfacets have α = roughness² / q along u and roughness² q along
-/// v, with q = √(1 − 0.9 anisotropic).
+/// transmits light (Burley 2012, *Physically Based Shading at Disney*). GGX microfacets have
+/// α = roughness² / q along u and roughness² q along v, with q = √(1 − 0.9 anisotropic).
 #[derive(Clone, Debug)]
 pub struct Principled {
     /// Albedo of the base, and reflectance of the metal at normal incidence.

@@ -97,7 +97,7 @@ fn sampler(text: &str) -> Result<SamplerArg, String> {
     }
     Err(format!(
         "no such sampler; allowed: {}, and files that end with .npy",
-        Sampler::NAMES
+        Sampler::NAMES.join(", ")
     ))
 }
 

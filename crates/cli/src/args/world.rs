@@ -214,8 +214,7 @@ pub(crate) struct RenderArgs {
     pub(crate) samples: u32,
 
     /// Shading samples in the whole picture, at most 4 per pixel; not used by
-    /// `--method reference`
-    /// [default: one for each 20 pixels]
+    /// `--method reference` [default: one for each 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
 

@@ -74,23 +74,8 @@ fn materials() -> Vec<(&'static str, Material)> {
                 exponent: constant(20.0),
             },
         ),
-        (
-            "principled",
-            Material::Principled(Box::new(Principled {
-                color: constant(0.6),
-                metallic: constant(0.3),
-                transmission: constant(0.0),
-                roughness: constant(0.5),
-                anisotropic: constant(0.8),
-                index: 1.5,
-                tint: constant(0.5),
-                flatness: constant(0.3),
-                sheen: constant(0.2),
-                clearcoat: constant(0.8),
-                gloss: constant(0.3),
-            })),
-        ),
-        ("transmitting principled", transmitting_principled()),
+        ("principled", principled(0.3, 0.0)),
+        ("transmitting principled", principled(0.1, 0.7)),
         (
             "two sides",
             Material::TwoSided(Box::new([diffuse(), metal(rough(Ggx, [0.3, 0.3]))])),
@@ -121,11 +106,11 @@ fn materials() -> Vec<(&'static str, Material)> {
     ]
 }
 
-fn transmitting_principled() -> Material {
+fn principled(metallic: f64, transmission: f64) -> Material {
     Material::Principled(Box::new(Principled {
         color: constant(0.6),
-        metallic: constant(0.1),
-        transmission: constant(0.7),
+        metallic: constant(metallic),
+        transmission: constant(transmission),
         roughness: constant(0.5),
         anisotropic: constant(0.8),
         index: 1.5,

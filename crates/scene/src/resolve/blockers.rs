@@ -257,8 +257,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Limits the product of the numbers of shapes of all layers, because a prediction sums over
-    /// all combinations of shapes.
+    /// Limits the sum and the product of the numbers of shapes of all layers. A prediction sums
+    /// over all combinations of shapes.
     pub(super) fn layers(&mut self, light: &LightFile, layers: &[BlockerLayer]) {
         let of_shape = |shape: &Shape| match shape {
             Shape::Disc(_) => STRIPS,
