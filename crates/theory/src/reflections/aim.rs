@@ -1,14 +1,14 @@
 //! The two coordinates by which the rays of a leg are aimed. They parametrise directions away from
 //! a point.
 //!
-//! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
-//! coordinates are a position on this surface or plane. Rays from all points of a wide surface can
-//! then be aimed at a narrow window. Otherwise the coordinates are angles, and the landing point is
-//! known only to first order.
+//! If a leg runs straight to the next scattering surface or to the plane, the coordinates can be a
+//! position on this surface or plane. Rays from all points of a wide surface can then be aimed at a
+//! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
+//! first order.
 
+use super::ReflectionSystem;
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
-use super::{PathSurface, ReflectionSystem};
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::model::Observed;
 use crate::rays::Plane;
@@ -35,17 +35,15 @@ pub(super) enum DirectionCoordinates {
     Plane(Frame),
 }
 
-/// Rays from a surface may be aimed at a plane only if the plane's distance is at least this number
-/// times the width of the surface. At such distances, no part of the surface lies beyond the plane.
-const MIN_DISTANCE: f64 = 2.0;
-
 impl DirectionCoordinates {
     /// Builds the coordinates of the leg with the given index; leg 0 begins at the light, and every
-    /// other leg at a scatterer.
+    /// other leg at a scatterer. Rays of the last leg are aimed at positions only if `at_plane` is
+    /// set.
     pub(super) fn new(
         view: &Observed<ReflectionSystem>,
         scatterers: &[ScatteringSurface],
         leg: usize,
+        at_plane: bool,
     ) -> Self {
         let Observed { system, plane } = view;
         let from = leg.checked_sub(1).map(|before| &scatterers[before]);
@@ -54,30 +52,39 @@ impl DirectionCoordinates {
         match (from, to) {
             (None, _) if matches!(system.light, Light::Beam { .. }) => Self::Angles,
             (_, Some(to)) if to.number == first => {
-                let patch = system.surfaces[first].patch;
-                let local = patch.frame.to_local(to.frame.origin);
-                let [t, b] = [to.frame.x, to.frame.y].map(|v| patch.frame.vector_to_local(v));
-                Self::Patch {
-                    patch,
-                    hit: [local.x, local.y],
-                    turn: [[t.x, b.x], [t.y, b.y]],
-                }
+                Self::on_patch(system.surfaces[first].patch, &to.frame)
             }
-            (Some(from), None) if first == system.visited => {
-                let surface = &system.surfaces[from.number];
-                Self::at_plane(plane, surface)
+            (Some(from), None) if at_plane && first == system.visited => {
+                Self::at_plane(plane, system.surfaces[from.number].hit)
             }
             _ => Self::Angles,
         }
     }
 
-    fn at_plane(plane: &Plane, surface: &PathSurface) -> Self {
-        let beyond = (plane.frame.origin - surface.hit).dot(plane.frame.d);
-        let is_across = plane.orientation == Orientation::Orthogonal;
-        if is_across && beyond > MIN_DISTANCE * surface.patch.aperture {
-            Self::Plane(plane.frame)
-        } else {
-            Self::Angles
+    /// Returns positions on a patch. `frame` has the axes at the central ray's hit.
+    fn on_patch(patch: Patch, frame: &Frame) -> Self {
+        let local = patch.frame.to_local(frame.origin);
+        let [t, b] = [frame.x, frame.y].map(|v| patch.frame.vector_to_local(v));
+        Self::Patch {
+            patch,
+            hit: [local.x, local.y],
+            turn: [[t.x, b.x], [t.y, b.y]],
+        }
+    }
+
+    /// Returns positions on the plane or on its surface, for rays from a surface that the central
+    /// ray hits at `hit`. Returns angles if the plane is on the surface itself.
+    fn at_plane(plane: &Plane, hit: DVec3) -> Self {
+        let beyond = (plane.frame.origin - hit).dot(plane.frame.d);
+        match plane.orientation {
+            Orientation::Orthogonal if beyond > 0.0 => Self::Plane(plane.frame),
+            Orientation::Orthogonal => Self::Angles,
+            _ if !plane.arriving => Self::Angles,
+            Orientation::Tangent => Self::Plane(plane.frame),
+            Orientation::LocalNormals | Orientation::Mirrored => match plane.patch {
+                Some(patch) => Self::on_patch(patch, &plane.frame),
+                None => Self::Plane(plane.frame),
+            },
         }
     }
 

@@ -38,8 +38,8 @@ pub(super) struct SampledDirection {
     pub(super) direction: DVec3,
     /// Probability per steradian.
     pub(super) density: f64,
-    /// The point of the next surface at which the direction is aimed; `None` if the direction is
-    /// not aimed at a point.
+    /// The point of the next surface whose coordinates the density depends on; `None` if the
+    /// coordinates are not a position on a surface.
     pub(super) target: Option<DVec3>,
 }
 
@@ -62,18 +62,18 @@ impl OutgoingDirections<'_> {
         let lobe = HeavyTailedGaussian::new(&lobe.0).filter(|_| is_aimed);
         let by_lobe = if lobe.is_some() { BY_LOBE } else { 0.0 };
         let local = Some((self.scatterer, self.normal));
-        let (direction, end, steradians, target) = match &lobe {
+        let (direction, end, steradians) = match &lobe {
             Some(lobe) if a < by_lobe => {
                 let at = lobe.draw([a / by_lobe, b]);
                 let (direction, _) = angles.direction(self.point, at, local)?;
                 let end = self.end(direction)?;
                 let (_, steradians) = self.aim.direction(self.point, end, local)?;
-                (direction, end, steradians, None)
+                (direction, end, steradians)
             }
             _ => {
                 let at = targets.draw([(a - by_lobe) / (1.0 - by_lobe), b]);
                 let (direction, steradians) = self.aim.direction(self.point, at, local)?;
-                (direction, at, steradians, self.aim.target(at))
+                (direction, at, steradians)
             }
         };
         let mut density = (1.0 - by_lobe) * targets.density(end) / steradians;
@@ -85,7 +85,7 @@ impl OutgoingDirections<'_> {
         Some(SampledDirection {
             direction,
             density,
-            target,
+            target: self.aim.target(end),
         })
     }
 

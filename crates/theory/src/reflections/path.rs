@@ -83,13 +83,19 @@ struct Going {
     radiance: f64,
     /// Coordinates of the ray in the chain.
     at: [f64; 4],
-    /// The point of the next surface at which the leg is aimed.
+    /// The point of the surface at the end of the leg at which the leg is aimed.
     target: Option<DVec3>,
 }
 
 impl<'a> FieldPaths<'a> {
-    /// Returns the paths of a light field; `None` if the chain does not determine a guide.
-    pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
+    /// Returns the paths of a light field; `None` if the chain does not determine a guide. Rays of
+    /// the last leg are aimed at positions at its end if `at_plane` is set and these are known, and
+    /// otherwise by angles.
+    pub(super) fn new(
+        view: &'a Observed<ReflectionSystem>,
+        window: &'a Window,
+        at_plane: bool,
+    ) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
         let mut guide = Gaussian::of_window(window);
@@ -101,7 +107,8 @@ impl<'a> FieldPaths<'a> {
         }
         guides.reverse();
         let legs = 0..chain.maps.len();
-        let aims = legs.map(|leg| DirectionCoordinates::new(view, &chain.scatterers, leg));
+        let aims =
+            legs.map(|leg| DirectionCoordinates::new(view, &chain.scatterers, leg, at_plane));
         let aims: Vec<DirectionCoordinates> = aims.collect();
         let start = Start::new(view, &chain, &guide, aims[0])?;
         Some(Self {
@@ -113,6 +120,11 @@ impl<'a> FieldPaths<'a> {
             start,
             guides,
         })
+    }
+
+    /// Checks whether rays of the last leg are aimed at positions at its end.
+    pub(super) fn is_aimed_at_plane(&self) -> bool {
+        !matches!(self.aims.last(), Some(DirectionCoordinates::Angles))
     }
 
     /// Returns the number of coordinates of the unit cube that a path uses.
@@ -202,8 +214,8 @@ impl<'a> FieldPaths<'a> {
         let point = ray.point + end * ray.direction;
         // If a ray meets the surface at two points, the ray counts only if it was aimed at the
         // first point.
-        let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
-        let is_second = going.target.take().is_some_and(beside);
+        let target = going.target.take();
+        let is_second = target.is_some_and(|target| is_beside(target, point, end));
         (passes > 0.0 && !is_second).then_some(point)
     }
 
@@ -273,11 +285,15 @@ impl<'a> FieldPaths<'a> {
             flux,
             radiance,
             at,
-            ..
+            target,
         } = going;
         let Observed { system, plane } = self.view;
         let start = ROUNDING * ray.point.length();
         let length = plane.along(ray)?;
+        let point = ray.point + length * ray.direction;
+        if target.is_some_and(|target| is_beside(target, point, length)) {
+            return None;
+        }
         let leaves = system.visited.checked_sub(1);
         let again = leaves.is_some_and(|last| system.surfaces[last].first(ray, start).is_some());
         if again || self.is_hidden(system.visited, ray, [start, length]) {
@@ -303,8 +319,13 @@ impl<'a> FieldPaths<'a> {
     }
 }
 
-/// Points closer than this share of their distance are treated as equal.
-const SAME_DISTANCE: f64 = 1e-6;
+/// Checks whether a ray that was aimed at `target` met a surface at another point.
+fn is_beside(target: DVec3, point: DVec3, length: f64) -> bool {
+    /// Points closer than this share of the ray's length are treated as equal.
+    const SAME_DISTANCE: f64 = 1e-6;
+    target.distance(point) > SAME_DISTANCE * length
+}
+
 /// Standard deviation of the angles of incidence in a guide, in radians. It applies if the light
 /// and the surface do not narrow these angles.
 const FRONT: f64 = 0.6;

@@ -21,10 +21,11 @@ pub(crate) fn predict(
     budget: RayBudget,
 ) -> Predicted {
     let (window, grid, picture) = over;
-    let of = |view| FieldPaths::new(view, window);
-    let Some(paths) = of(view) else {
+    let Some(paths) = best(view, over) else {
         return dark(moved, over);
     };
+    let at_plane = paths.is_aimed_at_plane();
+    let of = |view| FieldPaths::new(view, window, at_plane);
     let sides = moved.iter().map(|moved| {
         let [above, below] = &moved.sides;
         (moved.apart, [of(above), of(below)])
@@ -44,13 +45,29 @@ pub(crate) fn predict(
 /// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
 pub(crate) fn with_rays(
     view: &Observed<ReflectionSystem>,
-    (window, ..): Over<'_>,
+    over: Over<'_>,
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
-    if let Some(paths) = FieldPaths::new(view, window) {
+    if let Some(paths) = best(view, over) {
         then(&nets::SampledNets::new(&paths, budget));
     }
+}
+
+/// Returns the paths whose last leg is aimed in the better way, at positions or by angles. Angles
+/// are better for narrow slopes, and positions for a narrow window close to a wide surface.
+fn best<'a>(
+    view: &'a Observed<ReflectionSystem>,
+    (window, grid, _): Over<'a>,
+) -> Option<FieldPaths<'a>> {
+    let by_angle = FieldPaths::new(view, window, false)?;
+    let at_plane = FieldPaths::new(view, window, true).filter(FieldPaths::is_aimed_at_plane);
+    let Some(at_plane) = at_plane else {
+        return Some(by_angle);
+    };
+    let error = |paths: &FieldPaths<'a>| nets::trial(paths, (window, grid));
+    let is_better = error(&at_plane) <= error(&by_angle);
+    Some(if is_better { at_plane } else { by_angle })
 }
 
 /// Returns the prediction for the case in which the chain does not lead light to the plane.

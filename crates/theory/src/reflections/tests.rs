@@ -8,7 +8,8 @@ use crate::testing::window;
 use crate::{Model, Observed, Parameter, Predicted, RayBudget, scattering};
 use etendue_field::{
     Brdf, Environment, EnvironmentMap, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, LatLong,
-    Lobe, Mask, Profile, ProjectionGrid, Rectangle, Shape, SliceGrid, SphericalGaussian, Window,
+    Lobe, Mask, Orientation, Profile, ProjectionGrid, Rectangle, Shape, SliceGrid,
+    SphericalGaussian, Window,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::Arc;
@@ -195,6 +196,50 @@ fn one_surface_is_that_of_scattering() {
         });
         assert!((one - other).abs() < 0.02, "{lobe:?} {one} {other}"); // noise of derivatives' nets
     }
+}
+
+/// Tests that rays from a wide surface find a narrow window close to it, in the air and on another
+/// surface. If the rays are aimed by angles, the errors are above 0.2.
+#[test]
+fn rays_of_a_wide_surface_find_a_narrow_window() {
+    let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
+    let floor = patch(DVec3::Z, normal, 0.0);
+    let at = DVec3::new(0.5, 0.0, 1.0);
+    let in_air = across(at, DVec3::X, DVec3::NEG_Z);
+    let window = window(Profile::Hann(1e-4), Profile::Hann(0.15));
+    let by_plane = predicted(
+        &scattering::ScatteringSystem {
+            light: lamp(0.2),
+            layers: vec![],
+            obstacles: vec![],
+            name: String::new(),
+            patch: floor,
+            reflectance: reflectance(Lobe::Lambertian),
+        },
+        &in_air,
+        &window,
+    );
+    let diffuse = || Interaction::Reflects(Box::new(reflectance(Lobe::Lambertian)));
+    let mut system = system(lamp(0.2), vec![surface(floor, diffuse())]);
+    let by_path = predicted(&system, &in_air, &window);
+    let off = apart(&by_plane, &by_path);
+    assert!(off < CLOSE, "{off}");
+    let card = patch(at, DVec3::NEG_X, 0.3);
+    system.surfaces.push(surface(card, diffuse()));
+    let on_card = Plane {
+        orientation: Orientation::LocalNormals,
+        patch: Some(card),
+        arriving: true,
+        ..Plane::orthogonal(card.frame)
+    };
+    let arriving = predicted(&system, &on_card, &window);
+    for found in [&by_path, &arriving] {
+        let stated = found.error.unwrap();
+        assert!(stated < 0.01, "{stated}"); // 2·10⁶ paths
+    }
+    // An angle differs from its slope by at most 0.8 % in this window.
+    let ratio = arriving.slices.at_zero() / by_path.slices.at_zero();
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
 }
 
 /// Tests flat mirrors before and behind a surface. The prediction must not change if the mirrors
