@@ -127,6 +127,7 @@ fn traced(scene: &Scene) -> Measurement {
 /// Checks Fig. 3, five suns behind a grating, in slopes and in angles. The arrangement of the
 /// five suns is symmetric under a rotation by half a turn.
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn two_parameterisations() {
     let scene = scene("fig3");
     let photons = traced(&scene);
@@ -159,6 +160,7 @@ fn the_steps_of_shading() {
 
 /// Checks a scene in which an environment lights a diffuse wall and then a glossy floor.
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");
     let photons = traced(&scene);

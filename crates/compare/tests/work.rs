@@ -142,6 +142,7 @@ fn many_gratings() {
 }
 
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn many_squares() {
     let mirror = [
         ("surfaces:", &*squares(300, 0.002)),

@@ -40,7 +40,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         shown: |k| k,
     };
     let distance = CriterionSweep {
-        title: "Eq. 20 as a function of distance",
+        title: "Eq. 20 over distance",
         quantity: AxisQuantity::new("*d*", "m"),
         field: "planes.0.at.Distance",
         ends: [1.05, 2.0],
@@ -54,16 +54,13 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         panel(
             taken,
             environment,
-            &curvature("Eq. 20 as a function of curvature", values),
+            &curvature("Eq. 20 over curvature", values),
         )?,
         panel(taken, environment, &distance)?,
-        panel(
-            taken,
-            edge,
-            &curvature("Eq. 21, with an edge at 0.4 m", behind),
-        )?,
+        panel(taken, edge, &curvature("Eq. 21, edge at 0.4 m", behind))?,
     ];
-    letter_panels('a', &mut panels);
+    // The steps above have the letters (a) to (g).
+    letter_panels('h', &mut panels);
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \

@@ -217,7 +217,9 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let chi2 = report.chi2_per_dof;
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
     let full_radial = report.full_radial.and_then(|full| full.p_value);
-    lines.extend(full_radial.map(|p| format!("*p* of the full radial spectrum = {p:.3}")));
+    if let Some(p) = full_radial {
+        lines.extend(["full radial:".to_owned(), format!("*p* = {p:.3}")]);
+    }
     // The quadrature error is stated if the plane passes only because the disagreement is within
     // this error.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);

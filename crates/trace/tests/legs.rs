@@ -276,6 +276,7 @@ fn going_back(wall: &str, blockers: &str, visits: &[&str]) -> Scene {
 }
 
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn light_that_goes_back_along_a_leg_arrives() {
     for (wall, blockers, visits) in [
         (WIDE, "", &["wall", "floor"][..]),

@@ -166,6 +166,9 @@ fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     ]
 }
 
+/// The largest curvature permitted in a scene file, per metre.
+const CURVATURE: f64 = 1e6;
+
 /// Draws a mesh that touches neither the light nor the objects behind it.
 fn mesh(
     draw: &mut SceneDraw,
@@ -182,7 +185,8 @@ fn mesh(
             rings: draw.whole(6, 30),
         },
         1 => MeshSource::Paraboloid {
-            curvatures: [(); 2].map(|()| draw.between(-0.5, 0.5) / size),
+            curvatures: [(); 2]
+                .map(|()| (draw.between(-0.5, 0.5) / size).clamp(-CURVATURE, CURVATURE)),
             half: size,
             cells: draw.whole(1, 20),
         },

@@ -4,6 +4,7 @@ use super::{MORE, does_not_fail, edited, scene_does_not_fail};
 use etendue_compare::Class;
 
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn slow_scenes_do_not_fail() {
     use Class::{Exact, FirstOrder};
     does_not_fail(
@@ -26,6 +27,7 @@ fn slow_scenes_do_not_fail() {
 }
 
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn refused_scenes_do_not_fail() {
     let behind = [("outgoing", Class::FirstOrder)];
     does_not_fail("many_squares_mirror", &behind);

@@ -66,6 +66,7 @@ fn projection_of_an_area_light() {
 }
 
 #[test]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn derivatives_by_every_parameter() {
     let lens = Specular::ThinLens { focal_length: 0.6 };
     let glass = Specular::Refraction {
