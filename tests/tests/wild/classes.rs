@@ -43,6 +43,8 @@ fn scenes_that_were_wrong_do_not_fail() {
     does_not_fail("fine_grating_floor", &[("leaving", Exact)]);
     does_not_fail("wide_gaussian_sky", &[("outgoing", FirstOrder)]);
     does_not_fail("leaning_mesh", &[("on_it", FirstOrder)]);
+    let beside = [("across", FirstOrder), ("on_it", FirstOrder)];
+    does_not_fail("pinhole_beside_a_wall", &beside);
     does_not_fail("at_a_tilted_sky", &[("sky", FirstOrder)]);
     let both_sides = [("arriving", FirstOrder), ("leaving", FirstOrder)];
     does_not_fail("mask_beside_a_tilted_glass", &both_sides);
