@@ -19,7 +19,7 @@ class Axis(TypedDict):
 
 
 class BlockersBars(TypedDict):
-    """Opaque bars at equal distances, which end 10⁹ m from the central ray."""
+    """Opaque bars with equal spacing. Each bar ends 10⁹ m from the central ray on either side."""
 
     Bars: "BlockersBarsFields"
 
@@ -777,7 +777,7 @@ Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersPicture", "
 """Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]
-"""The bulb of a spot, orthogonal to the central ray."""
+"""The flat bulb of a spot. The bulb is orthogonal to the central ray."""
 
 Emission = Union[Literal["Aimed"], Literal["Plain"]]
 """How photons leave the light."""

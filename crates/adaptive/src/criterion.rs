@@ -1,15 +1,15 @@
 //! Computes the bandwidth of light across the picture by the criteria of Durand et al. 2005, Eqs.
 //! 20 and 21, with corrections.
 //!
-//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
-//! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
-//! relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth along a
-//! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
-//! sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel. This
-//! formula is Eq. 21 together with the factors that are missing in the paper. Without the term that
-//! contains d', it is Eq. 20. Finite differences on the screen include the angle of view, the
-//! distance and both curvatures, as the paper states. The printed equations use only the larger
-//! curvature, and are isotropic.
+//! A lobe reflects light from directions around the axis of the lobe, and keeps frequencies up to
+//! its cutoff Ω_ρ. From one pixel to the next, the axis r turns by ∂r and the point on the surface
+//! moves by ∂p. An object at a distance d' then moves relative to the axis by the component of ∂p
+//! across r, divided by d'. Hence the bandwidth along a direction of the picture is Ω_ρ |∂r +
+//! ∂p/d'| cycles per pixel. In the plane of incidence of a sphere, the bandwidth is Ω_ρ |1 + d (cos
+//! θ₀/d' + 2k)/cos θ₁| times the angle of a pixel. This formula is Eq. 21 together with the factors
+//! that are missing in the paper. Without the term that contains d', it is Eq. 20. Finite
+//! differences on the screen include the angle of view, the distance and both curvatures, as the
+//! paper states. The printed equations use only the larger curvature, and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};

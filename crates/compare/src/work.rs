@@ -84,8 +84,8 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
 /// `fig9b` and 33e-9 s for `ggx_sphere`, on an AMD EPYC processor.
 const SECONDS: f64 = 4e-8;
 
-/// Returns the approximate seconds on one core to trace the photons of a scene, and the upper limit
-/// for its predictions.
+/// Returns the approximate seconds that one core takes to trace the photons of a scene, and the
+/// most seconds that it takes for the predictions of the scene.
 #[must_use]
 pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
     let planes = scene.planes.iter();

@@ -151,7 +151,7 @@ impl Grating {
     }
 }
 
-/// A mask in one plane across the central ray, which multiplies radiance.
+/// A mask that multiplies radiance, in one plane across the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Mask {
     /// Opaque, black shapes that do not overlap.

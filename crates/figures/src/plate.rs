@@ -144,8 +144,8 @@ fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
     }
 }
 
-/// Draws the headings of a block above `top`, or lower if they have two lines; returns the top of
-/// the pictures.
+/// Draws the first line of a block's headings above `top` and the second line, if any, below it.
+/// Returns the top of the pictures.
 fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize, top: f64) -> f64 {
     let has_formula = |(column, ..): (usize, f64, f64)| heads[column].contains('\n');
     let formulas = grid.columns(block).any(has_formula);

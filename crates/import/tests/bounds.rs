@@ -45,8 +45,8 @@ fn files_that_include_each_other_are_read_a_bounded_number_of_times() {
         .collect();
     let folder = folder(&files);
     let refused = import(&folder.path().join("f0.xml"), &Options::default()).unwrap_err();
-    // Each refused include is counted. The files contain 10⁸ nested includes, of which at most a
-    // thousand files with eleven includes each are read.
+    // Each refused include is counted. Nested, the includes add up to 10⁸. At most a thousand files
+    // are read, with eleven includes each.
     let last = &refused.causes[refused.causes.len() - 1].message;
     let more = last
         .strip_prefix("and ")

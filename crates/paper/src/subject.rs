@@ -24,7 +24,7 @@ pub struct Subject {
     pub(crate) scenes: Vec<Scene>,
     /// Whether these are the user's scenes, which are stored in the index.
     pub(crate) is_own: bool,
-    /// Name and text of scene files of the repository, which are stored with the figure.
+    /// Name and text of each scene file of the repository that is stored with the figure.
     pub(crate) texts: Vec<Text>,
     /// Input files, which must not be replaced.
     pub(crate) inputs: Vec<PathBuf>,

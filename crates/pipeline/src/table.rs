@@ -307,12 +307,12 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Returns a number with `digits` digits after the point, or – if there is no number.
+/// Returns a number with `digits` digits after the point, or `–` if there is no number.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 
-/// Returns a share in per cent, or – if there is no share.
+/// Returns a share in per cent, or `–` if there is no share.
 pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }

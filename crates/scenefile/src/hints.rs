@@ -59,7 +59,7 @@ pub fn unit(path: &str) -> &'static str {
 }
 
 /// Returns a description of the values that the field at a path accepts. A path does not name the
-/// variant, so each type that the field has in a variant is described.
+/// variant, so the text describes each type that the field has in any variant.
 pub(crate) fn wanted(path: &str) -> String {
     let each = kinds(path).into_iter();
     let each = each.map(|[what, example]| format!("{what}, such as {example}"));

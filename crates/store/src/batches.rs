@@ -217,7 +217,10 @@ fn plane_batches(
                 outside: tally[2],
             };
             if tally.inside.checked_add(tally.outside) != Some(tally.crossed) {
-                return Err(file.fault("tally", "crossed must be the sum of inside and outside"));
+                return Err(file.fault(
+                    "tally",
+                    "`crossed` must be the sum of `inside` and `outside`",
+                ));
             }
             Ok(PlaneBatch {
                 tally,

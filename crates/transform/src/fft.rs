@@ -149,7 +149,7 @@ impl RealFft4 {
         assert_eq!(
             data.len(),
             self.size(),
-            "numbers of an array of {:?}",
+            "`data` must hold the numbers of an array of shape {:?}",
             self.shape
         );
         let [_, n1, n2, _] = self.shape;

@@ -73,8 +73,8 @@ pub struct ExpectedPower {
 }
 
 impl ExpectedPower {
-    /// Returns the expected power of `count` points. Returns `None` if the sampler has no such
-    /// sets, or is a file.
+    /// Returns the expected power of `count` points. Returns `None` if the sampler has no sets of
+    /// `count` points, or if its points come from a file.
     #[must_use]
     pub fn new(sampler: &Sampler, count: usize) -> Option<Self> {
         if !sampler.allows(count) {

@@ -77,8 +77,8 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// Returns an attack on the scene file in the given folder. The program always checks the scene,
-/// and in one of eight cases also runs, sweeps or draws it.
+/// Returns an attack that gives the program the scene file of a folder. The program always checks
+/// the scene, and in one of eight cases also runs, sweeps or draws it.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[

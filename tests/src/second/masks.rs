@@ -136,7 +136,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// Checks squares on a regular grid that is centred at the center of the layer.
+/// Tests blocking squares on a regular grid around the centre of the layer.
 fn squares(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);

@@ -7,7 +7,7 @@ use super::{
 use etendue_compare::{Applicability, Class, Theory, Verdict, chain, scattered, system};
 use etendue_trace::Backward;
 
-/// A prediction tests whether occluders behind the mirror block its rays.
+/// A prediction tests whether occluders block rays on the leg after the mirror.
 #[test]
 fn a_blocker_in_a_later_leg_is_decided() {
     obstacles_matter("blocker_in_later_leg", &["edge"]);

@@ -55,12 +55,13 @@ pub(crate) struct VarianceArgs {
     #[arg(long, value_name = "A..B", default_value = "4..4096")]
     pub(crate) counts: PointCounts,
 
-    /// Also predict and find the errors of sets that are not shifted, for jitter, lhs, sobol and
-    /// padded sets whose number of cells along an axis is a power of two
+    /// Also predict and measure the errors of sets that are not shifted. The sampler must be
+    /// jitter, lhs, sobol or padded, and the number of its cells along an axis must be a power of
+    /// two
     #[arg(long)]
     pub(crate) unshifted: bool,
 
-    /// Number of sets of points with which errors are found
+    /// Number of sets of points from which each error is measured
     #[arg(long, value_name = "R", default_value_t = DEFAULT_SETS, value_parser = clap::value_parser!(u32).range(i64::from(*SETS.start())..=i64::from(*SETS.end())))]
     pub(crate) shifts: u32,
 
@@ -81,7 +82,7 @@ pub(crate) struct VarianceArgs {
 /// A sampler as it is named in the arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SamplerArg {
-    /// Samplers with a name; padding stands for two.
+    /// The samplers of a name: one sampler, or both padded samplers for `padded`.
     Named(Vec<Sampler>),
     /// A file of points.
     File(PathBuf),

@@ -203,9 +203,9 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
 
-    /// Distribution of samples: reference takes the same number in every pixel, and every other
-    /// method takes a few shading samples at points that it chooses [default: reference, or auto
-    /// with --shading-samples]
+    /// Distribution of samples: the method `reference` takes the same number of samples in every
+    /// pixel; each other method takes a few shading samples at points that it chooses [default:
+    /// reference, or auto with --shading-samples]
     #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 

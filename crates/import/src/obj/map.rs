@@ -13,7 +13,7 @@ pub(super) struct MtlMap {
     pub(super) file: String,
     /// The folder in which the picture is searched for.
     pub(super) folder: PathBuf,
-    /// The map from (u, v) of a world, with v downwards, to (u, v) of the picture.
+    /// The map from (u, v) of a world to (u, v) of the picture; v points downwards in both.
     pub(super) to_uv: DAffine2,
     pub(super) wrap: Wrap,
 }

@@ -42,7 +42,7 @@ impl Builder<'_> {
                 Ok(())
             }
             Some((.., place)) => Err(format!(
-                "{word}End stands before the end of the block that line {} opens",
+                "{word}End stands inside the block that line {} opens; this block must end first",
                 place.line
             )),
             None => Err(format!("{word}End without {word}Begin")),

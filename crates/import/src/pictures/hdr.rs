@@ -10,7 +10,7 @@ const MOST_LINES: usize = 1000;
 pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     let mut rest = bytes;
     if !line(&mut rest).is_some_and(|first| first.starts_with(b"#?")) {
-        return Err("does not begin with #?".to_owned());
+        return Err("does not begin with the characters `#?`".to_owned());
     }
     for _ in 0..MOST_LINES {
         match line(&mut rest) {

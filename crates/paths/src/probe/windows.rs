@@ -201,8 +201,8 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Draws a direction from a light source through the windows of each leg. Records the light
-    /// along this direction if nothing occludes it.
+    /// For each leg, samples a direction from a light source towards the windows of the leg.
+    /// Records the light along this direction if nothing occludes it.
     pub(super) fn connect(
         &self,
         source: &LightSource<'_>,

@@ -108,7 +108,7 @@ impl Resolver<'_> {
         let on_mesh = matches!(hit.object, Object::Mesh(_));
         if on_mesh && plane.orientation.is_local() {
             let allowed =
-                "Orthogonal or Tangent: the normals of a mesh are known between its vertices only";
+                "Orthogonal or Tangent: the normals of a mesh are known only between its vertices";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let (frame, arrives) = hit.surface_frame(&path.legs[arriving].frame);

@@ -41,7 +41,7 @@ pub enum BlockersFile {
         #[schemars(transform = seed)]
         seed: u64,
     },
-    /// Opaque bars at equal distances, which end 10⁹ m from the central ray.
+    /// Opaque bars with equal spacing. Each bar ends 10⁹ m from the central ray on either side.
     Bars {
         /// Name.
         #[schemars(transform = name_of_blockers)]

@@ -219,7 +219,7 @@ pub struct GratingFile {
     pub phase: f64,
 }
 
-/// The bulb of a spot, orthogonal to the central ray.
+/// The flat bulb of a spot. The bulb is orthogonal to the central ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Bulb")]
 #[schemars(transform = told("a bulb", "Square(0.1)"))]

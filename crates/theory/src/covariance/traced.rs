@@ -153,8 +153,9 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// Returns the covariance of the light after multiplication by the grating in the picture of the
-/// light source. `first` is the index of the first coordinate (position or slope) of the picture.
+/// Returns the covariance of the light after the light has been multiplied by the grating of the
+/// light source's picture, if it has one. `first` is the index of the first coordinate (position or
+/// slope) of the picture.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
     image.grating.map_or(*light, |lines| {
         let mut factor = [[0.0; 4]; 4];

@@ -37,8 +37,8 @@ struct HarmonicTable {
 const MAX_NUMBERS: usize = 100_000_000;
 
 impl Harmonics {
-    /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along
-    /// each axis.
+    /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) that are −`half` to `half` times `spacing`
+    /// along each axis.
     ///
     /// Returns `None` if the tables would be larger than 1.6 GB. Also returns `None` if the chain
     /// has a diffuse reflection, because its spectrum is then not a sum of products of two factors.

@@ -88,8 +88,8 @@ mod tests {
             // The tolerance covers the omitted coefficients beyond 4000, which fall as 1/n² and add
             // up to less than 2/π/4000.
             assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // The transform itself is 2π times too large for a coefficient, and the test detects
-            // this.
+            // A transform is 2π times the coefficient. The test detects if the transform is used in
+            // place of the coefficient.
             assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }

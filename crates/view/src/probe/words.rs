@@ -257,9 +257,9 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
     lines.push(advice.unwrap_or_else(|| {
         if picture.variation.is_some() {
-            format!("the picture is smooth in this window; a wider window ({window}) shows its bandwidth")
+            format!("the picture is smooth in this window; a wider window ({window}) shows the bandwidth of the picture")
         } else if picture.varies {
-            format!("the picture varies, but noise hides its bandwidth: more {rays} show the bandwidth")
+            format!("the picture varies, but noise hides its bandwidth: more {rays} would show it")
         } else {
             let share = picture.noise_share().filter(|share| *share < 1.0);
             let share = share.map_or("all".to_owned(), |share| percent(share, 2));

@@ -6,7 +6,7 @@ use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
-/// The relative error ε of a Gauss rule is 10⁻¹², and this number is −ln ε.
+/// The value −ln ε for the relative error ε = 10⁻¹² of a Gauss rule.
 const NATS: f64 = 28.0;
 /// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
 /// panels.

@@ -111,8 +111,8 @@ impl ReceiverRegion {
         arcs.sum::<f64>() + right - left
     }
 
-    /// Estimates the number of computing steps of [`Self::integral`] as if the boundary contained
-    /// each circle completely.
+    /// Estimates the number of computing steps of [`Self::integral`], as if each whole circle were
+    /// part of the boundary.
     pub(crate) fn steps(&self, density: &ReceiverDensity<'_>) -> f64 {
         if self.discs.is_empty() {
             return density.steps(self.sides);
