@@ -11,7 +11,6 @@ use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::model::Observed;
-use crate::rays::Plane;
 use etendue_field::{Frame, Light, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -37,15 +36,12 @@ pub(super) enum DirectionCoordinates {
 
 impl DirectionCoordinates {
     /// Builds the coordinates of the leg with the given index; leg 0 begins at the light, and every
-    /// other leg at a scatterer. Rays of the last leg are aimed at positions only if `at_plane` is
-    /// set.
+    /// other leg at a scatterer. Rays of the last leg are aimed by angles.
     pub(super) fn new(
-        view: &Observed<ReflectionSystem>,
+        system: &ReflectionSystem,
         scatterers: &[ScatteringSurface],
         leg: usize,
-        at_plane: bool,
     ) -> Self {
-        let Observed { system, plane } = view;
         let from = leg.checked_sub(1).map(|before| &scatterers[before]);
         let first = from.map_or(0, |from| from.number + 1);
         let to = scatterers.get(leg);
@@ -53,9 +49,6 @@ impl DirectionCoordinates {
             (None, _) if matches!(system.light, Light::Beam { .. }) => Self::Angles,
             (_, Some(to)) if to.number == first => {
                 Self::on_patch(system.surfaces[first].patch, &to.frame)
-            }
-            (Some(from), None) if at_plane && first == system.visited => {
-                Self::at_plane(plane, system.surfaces[from.number].hit)
             }
             _ => Self::Angles,
         }
@@ -72,20 +65,23 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns positions on the plane or on its surface, for rays from a surface that the central
-    /// ray hits at `hit`. Returns angles if the plane is on the surface itself.
-    fn at_plane(plane: &Plane, hit: DVec3) -> Self {
-        let beyond = (plane.frame.origin - hit).dot(plane.frame.d);
-        match plane.orientation {
-            Orientation::Orthogonal if beyond > 0.0 => Self::Plane(plane.frame),
-            Orientation::Orthogonal => Self::Angles,
-            _ if !plane.arriving => Self::Angles,
-            Orientation::Tangent => Self::Plane(plane.frame),
-            Orientation::LocalNormals | Orientation::Mirrored => match plane.patch {
-                Some(patch) => Self::on_patch(patch, &plane.frame),
-                None => Self::Plane(plane.frame),
-            },
-        }
+    /// Returns positions on the plane or on its surface, for the leg from the last scatterer.
+    /// Returns `None` if the leg does not run straight to the plane, or has no length.
+    pub(super) fn at_plane(
+        view: &Observed<ReflectionSystem>,
+        scatterers: &[ScatteringSurface],
+    ) -> Option<Self> {
+        let Observed { system, plane } = view;
+        let from = scatterers.last()?.number;
+        let beyond = plane.frame.origin - system.surfaces[from].hit;
+        let is_beyond = match plane.orientation {
+            Orientation::Orthogonal => beyond.dot(plane.frame.d) > 0.0,
+            _ => plane.arriving,
+        };
+        (is_beyond && from + 1 == system.visited).then(|| match plane.patch {
+            Some(patch) if plane.orientation.is_local() => Self::on_patch(patch, &plane.frame),
+            _ => Self::Plane(plane.frame),
+        })
     }
 
     /// Converts a Gaussian of angles at a point of the surface to these coordinates. `map` is the

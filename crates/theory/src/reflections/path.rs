@@ -89,13 +89,8 @@ struct Going {
 
 impl<'a> FieldPaths<'a> {
     /// Returns the paths of a light field; `None` if the chain does not determine a guide. Rays of
-    /// the last leg are aimed at positions at its end if `at_plane` is set and these are known, and
-    /// otherwise by angles.
-    pub(super) fn new(
-        view: &'a Observed<ReflectionSystem>,
-        window: &'a Window,
-        at_plane: bool,
-    ) -> Option<Self> {
+    /// the last leg are aimed by angles.
+    pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
         let mut guide = Gaussian::of_window(window);
@@ -107,8 +102,7 @@ impl<'a> FieldPaths<'a> {
         }
         guides.reverse();
         let legs = 0..chain.maps.len();
-        let aims =
-            legs.map(|leg| DirectionCoordinates::new(view, &chain.scatterers, leg, at_plane));
+        let aims = legs.map(|leg| DirectionCoordinates::new(&view.system, &chain.scatterers, leg));
         let aims: Vec<DirectionCoordinates> = aims.collect();
         let start = Start::new(view, &chain, &guide, aims[0])?;
         Some(Self {
@@ -120,6 +114,19 @@ impl<'a> FieldPaths<'a> {
             start,
             guides,
         })
+    }
+
+    /// Returns the coordinates by which rays of the last leg are aimed at its end, if they are
+    /// known.
+    pub(super) fn at_plane(&self) -> Option<DirectionCoordinates> {
+        DirectionCoordinates::at_plane(self.view, &self.chain.scatterers)
+    }
+
+    /// Aims the rays of the last leg by the given coordinates.
+    pub(super) fn aim_last_leg(&mut self, aim: DirectionCoordinates) {
+        if let Some(last) = self.aims.last_mut() {
+            *last = aim;
+        }
     }
 
     /// Checks whether rays of the last leg are aimed at positions at its end.

@@ -2,6 +2,7 @@
 //! of paths.
 
 use super::ReflectionSystem;
+use super::aim::DirectionCoordinates;
 use super::path::FieldPaths;
 use crate::model::{Observed, Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
@@ -24,8 +25,13 @@ pub(crate) fn predict(
     let Some(paths) = best(view, over) else {
         return dark(moved, over);
     };
-    let at_plane = paths.is_aimed_at_plane();
-    let of = |view| FieldPaths::new(view, window, at_plane);
+    let of = |view| {
+        let mut moved = FieldPaths::new(view, window)?;
+        if let Some(at_plane) = moved.at_plane().filter(|_| paths.is_aimed_at_plane()) {
+            moved.aim_last_leg(at_plane);
+        }
+        Some(moved)
+    };
     let sides = moved.iter().map(|moved| {
         let [above, below] = &moved.sides;
         (moved.apart, [of(above), of(below)])
@@ -60,14 +66,16 @@ fn best<'a>(
     view: &'a Observed<ReflectionSystem>,
     (window, grid, _): Over<'a>,
 ) -> Option<FieldPaths<'a>> {
-    let by_angle = FieldPaths::new(view, window, false)?;
-    let at_plane = FieldPaths::new(view, window, true).filter(FieldPaths::is_aimed_at_plane);
-    let Some(at_plane) = at_plane else {
-        return Some(by_angle);
-    };
-    let error = |paths: &FieldPaths<'a>| nets::trial(paths, (window, grid));
-    let is_better = error(&at_plane) <= error(&by_angle);
-    Some(if is_better { at_plane } else { by_angle })
+    let mut paths = FieldPaths::new(view, window)?;
+    if let Some(at_plane) = paths.at_plane() {
+        let error = |paths: &FieldPaths<'a>| nets::trial(paths, (window, grid));
+        let by_angle = error(&paths);
+        paths.aim_last_leg(at_plane);
+        if error(&paths) > by_angle {
+            paths.aim_last_leg(DirectionCoordinates::Angles);
+        }
+    }
+    Some(paths)
 }
 
 /// Returns the prediction for the case in which the chain does not lead light to the plane.
