@@ -30,7 +30,7 @@ const POINTS: u32 = 40;
 
 /// Draws curves over curvature and over distance without a blocker, and over curvature behind an
 /// edge.
-pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
+pub(crate) fn criteria(taken: &FigureData<'_>, first: char) -> Result<Figure, Failure> {
     let curvature = |title, values| CriterionSweep {
         title,
         quantity: AxisQuantity::new("*k*", "1/m"),
@@ -59,8 +59,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         panel(taken, environment, &distance)?,
         panel(taken, edge, &curvature("Eq. 21, edge at 0.4 m", behind))?,
     ];
-    // The steps above have the letters (a) to (g).
-    letter_panels('h', &mut panels);
+    letter_panels(first, &mut panels);
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \

@@ -148,5 +148,5 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         bars: None,
         side: Some(54.0),
     })?;
-    Ok(stacked(&[steps, criteria(taken)?]))
+    Ok(stacked(&[steps, criteria(taken, 'h')?]))
 }

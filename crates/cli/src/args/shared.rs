@@ -147,8 +147,8 @@ pub(super) fn assignment(text: &str) -> Result<(String, String), String> {
 /// percentage.
 const MAX_PLAIN_SHARE: f64 = 0.05;
 
-/// Parses a share in (0, 1]. The text is a percentage with the sign %, or a plain number if the
-/// share is below 0.05.
+/// Parses a share in (0, 1]. The text is a percentage with the sign %, or a plain number below
+/// [`MAX_PLAIN_SHARE`].
 pub(super) fn share(text: &str) -> Result<f64, String> {
     let fault = || "must be a share of the spectrum, such as 0.1% or 0.001".to_owned();
     let parsed = |number: &str| number.trim().parse().ok().filter(|x: &f64| *x > 0.0);
