@@ -272,13 +272,13 @@ fn wrong_numbers_are_refused() {
             BATCHES,
             "tally",
             counts(&[20, 3], 1),
-            "the sum of inside and outside",
+            "the sum of `inside` and `outside`",
         ),
         (
             BATCHES,
             "tally",
             counts(&[20, 3], u64::MAX),
-            "the sum of inside and outside",
+            "the sum of `inside` and `outside`",
         ),
         (BATCHES, "slices", npy(&broken.into_dyn()), "not finite"),
         (
