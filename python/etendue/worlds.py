@@ -18,6 +18,7 @@ from etendue.difference import Sample
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Value, field_texts
+from etendue.variance import Variance
 
 Point = Sequence[float]
 Size = Union[str, "tuple[int, int]"]
@@ -73,6 +74,13 @@ class Probe:
         sigma = arrays.get("measured_sigma", arrays["sigma"])
         sample = Sample(arrays["measured"], sigma, found["report"]["noise_dof"], self.batches)
         return ProbedPlane(sample, found["report"]["frame"], found["report"]["distance"], found["window"], found["frequencies"])
+
+    def variance(self, plane: str) -> Variance:
+        """The variances of samplers at a plane, as `etendue.variance` returns them, if the probe was asked for them."""
+        for found in self.planes:
+            if found["report"]["name"] == plane and "variance" in found:
+                return Variance(found["variance"], self.text)
+        raise KeyError(f"no variances at {plane!r}: variance=True asks for them, and planes of constant radiance have none")
 
     def __str__(self) -> str:
         return self.text
@@ -238,6 +246,7 @@ def probe(
     photons: float | None = None,
     seed: int | None = None,
     covariance: bool = False,
+    variance: bool | Sequence[Any] = False,
     root: str | os.PathLike[str] | None = None,
     color: Color | None = None,
     set: Mapping[str, Value] | None = None,
@@ -254,8 +263,11 @@ def probe(
     """Measures the light field behind a pixel (column, row), by rays traced back and by photons.
 
     `depth` is the maximum number of surfaces along the ray, 1 to 16, by default 1; `window` is the width of the window in pixels, by default
-    the narrowest that shows the bandwidth of the picture. `rays` is the number of rays traced back for each plane, by default 2**20, and `photons` is the number of photons that check them,
-    by default 2**25. `covariance` also measures the covariance of each plane's spectrum. All other arguments are those of `render`.
+    the narrowest that shows the bandwidth of the picture. `rays` is the number of rays traced back for each plane, by default 2**20, and
+    `photons` is the number of photons that check them; without `photons`, a plane gets as many of both as its verdict needs, at most 2**28.
+    `covariance` also measures the covariance of each plane's spectrum. `variance` also predicts the error of the mean radiance over the
+    window of each plane, and shows the error really made: true for all samplers of `etendue.variance`, or a sequence of samplers. All other
+    arguments are those of `render`.
     """
     arguments = given(
         camera=camera,
@@ -266,6 +278,7 @@ def probe(
         photons=photons,
         seed=seed,
         covariance=covariance,
+        variance=variance,
         root=root,
         color=color,
         set=field_texts(set),

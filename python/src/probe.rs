@@ -2,10 +2,13 @@
 
 use crate::arguments::{self, Arguments};
 use crate::live::alive;
+use crate::variance::samplers;
 use crate::world;
+use etendue_pipeline::variance::VarianceOptions;
+use etendue_store::ArgumentStyle;
 use etendue_view::{ProbeRequest, probe_pixel, ranges};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 use std::path::PathBuf;
 
 /// Measures the light field behind a pixel, and writes the results to a folder. Returns a report on
@@ -42,9 +45,21 @@ fn request(scene: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<ProbeReque
     arguments.number("window", &allowed, |x| window.contains(x), &mut across)?;
     request.window = (!across.is_nan()).then_some(across);
     arguments.count("rays", &ranges::RAYS, &mut request.rays)?;
-    arguments.count("photons", &ranges::RAYS, &mut request.photons)?;
+    let mut photons = 0;
+    arguments.count("photons", &ranges::RAYS, &mut photons)?;
+    request.photons = (photons > 0).then_some(photons);
     arguments.whole("seed", &(0..=u64::MAX), &mut request.seed)?;
     arguments.flag("covariance", &mut request.covariance)?;
+    if let Some(value) = arguments
+        .get("variance")?
+        .filter(|value| value.is_truthy().unwrap_or(true))
+    {
+        let mut options = VarianceOptions::new(ArgumentStyle::Python);
+        if !value.is_instance_of::<PyBool>() {
+            options.samplers = samplers("variance", &value)?;
+        }
+        request.variance = Some(options);
+    }
     arguments.flag("force", &mut request.force)?;
     Ok(request)
 }

@@ -28,17 +28,15 @@ pub(crate) fn variance(
 ) -> PyResult<(String, String)> {
     let job = Arc::clone(&job.0);
     let arguments = Arguments(arguments);
-    let options = options(
-        &arguments,
-        VarianceOptions::new(job.method(), ArgumentStyle::Python),
-    )?;
+    let options = options(&arguments, VarianceOptions::new(ArgumentStyle::Python))?;
     let mut plane = None;
     arguments.text("plane", &mut plane)?;
     alive(py, threads, progress.as_ref(), move |live| {
-        let study = VarianceStudy::new(job.scene(), plane.as_deref(), options)?;
+        let study =
+            VarianceStudy::of_scene(job.scene(), (plane.as_deref(), job.method()), options)?;
         study.check_memory()?;
-        let found = study.run(live)?;
-        let index = serde_json::to_string(&study.index(job.scene(), &found));
+        let found = study.run(live)?.ok_or_else(|| study.constant())?;
+        let index = serde_json::to_string(&study.index((job.scene(), job.method()), &found));
         let index = index.map_err(Failure::cannot_run)?;
         Ok((index, variance_table::text(&found, study.options())))
     })
@@ -57,7 +55,7 @@ fn options(
         options.counts = counts(&value)?;
     }
     if let Some(value) = arguments.get("samplers")? {
-        options.samplers = samplers(&value)?;
+        options.samplers = samplers("samplers", &value)?;
     }
     Ok(options)
 }
@@ -80,22 +78,22 @@ fn counts(value: &Bound<'_, PyAny>) -> PyResult<PointCounts> {
 }
 
 /// Reads samplers: names, arrays of points, and paths of files of points.
-fn samplers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
+pub(crate) fn samplers(argument: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
     let allowed = "a sequence of names, arrays of points and paths, such as ['sobol', 'set.npy']";
     let is_text = value.is_instance_of::<PyString>();
     let items = value.try_iter().ok().filter(|_| !is_text);
-    let items = items.ok_or_else(|| wrong("samplers", value, allowed))?;
+    let items = items.ok_or_else(|| wrong(argument, value, allowed))?;
     let mut all = Vec::new();
     for (i, item) in items.enumerate() {
-        all.extend(sampler(i, &item?)?);
+        all.extend(sampler(argument, i, &item?)?);
     }
     let names: Vec<String> = all.iter().map(Sampler::to_string).collect();
     if names.is_empty() {
-        return Err(wrong("samplers", value, allowed));
+        return Err(wrong(argument, value, allowed));
     }
     match (1..names.len()).find(|i| names[..*i].contains(&names[*i])) {
         Some(i) => Err(PyValueError::new_err(format!(
-            "samplers has {:?} twice; allowed: each sampler once",
+            "{argument} has {:?} twice; allowed: each sampler once",
             names[i]
         ))),
         None => Ok(all),
@@ -103,8 +101,8 @@ fn samplers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
 }
 
 /// Reads the element with this number.
-fn sampler(number: usize, item: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
-    let name = format!("samplers[{number}]");
+fn sampler(argument: &str, number: usize, item: &Bound<'_, PyAny>) -> PyResult<Vec<Sampler>> {
+    let name = format!("{argument}[{number}]");
     if let Ok(points) = item.extract::<PyReadonlyArray2<'_, f64>>() {
         let array = points.as_array();
         let rows = array.outer_iter().map(|row| row.iter().copied().collect());

@@ -225,8 +225,8 @@ def test_the_command_writes_the_same_bytes(tmp_path):
     command("figure", FIG9B, "--set=run.photons=16384", "--quality=draft", "--plane=receiver", "--out", b / "figure")
     etendue.render(GLOSSY, size=(16, 12), samples=4, bounces=1, out=a / "picture")
     command("render", GLOSSY, "--size=16x12", "--samples=4", "--bounces=1", "--out", b / "picture")
-    etendue.probe(GLOSSY, (70, 95), rays=2**12, photons=2**14, depth=2, window=8, out=a / "probe")
-    command("probe", GLOSSY, "--pixel=70,95", "--rays=2^12", "--photons=2^14", "--depth=2", "--window=8", "--out", b / "probe")
+    etendue.probe(GLOSSY, (70, 95), rays=2**12, photons=2**14, depth=2, window=8, variance=["lhs"], out=a / "probe")
+    command("probe", GLOSSY, "--pixel=70,95", "--rays=2^12", "--photons=2^14", "--depth=2", "--window=8", "--variance=lhs", "--out", b / "probe")
     assert str(etendue.import_scene(GLOSSY)) + "\n" == subprocess.run(
         [sys.executable, "-m", "etendue", "import", GLOSSY], check=True, capture_output=True, text=True
     ).stdout

@@ -16,7 +16,7 @@ pub(crate) use run::{
 };
 pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
-pub(crate) use variance::{SamplerArg, VarianceArgs};
+pub(crate) use variance::{VarianceArgs, files, samplers};
 pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
 use clap::error::{ContextKind, ContextValue};

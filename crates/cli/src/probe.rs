@@ -10,7 +10,7 @@ use etendue_view::{map_bandwidths, probe_pixel};
 
 /// Runs `etendue probe`; returns the exit code.
 pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
-    let request = args.request();
+    let request = args.request()?;
     let terminal = Terminal::new(args.work.quiet);
     let (code, words, folder) = on_threads(&args.work.threads, || {
         Ok(match (args.pixel, args.map) {

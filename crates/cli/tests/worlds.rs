@@ -175,6 +175,43 @@ fn a_probe_names_surfaces_and_judges_planes() {
     );
 }
 
+/// The predicted errors of samplers at the planes of a probe are the errors really made.
+#[test]
+fn a_probe_predicts_the_errors_of_samplers() {
+    let folder = room();
+    let path = folder.path();
+    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 --variance sobol,jitter --out p";
+    call(path, line);
+    let found = json(&path.join("p/probe.json"));
+    let mut compared = 0;
+    for plane in found["planes"].as_array().unwrap() {
+        let variance = &plane["variance"];
+        let number = |key: &str, part: &str| variance[key][part].as_f64().unwrap();
+        let [a, b] = ["mean_by_photons", "mean_by_rays"];
+        let error = number(a, "error").hypot(number(b, "error"));
+        let off = number(a, "value") - number(b, "value");
+        assert!(
+            off.abs() < 4.0 * error,
+            "{}: {off} ± {error}",
+            plane["report"]["name"]
+        );
+        for sampler in variance["samplers"].as_array().unwrap() {
+            for count in sampler["shifted"]["counts"].as_array().unwrap() {
+                let [ratio, error] =
+                    ["value", "error"].map(|part| count["ratio"][part].as_f64().unwrap());
+                assert!(
+                    (ratio - 1.0).abs() < 4.0 * error,
+                    "{} {count}",
+                    sampler["sampler"]
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert_eq!(compared, 27);
+    assert!(path.join("p/leaving_1/variance.png").exists());
+}
+
 #[test]
 fn what_is_asked_must_be_there() {
     let folder = room();
@@ -183,6 +220,10 @@ fn what_is_asked_must_be_there() {
         ("probe room.xml --pixel 24,0", "allowed: 0,0 to 23,15"),
         ("probe room.xml", "--pixel"),
         ("probe room.xml --pixel 1,1 --rays 3", "64 or more"),
+        (
+            "probe room.xml --pixel 1,1 --variance halton",
+            "no such sampler",
+        ),
         ("render room.xml --camera side", "allowed: front"),
         ("render room.xml --size 0x5", "two whole numbers"),
         ("render room.xml --samples 1", "--samples"),

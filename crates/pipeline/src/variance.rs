@@ -3,30 +3,55 @@
 use crate::field::check_grid;
 use crate::reporter::{Reporter, Work};
 use crate::{method, planes};
-use etendue_field::PhotonSource;
+use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
 use etendue_store::{ArgumentStyle, Failure, Method, VERSION};
 use etendue_variance::{
     AXES, AxisSetPower, DEFAULT_FREQUENCIES, DEFAULT_SETS, MeasuredPower, PointCounts,
-    PowerEstimate, Sampler, SamplerReport, VarianceError, WindowMoments, WindowRadiance,
-    WindowStudy, axis_sets, dyadic_power, field_options, with_box_window,
+    PowerEstimate, Sampler, SamplerReport, VarianceError, WindowMoments, WindowStudy, axis_sets,
+    dyadic_power, field_options, with_box_window,
 };
+pub use etendue_variance::{RayRadiance, WindowRadiance, box_window};
+
+/// The light at a plane with Box windows.
+pub struct WindowLight<'a> {
+    /// The plane.
+    pub plane: VirtualPlane,
+    /// The source of photons whose plane 0 is this plane.
+    pub source: Box<dyn PhotonSource + 'a>,
+    /// Number of batches of photons.
+    pub batches: u32,
+    /// Number of photons.
+    pub photons: u64,
+    /// The radiance along rays of the window.
+    pub radiance: WindowRadiance<'a>,
+    /// The seed of the points of samplers.
+    pub seed: u64,
+}
+
+impl std::fmt::Debug for WindowLight<'_> {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            plane, radiance, ..
+        } = self;
+        to.debug_struct("WindowLight")
+            .field("plane", plane)
+            .field("radiance", radiance)
+            .finish_non_exhaustive()
+    }
+}
 
 /// A request for the variances of samplers at a plane.
 #[derive(Debug)]
-pub struct VarianceStudy {
-    /// The scene that sees only the plane, through Box windows.
-    scene: Scene,
-    radiance: WindowRadiance,
+pub struct VarianceStudy<'a> {
+    light: WindowLight<'a>,
     options: VarianceOptions,
 }
 
 /// What is measured, predicted and found.
 #[derive(Clone, Debug)]
 pub struct VarianceOptions {
-    /// The source of the photons.
-    pub method: Method,
     /// The largest measured frequency along each axis.
     pub frequencies: usize,
     /// The samplers, with the points of files.
@@ -44,9 +69,8 @@ pub struct VarianceOptions {
 impl VarianceOptions {
     /// Returns the default options: all samplers that are not files.
     #[must_use]
-    pub fn new(method: Method, arguments: ArgumentStyle) -> Self {
+    pub fn new(arguments: ArgumentStyle) -> Self {
         Self {
-            method,
             frequencies: DEFAULT_FREQUENCIES,
             samplers: Sampler::NAMES
                 .into_iter()
@@ -75,7 +99,7 @@ impl VarianceOptions {
 }
 
 /// The predicted and found variances at a plane.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PlaneVariance {
     /// Name of the plane.
     pub plane: String,
@@ -93,34 +117,43 @@ pub struct PlaneVariance {
     pub samplers: Vec<SamplerReport>,
 }
 
-impl VarianceStudy {
+impl<'a> VarianceStudy<'a> {
     /// Checks that a plane of a scene can be studied. If no name is given, it is the only plane.
-    pub fn new(
+    pub fn of_scene(
         scene: &Scene,
-        plane: Option<&str>,
+        (plane, method): (Option<&str>, Method),
         options: VarianceOptions,
     ) -> Result<Self, Failure> {
         options.check()?;
         let plane = planes::chosen(scene, plane, options.arguments)?;
         let scene = with_box_window(scene, plane, options.frequencies);
-        let radiance = WindowRadiance::new(&scene).map_err(failure)?;
-        Ok(Self {
-            scene,
-            radiance,
-            options,
-        })
+        let light = WindowLight {
+            plane: scene.planes[0].clone(),
+            source: method::source(&scene, method)?,
+            batches: scene.run.batches,
+            photons: scene.run.photons,
+            radiance: WindowRadiance::new(&scene).map_err(failure)?,
+            seed: scene.run.seed,
+        };
+        Ok(Self { light, options })
+    }
+
+    /// Checks that light at a plane can be studied.
+    pub fn of_light(light: WindowLight<'a>, options: VarianceOptions) -> Result<Self, Failure> {
+        options.check()?;
+        Ok(Self { light, options })
     }
 
     /// Returns the window of the plane, as half-widths along (x, u, y, v).
     fn half_widths(&self) -> [f64; 4] {
-        let window = self.scene.planes[0].window;
+        let window = self.light.plane.window;
         [window.x, window.u, window.y, window.v].map(|p| p.half_width())
     }
 
     /// Fails if the grids of all groups of photons do not fit into memory.
     pub fn check_memory(&self) -> Result<(), Failure> {
         let options = field_options();
-        let grid = options.grid(&self.scene.planes[0]);
+        let grid = options.grid(&self.light.plane);
         let arguments = self.options.arguments;
         let argument = arguments.with("frequencies", self.options.frequencies);
         let name = format!("{argument}: the grid");
@@ -128,21 +161,19 @@ impl VarianceStudy {
         check_grid(&name, &grid, &options)
     }
 
-    /// Measures the plane, and predicts and finds the variances of each sampler.
-    pub fn run(&self, reporter: &dyn Reporter) -> Result<PlaneVariance, Failure> {
-        let Self {
-            scene,
-            radiance,
-            options,
-        } = self;
-        let source = method::source(scene, options.method)?;
-        let bar = reporter.begin(Work::Photons(scene.run.photons));
-        let power = MeasuredPower::measure(scene, &*source, options.frequencies, &|photons| {
+    /// Measures the plane, and predicts and finds the variances of each sampler. Returns `None` if
+    /// the radiance is the same over the whole window.
+    pub fn run(&self, reporter: &dyn Reporter) -> Result<Option<PlaneVariance>, Failure> {
+        let Self { light, options } = self;
+        let (plane, seed) = (&light.plane, light.seed);
+        let photons = (&*light.source, light.batches);
+        let bar = reporter.begin(Work::Photons(light.photons));
+        let power = MeasuredPower::measure(plane, photons, options.frequencies, &|photons| {
             bar.advance(photons);
         });
         drop(bar);
         let power = power.map_err(failure)?;
-        let bands = self.bands(&*source, reporter)?;
+        let bands = self.bands(reporter)?;
         let steps = WindowRadiance::steps();
         let bar = reporter.begin(Work::Steps {
             verb: "tracing back",
@@ -150,47 +181,51 @@ impl VarianceStudy {
             things: "sets of rays",
         });
         let progress = |sets: u64| bar.advance(sets);
-        let moments = radiance.moments(scene.run.seed, &progress);
+        let moments = light.radiance.moments(seed, &progress);
         if moments.variance.value <= 0.0 {
-            return Err(Failure::bad_input(format!(
-                "{}: the radiance is the same over the whole window, so its mean has no error",
-                scene.planes[0].name
-            )));
+            return Ok(None);
         }
         let study = WindowStudy {
             power: &power,
             bands: bands.as_ref(),
-            radiance,
+            radiance: &light.radiance,
             moments: &moments,
             sets: options.shifts,
-            seed: scene.run.seed,
+            seed,
         };
         let samplers = options.samplers.iter();
         let reports =
             samplers.map(|sampler| study.sampler(sampler, options.counts.all(), &progress));
-        Ok(PlaneVariance {
-            plane: scene.planes[0].name.clone(),
+        Ok(Some(PlaneVariance {
+            plane: plane.name.clone(),
             half_widths: self.half_widths(),
             mean_by_photons: power.mean,
             inside: power.spectrum.total() / moments.variance.value,
             axis_sets: axis_sets(&power, &moments),
             samplers: reports.collect(),
             moments,
-        })
+        }))
     }
 
     /// Traces the photons once more, and returns their power in dyadic bands, if it is requested.
-    fn bands(
-        &self,
-        source: &dyn PhotonSource,
-        reporter: &dyn Reporter,
-    ) -> Result<Option<PowerEstimate>, Failure> {
+    fn bands(&self, reporter: &dyn Reporter) -> Result<Option<PowerEstimate>, Failure> {
         if !self.options.unshifted {
             return Ok(None);
         }
-        let bar = reporter.begin(Work::Photons(self.scene.run.photons));
-        let bands = dyadic_power(&self.scene, source, &|photons| bar.advance(photons));
+        let light = &self.light;
+        let bar = reporter.begin(Work::Photons(light.photons));
+        let photons = (&*light.source, light.batches);
+        let bands = dyadic_power(&light.plane, photons, &|photons| bar.advance(photons));
         bands.map(Some).map_err(failure)
+    }
+
+    /// Returns the failure for a radiance that is the same over the whole window.
+    #[must_use]
+    pub fn constant(&self) -> Failure {
+        Failure::bad_input(format!(
+            "{}: the radiance is the same over the whole window, so its mean has no error",
+            self.light.plane.name
+        ))
     }
 
     /// Returns the number of sets of points with which errors are found.
@@ -218,19 +253,30 @@ impl VarianceStudy {
         &self.options
     }
 
-    /// Returns the content of the index, without its list of files. `scene` is the scene before its
-    /// windows were replaced.
+    /// Returns the content of the index of a scene, without its list of files. `scene` is the scene
+    /// before its windows were replaced.
     #[must_use]
-    pub fn index(&self, scene: &Scene, found: &PlaneVariance) -> serde_json::Value {
+    pub fn index(
+        &self,
+        (scene, method): (&Scene, Method),
+        found: &PlaneVariance,
+    ) -> serde_json::Value {
+        let mut tree = self.tree(found);
+        tree["scene"] = scene.name.as_str().into();
+        tree["scene_hash"] = serde_json::json!(scene.hash());
+        tree["scene_file"] = serde_json::json!(scene.file);
+        tree["version"] = serde_json::json!(VERSION);
+        tree["method"] = serde_json::json!(method);
+        tree
+    }
+
+    /// Returns the result as JSON, without the scene.
+    #[must_use]
+    pub fn tree(&self, found: &PlaneVariance) -> serde_json::Value {
         let options = &self.options;
         serde_json::json!({
-            "scene": scene.name,
-            "scene_hash": scene.hash(),
-            "scene_file": scene.file,
-            "version": VERSION,
-            "seed": scene.run.seed,
-            "method": options.method,
-            "photons": scene.run.photons,
+            "seed": self.light.seed,
+            "photons": self.light.photons,
             "plane": found.plane,
             "window": { "profile": "Box", "half_widths": found.half_widths },
             "axes": AXES,

@@ -9,7 +9,7 @@ use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 /// Number of sets of axes in a row.
 const SETS_PER_ROW: usize = 3;
 
-/// Means by photons and by rays that differ by more than this number of standard errors are
+/// Means by the spectrum and by single rays that differ by more than this number of standard errors are
 /// reported.
 const MAX_DIFFERENCE: f64 = 4.0;
 
@@ -41,7 +41,7 @@ fn head(found: &PlaneVariance, options: &VarianceOptions) -> Vec<String> {
             grouped(options.shifts.into())
         ),
         format!(
-            "mean: {} by photons, {} by rays",
+            "mean: {} by the spectrum, {} by single rays",
             shown(found.mean_by_photons),
             shown(moments.mean)
         ),

@@ -10,6 +10,9 @@ use etendue_pipeline::variance::PlaneVariance;
 use etendue_store::Failure;
 use etendue_variance::{CountReport, SamplerReport, VarianceCurve};
 
+/// The files in which the variances of a plane are drawn.
+pub const NAMES: [&str; 3] = ["variance.png", "variance.svg", "variance.csv"];
+
 /// Distance between the values of shifted and of other sets in a chart.
 const ASIDE: f64 = 0.3;
 

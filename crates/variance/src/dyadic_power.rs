@@ -10,7 +10,6 @@ use crate::VarianceError;
 use crate::power_estimate::{GroupShares, PowerEstimate};
 use crate::sampler::indices;
 use etendue_field::{Crossing, PhotonSource, VirtualPlane};
-use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::field::FieldOptions;
 use rayon::prelude::*;
@@ -33,19 +32,18 @@ pub(crate) fn bands(finest: usize) -> impl Iterator<Item = [usize; 4]> {
     (0..n.pow(4)).map(move |i| indices(i, n))
 }
 
-/// Measures the power in dyadic bands at the only plane of a scene from
-/// [`with_box_window`](crate::with_box_window). `progress` is called with the number of photons as
-/// they are traced.
+/// Measures the power in dyadic bands at a plane with a [Box window](crate::box_window), which is
+/// plane 0 of `source`. `progress` is called with the number of photons as they are traced.
 ///
 /// # Errors
 ///
 /// Fails if fewer than three batches have photons.
 pub fn dyadic_power(
-    scene: &Scene,
-    source: &dyn PhotonSource,
+    plane: &VirtualPlane,
+    (source, batches): (&dyn PhotonSource, u32),
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<PowerEstimate, VarianceError> {
-    let batches: Vec<u32> = (0..scene.run.batches)
+    let batches: Vec<u32> = (0..batches)
         .filter(|batch| source.emitted(*batch) > 0)
         .collect();
     if batches.len() < MIN_GROUPS {
@@ -59,7 +57,6 @@ pub fn dyadic_power(
         let members = batches.iter().skip(group).step_by(groups);
         members.copied().collect::<Vec<_>>()
     };
-    let plane = &scene.planes[0];
     let each = (0..groups)
         .into_par_iter()
         .map(|group| block_means(plane, source, &members(group), batches.len(), progress));

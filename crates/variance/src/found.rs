@@ -31,7 +31,7 @@ impl SetFamily {
     #[must_use]
     pub fn means(
         &self,
-        radiance: &WindowRadiance,
+        radiance: &WindowRadiance<'_>,
         sampler: &Sampler,
         count: usize,
         progress: &(dyn Fn(u64) + Sync),

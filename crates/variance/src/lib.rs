@@ -33,14 +33,14 @@ pub use error::VarianceError;
 pub use expected_power::ExpectedPower;
 pub use found::{DEFAULT_SETS, SETS, SetFamily, variance_of};
 pub use measured_power::{
-    DEFAULT_FREQUENCIES, FREQUENCIES, MeasuredPower, field_options, with_box_window,
+    DEFAULT_FREQUENCIES, FREQUENCIES, MeasuredPower, box_window, field_options, with_box_window,
 };
 pub use point_counts::{MAX_COUNTS, PointCounts};
 pub use points::{points, shift};
 pub use power_estimate::PowerEstimate;
 pub use power_law::fitted_slope;
 pub use prediction::{MAX_FILE_TAIL, PredictedVariance};
-pub use radiance::{WindowMoments, WindowRadiance};
+pub use radiance::{RayRadiance, WindowMoments, WindowRadiance};
 pub use report::{
     AXES, AxisSetPower, CountReport, MAX_WORST, SamplerReport, VarianceCurve, WindowStudy,
     WorsePower, WorstFrequency, axis_sets,

@@ -31,25 +31,33 @@ pub struct MeasuredPower {
     pub mean: Uncertain,
 }
 
-/// Returns a scene that sees one plane, whose windows are replaced by Box windows of the same
-/// half-widths. The grid of this plane reaches twice `max` cycles per window.
+/// Returns a scene that sees one plane, [with a Box window](box_window).
 #[must_use]
 pub fn with_box_window(scene: &Scene, index: usize, max: usize) -> Scene {
     let mut scene = scene.seen_at(&[index]);
     for plane in &mut scene.planes {
-        let Window { x, y, u, v } = plane.window;
-        let [x, y, u, v] = [x, y, u, v].map(|profile| Profile::Box(profile.half_width()));
-        plane.window = Window { x, y, u, v };
-        let reaching = |profiles: [Profile; 2]| {
-            let half_width = profiles.iter().map(Profile::half_width);
-            let spacing = 0.5 / half_width.fold(f64::INFINITY, f64::min);
-            let half = CELLS_PER_FREQUENCY / 2 * max;
-            FrequencyAxis { half, spacing }
-        };
-        plane.grid.rho = reaching([x, y]);
-        plane.grid.nu = reaching([u, v]);
+        *plane = box_window(plane, max);
     }
     scene
+}
+
+/// Returns a plane whose windows are replaced by Box windows of the same half-widths. The grid of
+/// this plane reaches twice `max` cycles per window.
+#[must_use]
+pub fn box_window(plane: &VirtualPlane, max: usize) -> VirtualPlane {
+    let mut plane = plane.clone();
+    let Window { x, y, u, v } = plane.window;
+    let [x, y, u, v] = [x, y, u, v].map(|profile| Profile::Box(profile.half_width()));
+    plane.window = Window { x, y, u, v };
+    let reaching = |profiles: [Profile; 2]| {
+        let half_width = profiles.iter().map(Profile::half_width);
+        let spacing = 0.5 / half_width.fold(f64::INFINITY, f64::min);
+        let half = CELLS_PER_FREQUENCY / 2 * max;
+        FrequencyAxis { half, spacing }
+    };
+    plane.grid.rho = reaching([x, y]);
+    plane.grid.nu = reaching([u, v]);
+    plane
 }
 
 /// Returns the options with which the grid of a plane is measured.
@@ -63,21 +71,20 @@ pub fn field_options() -> FieldOptions {
 }
 
 impl MeasuredPower {
-    /// Measures the power at the only plane of a scene from [`with_box_window`], with the photons of
+    /// Measures the power at a plane with a [Box window](box_window), which is plane 0 of
     /// `source`. `progress` is called with the number of photons as they are traced.
     ///
     /// # Errors
     ///
     /// Fails if fewer than three batches have photons.
     pub fn measure(
-        scene: &Scene,
-        source: &dyn PhotonSource,
+        plane: &VirtualPlane,
+        (source, batches): (&dyn PhotonSource, u32),
         max: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Self, VarianceError> {
-        let plane = &scene.planes[0];
-        let batches = 0..scene.run.batches;
-        let field = measure_field(source, 0, plane, batches, &field_options(), progress)?;
+        let options = field_options();
+        let field = measure_field(source, 0, plane, 0..batches, &options, progress)?;
         Ok(Self::of_groups(&field.groups, plane, max))
     }
 

@@ -17,11 +17,31 @@ const RAYS_PER_NET: usize = 1 << 13;
 /// Set numbers from here on belong to the moments.
 const FIRST_NET: u64 = 1 << 47;
 
+/// The radiance along rays, found by rays traced back.
+pub trait RayRadiance: std::fmt::Debug + Send + Sync {
+    /// Returns the radiance along a ray, in the unit of the plane's quantity. `index` selects the
+    /// random numbers of scattering.
+    fn along(&self, ray: &TwoPlane, index: u64) -> f64;
+}
+
 /// The radiance f(z) at the points z of the window of a plane.
 #[derive(Debug)]
-pub struct WindowRadiance {
+pub struct WindowRadiance<'a> {
+    window: Window,
+    rays: Box<dyn RayRadiance + 'a>,
+}
+
+/// The radiance at the only plane of a scene.
+#[derive(Debug)]
+struct SceneRadiance {
     tracer: Backward,
     plane: VirtualPlane,
+}
+
+impl RayRadiance for SceneRadiance {
+    fn along(&self, ray: &TwoPlane, index: u64) -> f64 {
+        self.plane.factor(ray) * self.tracer.radiance(0, ray, index)
+    }
 }
 
 /// The moments of the radiance over the window. Points have uniform density in the window
@@ -37,7 +57,7 @@ pub struct WindowMoments {
     pub noise: Uncertain,
 }
 
-impl WindowRadiance {
+impl<'a> WindowRadiance<'a> {
     /// Builds the radiance at the only plane of a scene.
     ///
     /// # Errors
@@ -50,7 +70,14 @@ impl WindowRadiance {
             return Err(VarianceError::NoRadiance(plane.name));
         }
         let tracer = Backward::new(scene)?;
-        Ok(Self { tracer, plane })
+        let window = plane.window;
+        Ok(Self::of(window, Box::new(SceneRadiance { tracer, plane })))
+    }
+
+    /// Builds the radiance at a window from the radiance along rays.
+    #[must_use]
+    pub fn of(window: Window, rays: Box<dyn RayRadiance + 'a>) -> Self {
+        Self { window, rays }
     }
 
     /// Returns the radiance at a point of the window, in the unit of the plane's quantity. `index`
@@ -62,7 +89,7 @@ impl WindowRadiance {
             y: wy,
             u: wu,
             v: wv,
-        } = &self.plane.window;
+        } = &self.window;
         let along =
             |z: f64, profile: &etendue_field::Profile| (2.0 * z - 1.0) * profile.half_width();
         let ray = TwoPlane {
@@ -71,7 +98,7 @@ impl WindowRadiance {
             u: along(u, wu),
             v: along(v, wv),
         };
-        self.plane.factor(&ray) * self.tracer.radiance(0, &ray, index)
+        self.rays.along(&ray, index)
     }
 
     /// Returns the mean radiance at the points of set number `set`.

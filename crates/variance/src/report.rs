@@ -104,7 +104,7 @@ pub struct WindowStudy<'a> {
     /// The measured power in dyadic bands, if variances without shifts are requested.
     pub bands: Option<&'a PowerEstimate>,
     /// The radiance along rays.
-    pub radiance: &'a WindowRadiance,
+    pub radiance: &'a WindowRadiance<'a>,
     /// The moments of the radiance.
     pub moments: &'a WindowMoments,
     /// Number of sets of points with which each variance is found.

@@ -2,10 +2,15 @@
 
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;
+use etendue_pipeline::point_file;
+use etendue_store::{ArgumentStyle, Failure};
 use etendue_variance::{
     DEFAULT_FREQUENCIES, DEFAULT_SETS, FREQUENCIES, PointCounts, SETS, Sampler,
 };
 use std::path::PathBuf;
+
+/// All samplers that are not files.
+pub(super) const SAMPLERS: &str = "independent,jitter,lhs,sobol,padded";
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -48,7 +53,7 @@ pub(crate) struct VarianceArgs {
     pub(crate) plane: Option<String>,
 
     /// Samplers, separated by commas
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = sampler, default_value = "independent,jitter,lhs,sobol,padded")]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = sampler, default_value = SAMPLERS)]
     pub(crate) samplers: Vec<SamplerArg>,
 
     /// Numbers of points: A..B stands for A, 4A, 16A, ... up to B, and A,B,C for a list
@@ -88,7 +93,28 @@ pub(crate) enum SamplerArg {
     File(PathBuf),
 }
 
-fn sampler(text: &str) -> Result<SamplerArg, String> {
+/// Returns the files of points among the samplers.
+pub(crate) fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
+    samplers.iter().filter_map(|sampler| match sampler {
+        SamplerArg::Named(_) => None,
+        SamplerArg::File(path) => Some(path),
+    })
+}
+
+/// Returns the samplers, with the points of files.
+pub(crate) fn samplers(named: &[SamplerArg]) -> Result<Vec<Sampler>, Failure> {
+    let of = |sampler: &SamplerArg| match sampler {
+        SamplerArg::Named(all) => Ok(all.clone()),
+        SamplerArg::File(path) => {
+            let file = point_file::read(path, ArgumentStyle::Command)?;
+            Ok(vec![Sampler::File(file)])
+        }
+    };
+    let all: Vec<Vec<Sampler>> = named.iter().map(of).collect::<Result<_, Failure>>()?;
+    Ok(all.concat())
+}
+
+pub(super) fn sampler(text: &str) -> Result<SamplerArg, String> {
     let text = text.trim();
     if let Some(samplers) = Sampler::named(text) {
         return Ok(SamplerArg::Named(samplers));

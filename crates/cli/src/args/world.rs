@@ -1,11 +1,13 @@
 //! Arguments of commands that read scenes of other programs.
 
 use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number};
+use super::variance::{SAMPLERS, SamplerArg, sampler, samplers};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use etendue_adaptive::SampleMethod;
 use etendue_import::{Color, Options};
-use etendue_store::ArgumentStyle;
+use etendue_pipeline::variance::VarianceOptions;
+use etendue_store::{ArgumentStyle, Failure};
 use etendue_view::ranges::{self, MAX_ANGLE, MAX_COORDINATE, SIDE};
 use etendue_view::{CameraChoice, PictureRequest, ProbeRequest, Viewpoint, WorldSource};
 use glam::DVec3;
@@ -248,6 +250,7 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --pixel 128,200
   etendue probe cbox.xml --pixel 128,200 --depth 2 --window 8 --rays 2^22
   etendue probe cbox.xml --pixel 128,200 --covariance
+  etendue probe cbox.xml --pixel 128,200 --variance sobol,padded
   etendue probe cbox.xml --map 64x40
 
 Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
@@ -286,11 +289,12 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "PIXELS", value_parser = window)]
     pub(crate) window: Option<f64>,
 
-    /// Backward rays per plane [default: 2^20; for a map, 2^15]
+    /// Backward rays per plane [default: 2^20, and more where the verdict needs more; for a map, 2^15]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) rays: Option<u64>,
 
-    /// Photons that check the backward rays [default: 2^25]
+    /// Photons that check the backward rays, and BSDF rays for planes where photons are not enough
+    /// [default: as many as the verdict needs, at most 2^28]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) photons: Option<u64>,
 
@@ -303,6 +307,11 @@ pub(crate) struct ProbeArgs {
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 
+    /// Also predict the Monte Carlo error of the mean radiance over the window of each plane, for
+    /// these samplers, and show the error really made (see etendue variance)
+    #[arg(long, value_name = "SAMPLERS", value_delimiter = ',', value_parser = sampler, num_args = 0..=1, default_missing_value = SAMPLERS, conflicts_with = "map")]
+    pub(crate) variance: Option<Vec<SamplerArg>>,
+
     #[command(flatten)]
     pub(crate) out: FolderArgs,
 
@@ -312,23 +321,31 @@ pub(crate) struct ProbeArgs {
 
 impl ProbeArgs {
     /// The requested probe.
-    pub(crate) fn request(&self) -> ProbeRequest {
+    pub(crate) fn request(&self) -> Result<ProbeRequest, Failure> {
         let default = match self.map {
             Some(_) => ProbeRequest::RAYS_OF_MAP,
             None => ProbeRequest::RAYS,
         };
-        ProbeRequest {
+        let variance = self.variance.as_deref().map(|named| {
+            let samplers = samplers(named)?;
+            Ok(VarianceOptions {
+                samplers,
+                ..VarianceOptions::new(ArgumentStyle::Command)
+            })
+        });
+        Ok(ProbeRequest {
             source: self.scene.source(),
             camera: self.camera.choice(),
             surfaces: self.surfaces,
             window: self.window,
             rays: self.rays.unwrap_or(default),
-            photons: self.photons.unwrap_or(ProbeRequest::PHOTONS),
+            photons: self.photons,
             seed: self.seed,
             covariance: self.covariance,
+            variance: variance.transpose()?,
             out: self.out.folder.clone(),
             force: self.work.force.force,
-        }
+        })
     }
 }
 

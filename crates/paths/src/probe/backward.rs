@@ -54,7 +54,6 @@ impl<'a> BackwardProbe<'a> {
     /// Traces the ray with this number through a plane. A point of a net gives the first random
     /// numbers of the ray.
     fn crossing(&self, plane: &VirtualPlane, number: u64, (net, point): (&Net, u32)) -> Crossing {
-        let Probe { paths, legs, .. } = self.probe;
         let mut numbers = PathNumbers::new(self.budget.seed, number).of_net(net, point);
         let half = [
             plane.window.x,
@@ -66,15 +65,8 @@ impl<'a> BackwardProbe<'a> {
         let drawn: [f64; 4] = numbers.draw();
         let [x, y, u, v] = [0, 1, 2, 3].map(|i: usize| (2.0 * drawn[i] - 1.0) * half[i]);
         let ray = TwoPlane { x, y, u, v };
-        let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
-        let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
-        let radiance = paths.radiance(
-            line,
-            [0.0, f64::INFINITY],
-            before,
-            self.search,
-            &mut numbers,
-        );
+        let probe = self.probe;
+        let radiance = probe.radiance_by(plane, &ray, self.search, &mut numbers);
         // The last factor is the volume of the window. The weights are not divided by the number of
         // rays here, because their mean is computed later.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();

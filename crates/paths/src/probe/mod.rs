@@ -13,10 +13,12 @@ pub use stop::Stop;
 use stop::across;
 
 use crate::lights::EmissionTarget;
-use crate::paths::Paths;
+use crate::numbers::PathNumbers;
+use crate::paths::{LightSearch, Paths};
 use crate::scatter::Reflects;
 use etendue_field::{
-    Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
+    Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, TwoPlane, VirtualPlane,
+    Window,
 };
 use etendue_world::{Camera, Projection};
 use glam::DVec3;
@@ -38,7 +40,7 @@ pub struct Question {
 }
 
 /// The light field behind a pixel, ready to be measured.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Probe<'a> {
     paths: &'a Paths,
     /// The surfaces. The camera sees the first of them.
@@ -138,6 +140,35 @@ impl<'a> Probe<'a> {
             }
         }
         Some(probe)
+    }
+
+    /// Returns the radiance along a ray through a plane, by one path that is traced back. The seed
+    /// and `index` select the random numbers of the path.
+    #[must_use]
+    pub fn radiance(&self, plane: &VirtualPlane, ray: &TwoPlane, seed: u64, index: u64) -> f64 {
+        let mut numbers = PathNumbers::new(seed, index);
+        self.radiance_by(plane, ray, LightSearch::Both, &mut numbers)
+    }
+
+    /// Returns the radiance along a ray through a plane, by one path with these random numbers.
+    fn radiance_by(
+        &self,
+        plane: &VirtualPlane,
+        ray: &TwoPlane,
+        search: LightSearch,
+        numbers: &mut PathNumbers<'_>,
+    ) -> f64 {
+        let line = self.legs[plane.leg].line(&self.paths.geometry, &plane.frame, ray);
+        let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
+        let range = [0.0, f64::INFINITY];
+        self.paths.radiance(line, range, before, search, numbers)
+    }
+
+    /// Checks whether BSDF rays, which never sample a light, find all lights. They never find point
+    /// lights, spots and directional lights.
+    #[must_use]
+    pub fn bsdf_finds_lights(&self) -> bool {
+        self.paths.bsdf_finds_lights()
     }
 
     /// Replaces the planes by a single plane, which records the light that arrives at the middle of

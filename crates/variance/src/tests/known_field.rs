@@ -60,7 +60,7 @@ fn exactly(value: f64) -> Uncertain {
 fn measured(max: usize) -> (MeasuredPower, WindowMoments) {
     let scene = with_box_window(&scene("soft_shadow.ron", &[]), 0, max);
     assert_eq!(scene.run.batches, BATCHES);
-    let power = MeasuredPower::measure(&scene, &Waves, max, &|_| ()).unwrap();
+    let power = MeasuredPower::measure(&scene.planes[0], (&Waves, BATCHES), max, &|_| ()).unwrap();
     let moments = WindowMoments {
         mean: exactly(1.0),
         variance: exactly(WAVES.iter().map(|(_, a)| a * a / 2.0).sum()),

@@ -14,8 +14,10 @@ const FEWER: (&str, &str) = ("photons: 4_194_304", "photons: 524_288");
 fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, [f64; 6]) {
     let max = 8;
     let scene = with_box_window(scene, index, max);
-    let power = MeasuredPower::measure(&scene, &Tracer::new(&scene), max, &|_| ()).unwrap();
-    let bands = dyadic_power(&scene, &Tracer::new(&scene), &|_| ()).unwrap();
+    let tracer = Tracer::new(&scene);
+    let (plane, photons) = (&scene.planes[0], (&tracer as _, scene.run.batches));
+    let power = MeasuredPower::measure(plane, photons, max, &|_| ()).unwrap();
+    let bands = dyadic_power(plane, photons, &|_| ()).unwrap();
     let radiance = WindowRadiance::new(&scene).unwrap();
     let moments = radiance.moments(3, &|_| ());
     let off = power.mean.value - moments.mean.value;

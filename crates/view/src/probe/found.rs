@@ -1,6 +1,7 @@
 //! The results of a probe at a plane.
 
 use super::covariance::FoundCovariance;
+use super::variance::FoundVariance;
 use etendue_compare::{PlaneComparison, Verdict};
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
@@ -13,10 +14,14 @@ pub(super) struct Found {
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
     pub(super) judge: SecondEstimate,
+    /// The number of backward rays, and the number of rays or photons of the judge.
+    pub(super) counts: [u64; 2],
     /// The reason why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
     /// The covariance of the plane's spectrum, if requested.
     pub(super) covariance: Option<FoundCovariance>,
+    /// The variances of samplers, if requested. A dark plane and one of constant radiance have none.
+    pub(super) variance: Option<FoundVariance>,
 }
 
 /// The measurement with which the backward rays are compared; below it is called the judge.

@@ -1,27 +1,21 @@
 //! Probes the light field behind a pixel.
 
 use super::covariance;
-use super::found::{Found, SecondEstimate, verdict};
+use super::estimates::{budget, measured};
+use super::found::Found;
 use super::picture::PictureBandwidth;
-use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
+use super::scene::{BATCHES, ProbeRequest, ProbedScene};
+use super::variance;
 use super::words::{lines, of_plane, of_stop};
-use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
-use etendue_field::PhotonSource;
-use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
+use etendue_compare::{Prediction, Verdict};
+use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
-use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
-use etendue_spectrum::{CrossPower, Measurement, measure};
+use etendue_report::variance::drawn as figure;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
-
-/// Rays that find lights only by directions sampled from BSDFs have more noise than backward rays.
-/// Therefore their number is larger by this factor.
-const BSDF_RAYS: u64 = 4;
-/// The difference between the seed of these rays and the seed of the backward rays.
-const BSDF_SEED: u64 = 1 << 63;
 
 /// The result of probing a pixel.
 #[derive(Debug)]
@@ -66,9 +60,25 @@ pub fn probe_pixel(
     let question = scene.question(pixel, picture.pixels, 4);
     let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(nothing)?;
     let name = scene.name();
-    let files = probe.planes.iter().flat_map(|plane| files_of(&plane.name));
+    let drawn = request.variance.is_some();
+    let files = probe.planes.iter();
+    let files = files.flat_map(|plane| files_of(&plane.name, drawn));
     let (results, folder) = scene.claim(format!("{name}-{column}-{row}"), files.collect())?;
-    let found = measured(request, &probe, reporter)?;
+    let mut found = measured(request, &probe, reporter)?;
+    if request.covariance {
+        let budget = budget(request.rays, request.seed);
+        let all = covariance::measured(&probe, budget, reporter)?;
+        for ((found, _), covariance) in found.iter_mut().zip(all) {
+            found.covariance = Some(covariance);
+        }
+    }
+    if let Some(options) = &request.variance {
+        let planes: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
+        let all = variance::studied(request, options, (&probe, &planes), reporter)?;
+        for ((found, _), variance) in found.iter_mut().zip(all) {
+            found.variance = variance;
+        }
+    }
     let note = format!("{name}, pixel {column}, {row}");
     let seen = (&probe, &picture, &found[..]);
     let verdict = written(&scene, results, (&note, pixel), seen, reporter)?;
@@ -95,6 +105,10 @@ fn written(
         arrays::write(&mut results, made_from.clone(), &found.comparison)?;
         let source = (note, ["backward rays", found.judge.word()]);
         pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
+        if let Some(found) = &found.variance {
+            let figure = figure(note, &found.variance)?;
+            pictures::write(&mut results, &format!("{}/variance", plane.name), &figure)?;
+        }
     }
     let each = found
         .iter()
@@ -123,113 +137,9 @@ fn written(
     Ok(verdict)
 }
 
-fn files_of(name: &str) -> impl Iterator<Item = String> + use<'_> {
+fn files_of(name: &str, with_variance: bool) -> impl Iterator<Item = String> + use<'_> {
     let files = arrays::NAMES.into_iter().chain(pictures::NAMES);
+    let drawn = etendue_report::variance::NAMES.into_iter();
+    let files = files.chain(drawn.filter(move |_| with_variance));
     files.map(move |file| format!("{name}/{file}"))
-}
-
-/// The measurements of a probe, and the test that compares them.
-struct Comparisons<'a> {
-    probe: &'a Probe<'a>,
-    backward: Measurement,
-    test: Test,
-}
-
-impl Comparisons<'_> {
-    /// Compares backward rays with another measurement of the same light at a plane.
-    fn at_plane(
-        &self,
-        i: usize,
-        other: &Measurement,
-    ) -> Result<(PlaneComparison, Prediction), Failure> {
-        let prediction = Prediction::measured(other, i).map_err(Failure::cannot_run)?;
-        let comparison =
-            compare(&self.backward, i, &prediction, &self.test).map_err(Failure::cannot_run)?;
-        Ok((comparison, prediction))
-    }
-
-    /// Returns the results at a plane with their comparison.
-    fn found(
-        &self,
-        i: usize,
-        comparison: PlaneComparison,
-        misses: Option<&'static str>,
-    ) -> Result<Found, Failure> {
-        let varying = self.backward.without_mean(i);
-        let azimuths = 0..self.probe.planes[i].grid.azimuths;
-        let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
-        Ok(Found {
-            comparison,
-            nu: power.bandwidth(bandwidth_nu),
-            rho: power.bandwidth(bandwidth_rho),
-            judge: SecondEstimate::Photons,
-            misses,
-            covariance: None,
-        })
-    }
-}
-
-/// Compares backward rays and photons at all planes. If a plane is then undecided, compares the
-/// backward rays with rays that find lights only by directions sampled from BSDFs.
-fn measured(
-    request: &ProbeRequest,
-    probe: &Probe<'_>,
-    reporter: &dyn Reporter,
-) -> Result<Vec<(Found, Prediction)>, Failure> {
-    let budget = |count: u64, seed| Budget {
-        each: count.div_ceil(u64::from(BATCHES)),
-        seed,
-    };
-    let rays = BackwardProbe::new(probe, budget(request.rays, request.seed));
-    let photons = PhotonProbe::new(probe, budget(request.photons, !request.seed));
-    let trace = |source: &dyn PhotonSource, count| -> Measurement {
-        let bar = reporter.begin(Work::Photons(count));
-        let found = measure(source, &probe.planes, 0..BATCHES, &|done| bar.advance(done));
-        drop(bar);
-        found
-    };
-    let comparisons = Comparisons {
-        probe,
-        backward: trace(&rays, request.rays),
-        test: Test {
-            // Each plane has up to two tests.
-            level: sidak(ALPHA, 2 * probe.planes.len()),
-            resolution: RESOLUTION,
-            seed: request.seed,
-        },
-    };
-    let forward = trace(&photons, request.photons);
-    let mut planes = Vec::new();
-    for i in 0..probe.planes.len() {
-        let (comparison, prediction) = comparisons.at_plane(i, &forward)?;
-        let found = comparisons.found(i, comparison, photons.misses(i))?;
-        planes.push((found, prediction));
-    }
-    let open = (0..planes.len()).filter(|i| verdict(&planes[*i].0) == Verdict::Undecided);
-    for i in open.collect::<Vec<usize>>() {
-        let seed = request.seed.wrapping_add(BSDF_SEED);
-        let rays = BackwardProbe::new(probe, budget(BSDF_RAYS * request.rays, seed)).at_plane(i);
-        let Some(rays) = rays.by_bsdf() else {
-            break;
-        };
-        let found = trace(&rays, BSDF_RAYS * request.rays);
-        let (comparison, prediction) = comparisons.at_plane(i, &found)?;
-        let (plane, old) = &mut planes[i];
-        let noise = |of: &PlaneComparison| of.report.noise_limit.unwrap_or(f64::INFINITY);
-        if plane.misses.is_some() || noise(&comparison) < noise(&plane.comparison) {
-            plane.comparison = comparison;
-            plane.judge = SecondEstimate::BsdfRays;
-            *old = prediction;
-        }
-    }
-    for (found, _) in &mut planes {
-        found.comparison.report.verdict = verdict(found);
-    }
-    if request.covariance {
-        let all = covariance::measured(probe, budget(request.rays, request.seed), reporter)?;
-        for ((found, _), covariance) in planes.iter_mut().zip(all) {
-            found.covariance = Some(covariance);
-        }
-    }
-    Ok(planes)
 }

@@ -3,6 +3,7 @@
 use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
 use etendue_paths::{Paths, Question};
+use etendue_pipeline::variance::VarianceOptions;
 use etendue_store::VERSION;
 use etendue_store::{Failure, PROBE, Plan, Results};
 use etendue_world::Camera;
@@ -35,12 +36,15 @@ pub struct ProbeRequest {
     pub window: Option<f64>,
     /// Number of backward rays for each plane.
     pub rays: u64,
-    /// Number of photons that check the rays.
-    pub photons: u64,
+    /// Number of photons or BSDF rays that check the rays; `None` for as many as a verdict needs.
+    /// Then planes that need more backward rays get more, too.
+    pub photons: Option<u64>,
     /// Seed of rays and photons.
     pub seed: u64,
     /// Whether the covariance of each plane's spectrum is measured too.
     pub covariance: bool,
+    /// The samplers whose errors at each plane are predicted and found, if requested.
+    pub variance: Option<VarianceOptions>,
     /// The results folder; by default a folder below `out`.
     pub out: Option<PathBuf>,
     /// Whether files that Étendue did not write may be replaced.
@@ -54,8 +58,8 @@ impl ProbeRequest {
     pub const RAYS: u64 = 1 << 20;
     /// Default number of backward rays for each pixel of a map.
     pub const RAYS_OF_MAP: u64 = 1 << 15;
-    /// Default number of photons that check the rays.
-    pub const PHOTONS: u64 = 1 << 25;
+    /// The number of photons with which a probe begins if their number is not fixed.
+    const FIRST_PHOTONS: u64 = 1 << 20;
     /// Default seed.
     pub const SEED: u64 = 1;
 
@@ -68,12 +72,18 @@ impl ProbeRequest {
             surfaces: Self::SURFACES,
             window: None,
             rays: Self::RAYS,
-            photons: Self::PHOTONS,
+            photons: None,
             seed: Self::SEED,
             covariance: false,
+            variance: None,
             out: None,
             force: false,
         }
+    }
+
+    /// Returns the number of photons with which a probe begins.
+    pub(super) fn first_photons(&self) -> u64 {
+        self.photons.unwrap_or(Self::FIRST_PHOTONS)
     }
 }
 

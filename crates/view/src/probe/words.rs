@@ -7,6 +7,7 @@ use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{FrequencyAxis, Lobe, VirtualPlane, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_pipeline::table::aligned;
+use etendue_pipeline::variance_table::text;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
 use etendue_spectrum::field::MatrixEstimate;
@@ -66,12 +67,17 @@ pub(super) fn of_plane(found: &Found, plane: &VirtualPlane) -> Value {
         "frequencies": { "azimuths": grid.azimuths, "rho": axis(&grid.rho), "nu": axis(&grid.nu) },
         "verdict": found.comparison.report.verdict,
         "judge": found.judge.word(),
+        "rays": found.counts[0],
+        "judge_rays": found.counts[1],
         "photons_miss": found.misses,
         "variation_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
         "variation_95_azimuth": { "nu": azimuth(&found.nu), "rho": azimuth(&found.rho) },
     });
     if let Some(covariance) = &found.covariance {
         tree["spectral_covariance"] = covariance.tree();
+    }
+    if let Some(variance) = &found.variance {
+        tree["variance"] = variance.tree.clone();
     }
     tree
 }
@@ -110,20 +116,26 @@ pub(super) fn lines(
         // The comparison states only that there are too few photons, but there may also be too few
         // rays.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
-        let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
-        let times = report.photons_needed.map(|n| n / request.rays as f64);
-        let more = match times {
-            // The noise is underestimated if it is a large part of the spectrum.
-            Some(times) => format!(
-                "{} {} times as many {rays} and {photons} are needed",
-                if report.noise_limit > Some(NOISY) {
-                    "more than"
+        let more = match report.photons_needed {
+            Some(needed) => {
+                let times = needed / found.counts[0] as f64;
+                let [rays, photons] = found
+                    .counts
+                    .map(|count| power_of_two(count as f64 * times, arguments));
+                let [rays, photons] = [("rays", rays), ("photons", photons)]
+                    .map(|(name, count)| arguments.with(name, count));
+                // The noise is underestimated if it is a large part of the spectrum.
+                let most = if report.noise_limit > Some(NOISY) {
+                    "at least "
                 } else {
-                    "about"
-                },
-                times.ceil()
-            ),
-            None => format!("more {rays} or {photons} may decide it"),
+                    ""
+                };
+                format!("{most}{rays} and {photons} are needed")
+            }
+            None => {
+                let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
+                format!("more {rays} or {photons} may decide it")
+            }
         };
         Some(format!("{}: {why}; {more}", report.name))
     }));
@@ -133,7 +145,22 @@ pub(super) fn lines(
     }
     lines.extend(bandwidths(picture, arguments));
     lines.extend(covariances(found));
+    if let Some(options) = &request.variance {
+        for variance in found.iter().filter_map(|found| found.variance.as_ref()) {
+            lines.push(String::new());
+            lines.push(text(&variance.variance, options));
+        }
+    }
     lines
+}
+
+/// Returns the next power of two, as an argument is written.
+fn power_of_two(count: f64, arguments: ArgumentStyle) -> String {
+    let exponent = libm::log2(count).ceil();
+    match arguments {
+        ArgumentStyle::Command => format!("2^{exponent}"),
+        ArgumentStyle::Python => format!("2**{exponent}"),
+    }
 }
 
 /// Returns a table with a header.

@@ -1,0 +1,179 @@
+//! Plans how many more rays and photons the planes of a probe need for a verdict.
+
+use super::scene::RESOLUTION;
+
+/// The noise that both estimates of a plane together should have, as a share of the spectrum. It is
+/// below the resolution because the noise of few rays is itself uncertain.
+const TARGET: f64 = 0.8 * RESOLUTION;
+/// The largest number of rays or photons that an estimate may have.
+const MAX_RAYS: f64 = (1_u64 << 28) as f64;
+/// Limits of the factor by which an estimate grows. A factor below the first would waste the rays
+/// that are already traced; above the second, the noise of few rays is not trusted.
+const GROWTH: [f64; 2] = [2.0, 16.0];
+
+/// How many rays or photons an estimate has, and its noise as a share of the spectrum. The noise is
+/// infinite if no light was found, or less light than noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Effort {
+    pub(super) count: u64,
+    pub(super) noise: f64,
+}
+
+impl Effort {
+    /// Returns the number of rays with which the noise should be at most this share; infinity if
+    /// that number is too large.
+    fn needed(self, share: f64) -> f64 {
+        let count = self.count as f64;
+        let needed = count * (self.noise / share).powi(2);
+        let next = needed.clamp(GROWTH[0] * count, GROWTH[1] * count);
+        // The noise of few rays does not prove that too many are needed.
+        let is_few = next <= MAX_RAYS / GROWTH[1];
+        if next > MAX_RAYS || (needed > MAX_RAYS && !is_few) {
+            return f64::INFINITY;
+        }
+        next
+    }
+}
+
+/// The effort so far at a plane that is undecided.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlaneEffort {
+    /// The number of the plane.
+    pub(super) plane: usize,
+    /// Backward rays.
+    pub(super) rays: Effort,
+    /// Photons; `None` if they do not find all light of the plane.
+    pub(super) photons: Option<Effort>,
+    /// BSDF rays; `None` if they do not find all light of the plane.
+    pub(super) bsdf_rays: Option<Effort>,
+}
+
+impl PlaneEffort {
+    /// Returns the numbers of backward rays, photons and BSDF rays that the plane needs, where
+    /// either photons or BSDF rays suffice. Returns `None` if the plane needs too many.
+    fn needed(&self) -> Option<[f64; 3]> {
+        let half = TARGET * std::f64::consts::FRAC_1_SQRT_2;
+        let rays = if self.rays.noise <= half {
+            self.rays.count as f64
+        } else {
+            self.rays.needed(half)
+        };
+        let left = (TARGET * TARGET - self.rays.noise.min(half).powi(2)).sqrt();
+        let of = |effort: Option<Effort>| effort.map_or(f64::INFINITY, |it| it.needed(left));
+        let needed = [rays, of(self.photons), of(self.bsdf_rays)];
+        let [rays, photons, bsdf_rays] = needed;
+        (rays.is_finite() && photons.min(bsdf_rays).is_finite()).then_some(needed)
+    }
+}
+
+/// The numbers of rays and photons to trace next.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Plan {
+    /// Planes with their numbers of backward rays.
+    pub(super) rays: Vec<(usize, u64)>,
+    /// Photons for all planes.
+    pub(super) photons: Option<u64>,
+    /// Planes with their numbers of BSDF rays.
+    pub(super) bsdf_rays: Vec<(usize, u64)>,
+}
+
+impl Plan {
+    /// Plans the least work for the undecided planes. Photons serve all planes at once, and BSDF
+    /// rays only one. A photon takes about as long as a BSDF ray.
+    pub(super) fn new(open: &[PlaneEffort]) -> Self {
+        let needed = open.iter().map(|of| (of, of.needed()));
+        let needed: Vec<(&PlaneEffort, [f64; 3])> = needed
+            .filter_map(|(of, needed)| Some((of, needed?)))
+            .collect();
+        let bsdf_rays = |limit: f64| {
+            let rest = needed.iter().filter(move |(_, [_, n, _])| *n > limit);
+            rest.map(|(of, [.., n])| (of.plane, *n))
+        };
+        let work = |photons: f64| photons + bsdf_rays(photons).map(|(_, n)| n).sum::<f64>();
+        let counts = needed.iter().map(|(_, [_, n, _])| *n);
+        let photons = counts
+            .filter(|n| n.is_finite())
+            .fold(0.0, |a, b| if work(b) < work(a) { b } else { a });
+        let grown = needed
+            .iter()
+            .filter(|(of, [n, ..])| *n > of.rays.count as f64);
+        Self {
+            rays: grown.map(|(of, [n, ..])| (of.plane, whole(*n))).collect(),
+            photons: (photons > 0.0).then(|| whole(photons)),
+            bsdf_rays: bsdf_rays(photons)
+                .map(|(plane, n)| (plane, whole(n)))
+                .collect(),
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of rays are positive and at most 2^28"
+)]
+fn whole(rays: f64) -> u64 {
+    rays.ceil() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Effort, Plan, PlaneEffort, TARGET};
+
+    fn plane(plane: usize, rays: f64, photons: f64, bsdf_rays: f64) -> PlaneEffort {
+        let count = 1 << 20;
+        let effort = |noise| Effort { count, noise };
+        PlaneEffort {
+            plane,
+            rays: effort(rays),
+            photons: Some(effort(photons)),
+            bsdf_rays: Some(effort(bsdf_rays)),
+        }
+    }
+
+    /// Tests that the planned rays bring the noise of both estimates to the target.
+    #[test]
+    fn planned_rays_reach_the_target() {
+        let of = plane(3, 0.1, 0.5, 0.11);
+        let plan = Plan::new(&[of]);
+        assert_eq!(plan.photons, None);
+        let square = |(noise, count): (f64, u64)| noise * noise * f64::from(1 << 20) / count as f64;
+        let left = [(0.1, plan.rays[0].1), (0.11, plan.bsdf_rays[0].1)].map(square);
+        let noise = (left[0] + left[1]).sqrt();
+        assert!((noise / TARGET - 1.0).abs() < 1e-5, "{noise}"); // rounding to whole rays
+        assert_eq!([plan.rays[0].0, plan.bsdf_rays[0].0], [3, 3]);
+    }
+
+    /// Tests that photons are chosen where they serve several planes, and BSDF rays where one plane
+    /// would need many photons.
+    #[test]
+    fn the_least_work_is_planned() {
+        let even = [0, 1, 2].map(|i| plane(i, 0.01, 0.2, 0.15));
+        let plan = Plan::new(&even);
+        assert!(plan.photons.is_some() && plan.bsdf_rays.is_empty());
+        let plan = Plan::new(&even[..1]);
+        assert!(plan.photons.is_none() && plan.bsdf_rays.len() == 1);
+        let [a, b, _] = even;
+        let plan = Plan::new(&[a, b, plane(2, 0.01, 0.3, 0.1)]);
+        assert_eq!(plan.bsdf_rays.len(), 1);
+        assert_eq!(plan.bsdf_rays[0].0, 2);
+        assert!(plan.rays.is_empty());
+    }
+
+    /// Tests that a plane without hope takes no time, and that growth is limited.
+    #[test]
+    fn too_many_rays_are_not_traced() {
+        let effort = |count, noise| Effort { count, noise };
+        let mut of = plane(0, 0.01, 3.0, 0.7);
+        of.photons = Some(effort(1 << 25, 3.0));
+        assert_eq!(Plan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
+        of.bsdf_rays = Some(effort(1 << 20, f64::INFINITY));
+        assert_eq!(Plan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
+        of.bsdf_rays = Some(effort(1 << 24, f64::INFINITY));
+        assert_eq!(Plan::new(&[of]), Plan::default());
+        let many = effort(1 << 28, 0.09);
+        assert!(many.needed(0.08).is_infinite());
+        let few = effort(100, 0.08);
+        assert!((few.needed(0.08) - 200.0).abs() < 1e-9); // rounding
+    }
+}

@@ -1,0 +1,80 @@
+//! Predicts the Monte Carlo errors of samplers at the planes of a probe, and finds these errors.
+
+use super::estimates::budget;
+use super::found::Found;
+use super::scene::{BATCHES, ProbeRequest};
+use etendue_field::{TwoPlane, VirtualPlane};
+use etendue_paths::{BackwardProbe, Probe};
+use etendue_pipeline::Reporter;
+use etendue_pipeline::variance::{
+    PlaneVariance, VarianceOptions, VarianceStudy, WindowLight, WindowRadiance,
+};
+use etendue_pipeline::variance::{RayRadiance, box_window};
+use etendue_store::Failure;
+use serde_json::Value;
+
+/// The differences between the seed of the backward rays and the seeds of the rays for the spectrum
+/// and for single radiances.
+const SPECTRUM_SEED: u64 = 1 << 62;
+const RADIANCE_SEED: u64 = 3 << 62;
+
+/// The variances at a plane, and their JSON.
+#[derive(Clone, Debug)]
+pub(super) struct FoundVariance {
+    pub(super) variance: PlaneVariance,
+    pub(super) tree: Value,
+}
+
+/// The radiance along rays through a plane of a probe.
+#[derive(Debug)]
+struct ProbeRadiance<'a> {
+    probe: &'a Probe<'a>,
+    plane: &'a VirtualPlane,
+    seed: u64,
+}
+
+impl RayRadiance for ProbeRadiance<'_> {
+    fn along(&self, ray: &TwoPlane, index: u64) -> f64 {
+        self.probe.radiance(self.plane, ray, self.seed, index)
+    }
+}
+
+/// Returns the variances at each plane. A plane is left out if it is dark, or if the radiance is the
+/// same over its whole window.
+pub(super) fn studied(
+    request: &ProbeRequest,
+    options: &VarianceOptions,
+    (probe, found): (&Probe<'_>, &[&Found]),
+    reporter: &dyn Reporter,
+) -> Result<Vec<Option<FoundVariance>>, Failure> {
+    let of_plane = |(plane, found): (&VirtualPlane, &&Found)| {
+        if found.is_dark() {
+            return Ok(None);
+        }
+        let plane = box_window(plane, options.frequencies);
+        let mut probe = probe.clone();
+        probe.planes = vec![plane.clone()];
+        let budget = budget(request.rays, request.seed ^ SPECTRUM_SEED);
+        let radiance = ProbeRadiance {
+            probe: &probe,
+            plane: &plane,
+            seed: request.seed ^ RADIANCE_SEED,
+        };
+        let light = WindowLight {
+            source: Box::new(BackwardProbe::new(&probe, budget)),
+            radiance: WindowRadiance::of(plane.window, Box::new(radiance)),
+            plane: plane.clone(),
+            batches: BATCHES,
+            photons: request.rays,
+            seed: request.seed,
+        };
+        let study = VarianceStudy::of_light(light, options.clone())?;
+        study.check_memory()?;
+        let variance = study.run(reporter)?;
+        Ok(variance.map(|variance| FoundVariance {
+            tree: study.tree(&variance),
+            variance,
+        }))
+    };
+    probe.planes.iter().zip(found).map(of_plane).collect()
+}
