@@ -40,6 +40,16 @@ LARGEST = 1 << 19
 """The largest number of rays that Mitsuba traces at a time."""
 FREQUENCIES = 12
 """Default number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per width of the window."""
+INTEGRATORS = {
+    "PathIntegrator": "path",
+    "VolumetricSimplePathIntegrator": "volpath",
+    "VolumetricMisPathIntegrator": "volpathmis",
+    "PRBIntegrator": "prb",
+    "BasicPRBIntegrator": "prb_basic",
+    "PathProjectiveIntegrator": "prb_projective",
+    "PRBVolpathIntegrator": "prbvolpath",
+}
+"""Integrators whose depth stands in their description, with the name in that description."""
 CHANNELS = {"red": 0, "green": 1, "blue": 2}
 CELLS = 256
 """Number of cells in which positions and slopes are drawn, along each coordinate of a window."""
@@ -225,13 +235,12 @@ def _integrator(mi: Any, scene: Any, asked: Any) -> Any:
 
 def _words(integrator: Any) -> Any:
     """The dictionary of an integrator whose parameter is its depth; any other integrator itself."""
-    names = {"PathIntegrator": "path", "VolumetricPathIntegrator": "volpath", "VolpathMisIntegratorImpl": "volpathmis"}
-    name = None if integrator is None else names.get(integrator.class_name())
-    depth = re.search(r"max_depth = (\d+),\s*rr_depth = (\d+)", str(integrator))
-    if name is None or depth is None or "hide_emitters = true" in str(integrator):
+    described = str(integrator)
+    name = INTEGRATORS.get(described.partition("[")[0])
+    depth = dict(re.findall(r"(max_depth|rr_depth) = (\d+)", described))
+    if name is None or "max_depth" not in depth or "hide_emitters = true" in described or getattr(integrator, "hide_emitters", False):
         return integrator
-    most, roulette = (int(number) for number in depth.groups())
-    return {"type": name, "max_depth": most if most < 2**31 else -1, "rr_depth": roulette}
+    return {"type": name, **{key: int(number) if int(number) < 2**31 else -1 for key, number in depth.items()}}
 
 
 def _shorter(integrator: Any) -> Any:
@@ -304,8 +313,7 @@ def _radiance(mi: Any, scene: Any, integrator: Any, medium: Any, color: Color, s
     share: Any = 1.0
     if mi.is_spectral:
         ray.wavelengths, share = mi.sample_rgb_spectrum(mi.sample_shifted(sampler.next_1d()))
-    value, _, _ = integrator.sample(scene, sampler, ray, medium)
-    value = mi.unpolarized_spectrum(value) * share
+    value = mi.unpolarized_spectrum(_sampled(mi, integrator, scene, sampler, ray, medium)) * share
     if mi.is_monochromatic:
         one = value[0]
     else:
@@ -313,6 +321,17 @@ def _radiance(mi: Any, scene: Any, integrator: Any, medium: Any, color: Color, s
             value = mi.xyz_to_srgb(mi.spectrum_to_xyz(value, ray.wavelengths))
         one = mi.luminance(mi.Color3f(value)) if color == "luminance" else value[CHANNELS[color]]
     return np.array(one, dtype=float) * np.ones(count)
+
+
+def _sampled(mi: Any, integrator: Any, scene: Any, sampler: Any, ray: Any, medium: Any) -> Any:
+    """The spectra that an integrator finds along rays."""
+    if not isinstance(integrator, mi.ad.integrators.common.ADIntegrator):
+        return integrator.sample(scene, sampler, ray, medium)[0]
+    import drjit as dr
+
+    # Integrators for derivatives take the kind of derivative first, and begin outside of media.
+    nothing = {"δL": None, "δaovs": None, "state_in": None}
+    return integrator.sample(dr.ADMode.Primal, scene, sampler, mi.Ray3f(ray), depth=mi.UInt32(0), active=mi.Bool(True), **nothing)[0]
 
 
 def _first_surface(mi: Any, scene: Any, frame: _Frame) -> Any:

@@ -111,7 +111,27 @@ def test_a_pixel_of_a_world_agrees_with_etendue(tmp_path):
     assert etendue.difference(theirs["arriving_1"], own.measured("arriving_1")).p_value > LEVEL / 3
 
 
-@pytest.mark.parametrize("kind", ["path", "volpath", "volpathmis"])
+def test_the_notebook():
+    """Fog has the angular cut-off of theory. Frequencies of the grid are 1 cycle/slope apart."""
+    nbclient = pytest.importorskip("nbclient")
+    import nbformat
+
+    notebook = nbformat.read(Path(__file__).parents[2] / "docs" / "mitsuba.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=300).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 4
+    said = "".join(output.get("text", "") for output in outputs).partition("no hair")[0]
+    rows = [[float(number) for number in line.split()] for line in said.splitlines()[1:]]
+    assert len(rows) == 5
+    assert all(abs(measured - theory) < 0.25 for _, measured, theory in rows)  # a quarter of the grid's step, which is not resolved
+
+
+@pytest.mark.parametrize("integrator", ["prb", "direct_projective"])
+def test_integrators_for_derivatives_see_the_same_light(integrator, scene, photons):
+    assert p(scene, photons, integrator=integrator) > LEVEL
+
+
+@pytest.mark.parametrize("kind", ["path", "volpath", "volpathmis", "prb", "prb_basic", "prb_projective"])
 def test_light_that_arrives_has_met_one_surface_less(kind):
     """The depth of a scene's integrator is found in its description, and reduced by one unless it is unlimited."""
     for depth, shorter in ((6, 5), (-1, -1)):
