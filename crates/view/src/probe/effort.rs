@@ -68,7 +68,7 @@ impl PlaneEffort {
 
 /// The numbers of rays and photons to trace next.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct Plan {
+pub(super) struct TracePlan {
     /// Planes with their numbers of backward rays.
     pub(super) rays: Vec<(usize, u64)>,
     /// Photons for all planes.
@@ -77,7 +77,7 @@ pub(super) struct Plan {
     pub(super) bsdf_rays: Vec<(usize, u64)>,
 }
 
-impl Plan {
+impl TracePlan {
     /// Plans the least work for the undecided planes. Photons serve all planes at once, and BSDF
     /// rays only one. A photon takes about as long as a BSDF ray.
     pub(super) fn new(open: &[PlaneEffort]) -> Self {
@@ -118,7 +118,7 @@ fn whole(rays: f64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Effort, Plan, PlaneEffort, TARGET};
+    use super::{Effort, PlaneEffort, TARGET, TracePlan};
 
     fn plane(plane: usize, rays: f64, photons: f64, bsdf_rays: f64) -> PlaneEffort {
         let count = 1 << 20;
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn planned_rays_reach_the_target() {
         let of = plane(3, 0.1, 0.5, 0.11);
-        let plan = Plan::new(&[of]);
+        let plan = TracePlan::new(&[of]);
         assert_eq!(plan.photons, None);
         let square = |(noise, count): (f64, u64)| noise * noise * f64::from(1 << 20) / count as f64;
         let left = [(0.1, plan.rays[0].1), (0.11, plan.bsdf_rays[0].1)].map(square);
@@ -149,12 +149,12 @@ mod tests {
     #[test]
     fn the_least_work_is_planned() {
         let even = [0, 1, 2].map(|i| plane(i, 0.01, 0.2, 0.15));
-        let plan = Plan::new(&even);
+        let plan = TracePlan::new(&even);
         assert!(plan.photons.is_some() && plan.bsdf_rays.is_empty());
-        let plan = Plan::new(&even[..1]);
+        let plan = TracePlan::new(&even[..1]);
         assert!(plan.photons.is_none() && plan.bsdf_rays.len() == 1);
         let [a, b, _] = even;
-        let plan = Plan::new(&[a, b, plane(2, 0.01, 0.3, 0.1)]);
+        let plan = TracePlan::new(&[a, b, plane(2, 0.01, 0.3, 0.1)]);
         assert_eq!(plan.bsdf_rays.len(), 1);
         assert_eq!(plan.bsdf_rays[0].0, 2);
         assert!(plan.rays.is_empty());
@@ -166,11 +166,11 @@ mod tests {
         let effort = |count, noise| Effort { count, noise };
         let mut of = plane(0, 0.01, 3.0, 0.7);
         of.photons = Some(effort(1 << 25, 3.0));
-        assert_eq!(Plan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
+        assert_eq!(TracePlan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
         of.bsdf_rays = Some(effort(1 << 20, f64::INFINITY));
-        assert_eq!(Plan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
+        assert_eq!(TracePlan::new(&[of]).bsdf_rays, [(0, 16 << 20)]);
         of.bsdf_rays = Some(effort(1 << 24, f64::INFINITY));
-        assert_eq!(Plan::new(&[of]), Plan::default());
+        assert_eq!(TracePlan::new(&[of]), TracePlan::default());
         let many = effort(1 << 28, 0.09);
         assert!(many.needed(0.08).is_infinite());
         let few = effort(100, 0.08);

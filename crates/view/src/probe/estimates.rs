@@ -1,11 +1,11 @@
 //! Estimates the light at each plane of a probe in two ways, until they can be compared.
 
-use super::effort::{Effort, Plan, PlaneEffort};
+use super::effort::{Effort, PlaneEffort, TracePlan};
 use super::found::{Found, SecondEstimate, verdict};
-use super::scene::{ALPHA, BATCHES, ProbeRequest, RESOLUTION};
+use super::scene::{ALPHA, BATCHES, ProbeRequest, RESOLUTION, budget};
 use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
-use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
+use etendue_paths::{BackwardProbe, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::estimate;
@@ -18,26 +18,18 @@ const MAX_COMPARISONS: usize = 6;
 /// The difference between the seed of BSDF rays and the seed of the backward rays.
 const BSDF_SEED: u64 = 1 << 63;
 
-/// Returns the number of rays of each batch.
-pub(super) fn budget(count: u64, seed: u64) -> Budget {
-    Budget {
-        each: count.div_ceil(u64::from(BATCHES)),
-        seed,
-    }
-}
-
 /// An estimate of the light at a plane.
 #[derive(Clone, Debug)]
-struct Estimate {
+struct LightEstimate {
     light: Rc<Measurement>,
     effort: Effort,
 }
 
 /// Both estimates of the light at a plane, and their comparison.
 struct PlaneEstimates {
-    rays: Estimate,
-    photons: Estimate,
-    bsdf_rays: Option<Estimate>,
+    rays: LightEstimate,
+    photons: LightEstimate,
+    bsdf_rays: Option<LightEstimate>,
     /// The reason why photons do not find all light of the plane.
     misses: Option<&'static str>,
     /// The comparison by the better judge; `None` after an estimate changed.
@@ -46,7 +38,7 @@ struct PlaneEstimates {
 
 impl PlaneEstimates {
     /// Returns the estimate with which the backward rays are compared.
-    fn judge(&self) -> (SecondEstimate, &Estimate) {
+    fn judge(&self) -> (SecondEstimate, &LightEstimate) {
         match &self.bsdf_rays {
             Some(rays)
                 if self.misses.is_some() || rays.effort.noise < self.photons.effort.noise =>
@@ -91,7 +83,7 @@ pub(super) fn measured(
         };
         let open = (0..planes.len()).filter(|i| is_open(&planes[*i]));
         let plan = estimator.plan(&planes, &open.collect::<Vec<usize>>());
-        if comparison == MAX_COMPARISONS || plan == Plan::default() {
+        if comparison == MAX_COMPARISONS || plan == TracePlan::default() {
             break;
         }
         estimator.follow(&plan, &mut planes)?;
@@ -124,7 +116,7 @@ impl Estimator<'_> {
     }
 
     /// Plans the next rays of the undecided planes.
-    fn plan(&self, planes: &[PlaneEstimates], open: &[usize]) -> Plan {
+    fn plan(&self, planes: &[PlaneEstimates], open: &[usize]) -> TracePlan {
         let can_bsdf = self.probe.bsdf_finds_lights();
         let untried = open
             .iter()
@@ -133,13 +125,13 @@ impl Estimator<'_> {
             .map(|i| (*i, self.request.first_photons()))
             .collect();
         if !bsdf_rays.is_empty() {
-            return Plan {
+            return TracePlan {
                 bsdf_rays,
-                ..Plan::default()
+                ..TracePlan::default()
             };
         }
         if self.request.photons.is_some() {
-            return Plan::default();
+            return TracePlan::default();
         }
         let efforts = open.iter().map(|i| {
             let plane = &planes[*i];
@@ -150,11 +142,11 @@ impl Estimator<'_> {
                 bsdf_rays: plane.bsdf_rays.as_ref().map(|rays| rays.effort),
             }
         });
-        Plan::new(&efforts.collect::<Vec<PlaneEffort>>())
+        TracePlan::new(&efforts.collect::<Vec<PlaneEffort>>())
     }
 
     /// Traces the rays of a plan.
-    fn follow(&self, plan: &Plan, planes: &mut [PlaneEstimates]) -> Result<(), Failure> {
+    fn follow(&self, plan: &TracePlan, planes: &mut [PlaneEstimates]) -> Result<(), Failure> {
         let seed = self.request.seed;
         for (i, count) in &plan.rays {
             let rays = BackwardProbe::new(self.probe, budget(*count, seed)).at_plane(*i);
@@ -216,9 +208,13 @@ impl Estimator<'_> {
     }
 }
 
-fn estimate_of(light: &Rc<Measurement>, plane: usize, count: u64) -> Result<Estimate, Failure> {
+fn estimate_of(
+    light: &Rc<Measurement>,
+    plane: usize,
+    count: u64,
+) -> Result<LightEstimate, Failure> {
     let noise = estimate::noise(light, plane).map_err(Failure::cannot_run)?;
-    Ok(Estimate {
+    Ok(LightEstimate {
         light: Rc::clone(light),
         effort: Effort {
             count,

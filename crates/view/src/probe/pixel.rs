@@ -1,10 +1,10 @@
 //! Probes the light field behind a pixel.
 
 use super::covariance;
-use super::estimates::{budget, measured};
+use super::estimates::measured;
 use super::found::Found;
 use super::picture::PictureBandwidth;
-use super::scene::{BATCHES, ProbeRequest, ProbedScene};
+use super::scene::{BATCHES, ProbeRequest, ProbedScene, budget};
 use super::variance;
 use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{Prediction, Verdict};
@@ -73,8 +73,8 @@ pub fn probe_pixel(
         }
     }
     if let Some(options) = &request.variance {
-        let planes: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
-        let all = variance::studied(request, options, (&probe, &planes), reporter)?;
+        let dark: Vec<bool> = found.iter().map(|(found, _)| found.is_dark()).collect();
+        let all = variance::studied(request, options, (&probe, &dark), reporter)?;
         for ((found, _), variance) in found.iter_mut().zip(all) {
             found.variance = variance;
         }

@@ -2,7 +2,7 @@
 
 use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
-use etendue_paths::{Paths, Question};
+use etendue_paths::{Budget, Paths, Question};
 use etendue_pipeline::variance::VarianceOptions;
 use etendue_store::VERSION;
 use etendue_store::{Failure, PROBE, Plan, Results};
@@ -21,6 +21,14 @@ pub(super) const RESOLUTION: f64 = 0.1;
 /// Number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per
 /// width of the window.
 pub(super) const FREQUENCIES: usize = 12;
+
+/// Returns the number of rays of each batch.
+pub(super) fn budget(count: u64, seed: u64) -> Budget {
+    Budget {
+        each: count.div_ceil(u64::from(BATCHES)),
+        seed,
+    }
+}
 
 /// A request for a probe, with its scene.
 #[derive(Clone, Debug)]

@@ -1,8 +1,6 @@
 //! Predicts the Monte Carlo errors of samplers at the planes of a probe, and finds these errors.
 
-use super::estimates::budget;
-use super::found::Found;
-use super::scene::{BATCHES, ProbeRequest};
+use super::scene::{BATCHES, ProbeRequest, budget};
 use etendue_field::{TwoPlane, VirtualPlane};
 use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::Reporter;
@@ -44,11 +42,11 @@ impl RayRadiance for ProbeRadiance<'_> {
 pub(super) fn studied(
     request: &ProbeRequest,
     options: &VarianceOptions,
-    (probe, found): (&Probe<'_>, &[&Found]),
+    (probe, are_dark): (&Probe<'_>, &[bool]),
     reporter: &dyn Reporter,
 ) -> Result<Vec<Option<FoundVariance>>, Failure> {
-    let of_plane = |(plane, found): (&VirtualPlane, &&Found)| {
-        if found.is_dark() {
+    let of_plane = |(plane, is_dark): (&VirtualPlane, &bool)| {
+        if *is_dark {
             return Ok(None);
         }
         let plane = box_window(plane, options.frequencies);
@@ -76,5 +74,5 @@ pub(super) fn studied(
             variance,
         }))
     };
-    probe.planes.iter().zip(found).map(of_plane).collect()
+    probe.planes.iter().zip(are_dark).map(of_plane).collect()
 }
