@@ -39,7 +39,7 @@ Source = Union[str, "os.PathLike[str]", Mapping[str, Any], Any]
 LARGEST = 1 << 19
 """The largest number of rays that Mitsuba traces at a time."""
 FREQUENCIES = 12
-"""Default number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per width of the window."""
+"""Default number of frequencies on either side of zero; adjacent frequencies differ by one cycle per width of the window."""
 INTEGRATORS = {
     "PathIntegrator": "path",
     "VolumetricSimplePathIntegrator": "volpath",
@@ -329,7 +329,9 @@ def _sampled(mi: Any, integrator: Any, scene: Any, sampler: Any, ray: Any, mediu
         return integrator.sample(scene, sampler, ray, medium)[0]
     import drjit as dr
 
-    # Integrators for derivatives take the kind of derivative first, and begin outside of media.
+    if medium is not None:
+        raise ValueError("the integrator is for derivatives, and begins outside of media; allowed where rays start in a medium: 'volpath', 'volpathmis'")
+    # Integrators for derivatives take the kind of derivative first.
     nothing = {"δL": None, "δaovs": None, "state_in": None}
     return integrator.sample(dr.ADMode.Primal, scene, sampler, mi.Ray3f(ray), depth=mi.UInt32(0), active=mi.Bool(True), **nothing)[0]
 

@@ -66,21 +66,24 @@ class Probe:
 
     def measured(self, plane: str) -> ProbedPlane:
         """The spectrum that rays traced back measured at a plane, for `difference`, with the position and the window of the plane."""
-        names = [found["report"]["name"] for found in self.planes]
-        if plane not in names:
-            raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
-        found = self.planes[names.index(plane)]
+        found = self._plane(plane)
         arrays = self.slices(plane)
         sigma = arrays.get("measured_sigma", arrays["sigma"])
         sample = Sample(arrays["measured"], sigma, found["report"]["noise_dof"], self.batches)
         return ProbedPlane(sample, found["report"]["frame"], found["report"]["distance"], found["window"], found["frequencies"])
 
     def variance(self, plane: str) -> Variance:
-        """The variances of samplers at a plane, as `etendue.variance` returns them, if the probe was asked for them."""
-        for found in self.planes:
-            if found["report"]["name"] == plane and "variance" in found:
-                return Variance(found["variance"], self.text)
-        raise KeyError(f"no variances at {plane!r}: variance=True asks for them, and planes of constant radiance have none")
+        """The variances of samplers at a plane, if they were requested. The spectrum is from rays traced back, and the text is that of the probe."""
+        found = self._plane(plane)
+        if "variance" not in found:
+            raise KeyError(f"no variances at {plane!r}: they were not requested, or the plane is dark, or its radiance does not vary")
+        return Variance(found["variance"], self.text)
+
+    def _plane(self, name: str) -> dict[str, Any]:
+        names = [found["report"]["name"] for found in self.planes]
+        if name not in names:
+            raise KeyError(f"no plane {name!r}; there are {', '.join(names)}")
+        return self.planes[names.index(name)]
 
     def __str__(self) -> str:
         return self.text
@@ -266,8 +269,8 @@ def probe(
     the narrowest that shows the bandwidth of the picture. `rays` is the number of rays traced back for each plane, by default 2**20, and
     `photons` is the number of photons that check them; without `photons`, a plane gets as many of both as its verdict needs, at most 2**28.
     `covariance` also measures the covariance of each plane's spectrum. `variance` also predicts the error of the mean radiance over the
-    window of each plane, and shows the error really made: true for all samplers of `etendue.variance`, or a sequence of samplers. All other
-    arguments are those of `render`.
+    window of each plane, and measures it with many sets of points: `True` for all named samplers of `etendue.variance`, or a sequence of
+    samplers. All other arguments are those of `render`.
     """
     arguments = given(
         camera=camera,

@@ -8,7 +8,7 @@ use etendue_pipeline::variance::VarianceOptions;
 use etendue_store::ArgumentStyle;
 use etendue_view::{ProbeRequest, probe_pixel, ranges};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict};
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// Measures the light field behind a pixel, and writes the results to a folder. Returns a report on
@@ -50,15 +50,13 @@ fn request(scene: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<ProbeReque
     request.photons = (photons > 0).then_some(photons);
     arguments.whole("seed", &(0..=u64::MAX), &mut request.seed)?;
     arguments.flag("covariance", &mut request.covariance)?;
-    if let Some(value) = arguments
-        .get("variance")?
-        .filter(|value| value.is_truthy().unwrap_or(true))
-    {
+    if let Some(value) = arguments.get("variance")? {
         let mut options = VarianceOptions::new(ArgumentStyle::Python);
-        if !value.is_instance_of::<PyBool>() {
+        let asked = value.extract::<bool>().ok();
+        if asked.is_none() {
             options.samplers = samplers("variance", &value)?;
         }
-        request.variance = Some(options);
+        request.variance = (asked != Some(false)).then_some(options);
     }
     arguments.flag("force", &mut request.force)?;
     Ok(request)

@@ -112,7 +112,7 @@ def test_a_pixel_of_a_world_agrees_with_etendue(tmp_path):
 
 
 def test_the_notebook():
-    """Fog has the angular cut-off of theory. Frequencies of the grid are 1 cycle/slope apart."""
+    """Fog has the angular cut-off of theory. Frequencies of the ridge are 2 cycles/slope apart."""
     nbclient = pytest.importorskip("nbclient")
     import nbformat
 
@@ -123,7 +123,7 @@ def test_the_notebook():
     said = "".join(output.get("text", "") for output in outputs).partition("no hair")[0]
     rows = [[float(number) for number in line.split()] for line in said.splitlines()[1:]]
     assert len(rows) == 5
-    assert all(abs(measured - theory) < 0.25 for _, measured, theory in rows)  # a quarter of the grid's step, which is not resolved
+    assert all(abs(measured - theory) < 0.25 for _, measured, theory in rows)  # an eighth of the step between frequencies of the ridge
 
 
 @pytest.mark.parametrize("integrator", ["prb", "direct_projective"])

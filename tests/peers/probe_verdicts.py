@@ -29,13 +29,15 @@ def main():
             if "meets nothing" in done.stderr:
                 empty += 1
                 continue
+            if done.returncode not in (0, 1, 4):
+                sys.exit(done.stderr)
             seconds.append(time.time() - begin)
             planes = json.loads((out / "probe.json").read_text())["planes"]
             for plane in planes:
                 verdicts[plane["verdict"]] = verdicts.get(plane["verdict"], 0) + 1
             said = ", ".join(f"{plane['report']['name']} {plane['verdict']} ({plane['judge']})" for plane in planes)
             print(f"{world.stem} {x},{y}: {seconds[-1]:.0f} s, {said}", flush=True)
-    seconds.sort()
+    seconds = sorted(seconds) or [0.0]
     print(f"{empty} pixels see nothing; planes: {verdicts}; median {seconds[len(seconds) // 2]:.0f} s, largest {seconds[-1]:.0f} s")
 
 

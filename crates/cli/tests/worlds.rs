@@ -180,7 +180,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
 fn a_probe_predicts_the_errors_of_samplers() {
     let folder = room();
     let path = folder.path();
-    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 --variance sobol,jitter --out p";
+    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 --variance=sobol,jitter --out p";
     call(path, line);
     let found = json(&path.join("p/probe.json"));
     let mut compared = 0;
@@ -221,7 +221,7 @@ fn what_is_asked_must_be_there() {
         ("probe room.xml", "--pixel"),
         ("probe room.xml --pixel 1,1 --rays 3", "64 or more"),
         (
-            "probe room.xml --pixel 1,1 --variance halton",
+            "probe room.xml --pixel 1,1 --variance=halton",
             "no such sampler",
         ),
         ("render room.xml --camera side", "allowed: front"),

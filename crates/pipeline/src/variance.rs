@@ -14,6 +14,15 @@ use etendue_variance::{
 };
 pub use etendue_variance::{RayRadiance, WindowRadiance, box_window};
 
+/// The smallest variance over the window, in standard errors, that is told from noise.
+const MIN_VARIATION: f64 = 4.0;
+/// The relative variance of a constant radiance, because of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// What is said of a radiance that is the same over the whole window.
+pub const CONSTANT: &str =
+    "within its noise, the radiance is the same over the whole window: there is nothing to predict";
+
 /// The light at a plane with Box windows.
 pub struct WindowLight<'a> {
     /// The plane.
@@ -182,7 +191,9 @@ impl<'a> VarianceStudy<'a> {
         });
         let progress = |sets: u64| bar.advance(sets);
         let moments = light.radiance.moments(seed, &progress);
-        if moments.variance.value <= 0.0 {
+        let Uncertain { value, error } = moments.variance;
+        let rounding = ROUNDING * moments.mean.value.powi(2);
+        if value <= (MIN_VARIATION * error).max(rounding) {
             return Ok(None);
         }
         let study = WindowStudy {
@@ -222,10 +233,7 @@ impl<'a> VarianceStudy<'a> {
     /// Returns the failure for a radiance that is the same over the whole window.
     #[must_use]
     pub fn constant(&self) -> Failure {
-        Failure::bad_input(format!(
-            "{}: the radiance is the same over the whole window, so its mean has no error",
-            self.light.plane.name
-        ))
+        Failure::bad_input(format!("{}: {}", self.light.plane.name, CONSTANT))
     }
 
     /// Returns the number of sets of points with which errors are found.

@@ -9,8 +9,8 @@ use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 /// Number of sets of axes in a row.
 const SETS_PER_ROW: usize = 3;
 
-/// Means by the spectrum and by single rays that differ by more than this number of standard errors are
-/// reported.
+/// Means by the spectrum and by single rays that differ by more than this number of standard errors
+/// are reported.
 const MAX_DIFFERENCE: f64 = 4.0;
 
 /// Returns all tables.

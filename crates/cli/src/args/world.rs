@@ -250,7 +250,7 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --pixel 128,200
   etendue probe cbox.xml --pixel 128,200 --depth 2 --window 8 --rays 2^22
   etendue probe cbox.xml --pixel 128,200 --covariance
-  etendue probe cbox.xml --pixel 128,200 --variance sobol,padded
+  etendue probe cbox.xml --pixel 128,200 --variance=sobol,padded
   etendue probe cbox.xml --map 64x40
 
 Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
@@ -289,12 +289,13 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "PIXELS", value_parser = window)]
     pub(crate) window: Option<f64>,
 
-    /// Backward rays per plane [default: 2^20, and more where the verdict needs more; for a map, 2^15]
+    /// Backward rays per plane. Without --photons, a plane gets more if its verdict needs more
+    /// [default: 2^20; for a map, 2^15]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) rays: Option<u64>,
 
-    /// Photons that check the backward rays, and BSDF rays for planes where photons are not enough
-    /// [default: as many as the verdict needs, at most 2^28]
+    /// Photons that check the backward rays. Planes that photons cannot decide get as many BSDF rays,
+    /// which never sample a light [default: as many as the verdict needs, at most 2^28]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) photons: Option<u64>,
 
@@ -307,9 +308,10 @@ pub(crate) struct ProbeArgs {
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 
-    /// Also predict the Monte Carlo error of the mean radiance over the window of each plane, for
-    /// these samplers, and show the error really made (see etendue variance)
-    #[arg(long, value_name = "SAMPLERS", value_delimiter = ',', value_parser = sampler, num_args = 0..=1, default_missing_value = SAMPLERS, conflicts_with = "map")]
+    /// Also predict the Monte Carlo error of the mean radiance over the window of each plane, and
+    /// measure that error with many sets of points; for these samplers, or for all named samplers
+    /// (see etendue variance). Adds variance.png, .svg and .csv to each plane
+    #[arg(long, value_name = "SAMPLERS", value_delimiter = ',', value_parser = sampler, num_args = 0..=1, require_equals = true, default_missing_value = SAMPLERS, conflicts_with = "map")]
     pub(crate) variance: Option<Vec<SamplerArg>>,
 
     #[command(flatten)]

@@ -13,8 +13,6 @@ use etendue_transform::random::Stream;
 pub struct BackwardProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
-    /// The plane to trace; `None` for all.
-    only: Option<usize>,
     search: LightSearch,
 }
 
@@ -28,17 +26,7 @@ impl<'a> BackwardProbe<'a> {
         Self {
             probe,
             budget,
-            only: None,
             search: LightSearch::Both,
-        }
-    }
-
-    /// Restricts these rays to one plane.
-    #[must_use]
-    pub fn at_plane(self, index: usize) -> Self {
-        Self {
-            only: Some(index),
-            ..self
         }
     }
 
@@ -90,8 +78,7 @@ impl PhotonSource for BackwardProbe<'_> {
         for block in 0..self.budget.each.div_ceil(BLOCK) {
             let start = block * BLOCK;
             let count = BLOCK.min(self.budget.each - start);
-            let wanted = |i: usize| self.only.is_none_or(|only| only == i);
-            for (i, plane) in planes.iter().enumerate().filter(|(i, _)| wanted(*i)) {
+            for (i, plane) in planes.iter().enumerate() {
                 // Different planes and batches use different numbers.
                 let of = |ray: u64| (first + ray) * planes.len() as u64 + i as u64;
                 let index = u64::from(batch) * planes.len() as u64 + i as u64;

@@ -142,6 +142,21 @@ impl<'a> Probe<'a> {
         Some(probe)
     }
 
+    /// Returns the same probe with one of its planes alone.
+    #[must_use]
+    pub fn at_plane(&self, index: usize) -> Self {
+        self.seen_at(self.planes[index].clone())
+    }
+
+    /// Returns the same probe with this plane instead of its planes.
+    #[must_use]
+    pub fn seen_at(&self, plane: VirtualPlane) -> Self {
+        Self {
+            planes: vec![plane],
+            ..self.clone()
+        }
+    }
+
     /// Returns the radiance along a ray through a plane, by one path that is traced back. The seed
     /// and `index` select the random numbers of the path.
     #[must_use]

@@ -1,9 +1,9 @@
 //! Measures covariances of the spectra along the ray of a pixel. Covariance tracing also propagates
 //! the covariance at the first surface to the camera.
 
-use super::scene::{BATCHES, FREQUENCIES};
+use super::scene::{BATCHES, FREQUENCIES, ProbeRequest, budget, seed_at};
 use etendue_compare::AXES;
-use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::moments::{check_memory, fitting};
 use etendue_pipeline::{Reporter, Work};
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
@@ -57,7 +57,7 @@ impl FoundCovariance {
 /// and the second records light that leaves the first surface.
 pub(super) fn measured(
     probe: &Probe<'_>,
-    budget: Budget,
+    request: &ProbeRequest,
     reporter: &dyn Reporter,
 ) -> Result<Vec<FoundCovariance>, Failure> {
     let mut planes = probe.planes.clone();
@@ -66,14 +66,16 @@ pub(super) fn measured(
         plane.grid.nu.half = BAND;
     }
     check_memory(&planes)?;
-    let rays = budget.each * u64::from(BATCHES);
     let mut all = Vec::new();
     for (index, plane) in planes.iter().enumerate() {
-        let source = BackwardProbe::new(probe, budget).at_plane(index);
+        let probe = probe.at_plane(index);
+        let budget = budget(request.rays, seed_at(request.seed, index));
+        let source = BackwardProbe::new(&probe, budget);
         let options = fitting(plane);
+        let rays = budget.each * u64::from(BATCHES);
         let photons = if options.keep { rays } else { 2 * rays };
         let bar = reporter.begin(Work::Photons(photons));
-        let field = measure_field(&source, index, plane, 0..BATCHES, &options, &|done| {
+        let field = measure_field(&source, 0, plane, 0..BATCHES, &options, &|done| {
             bar.advance(done);
         });
         drop(bar);

@@ -1,18 +1,21 @@
 //! Plans how many more rays and photons the planes of a probe need for a verdict.
 
 use super::scene::RESOLUTION;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The noise that both estimates of a plane together should have, as a share of the spectrum. It is
 /// below the resolution because the noise of few rays is itself uncertain.
 const TARGET: f64 = 0.8 * RESOLUTION;
 /// The largest number of rays or photons that an estimate may have.
 const MAX_RAYS: f64 = (1_u64 << 28) as f64;
-/// Limits of the factor by which an estimate grows. A factor below the first would waste the rays
-/// that are already traced; above the second, the noise of few rays is not trusted.
+/// Limits of the factor by which an estimate grows. A smaller factor would discard almost as many
+/// rays as it traces. Above the larger factor, the noise of few rays is not trusted.
 const GROWTH: [f64; 2] = [2.0, 16.0];
+/// An estimate may always grow to this number of rays.
+const FEW_RAYS: f64 = (1_u64 << 20) as f64;
 
 /// How many rays or photons an estimate has, and its noise as a share of the spectrum. The noise is
-/// infinite if no light was found, or less light than noise.
+/// infinite if no light was found, or if the noise exceeds the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Effort {
     pub(super) count: u64,
@@ -20,12 +23,20 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// Returns the number of rays with which the noise should be at most this share; infinity if
-    /// that number is too large.
-    fn needed(self, share: f64) -> f64 {
-        let count = self.count as f64;
-        let needed = count * (self.noise / share).powi(2);
-        let next = needed.clamp(GROWTH[0] * count, GROWTH[1] * count);
+    /// Returns the number of rays with which the noise is this share, at least the present number.
+    pub(super) fn needed(self, share: f64) -> f64 {
+        self.count as f64 * (self.noise / share).powi(2).max(1.0)
+    }
+
+    /// Returns the number of rays to trace next, so that the noise becomes this share. The number is
+    /// 0 if the noise is small enough, and infinity if it would be too large.
+    fn next(self, share: f64) -> f64 {
+        if self.noise <= share {
+            return 0.0;
+        }
+        let [count, needed] = [self.count as f64, self.needed(share)];
+        let most = (GROWTH[1] * count).max(FEW_RAYS);
+        let next = needed.clamp(GROWTH[0] * count, most);
         // The noise of few rays does not prove that too many are needed.
         let is_few = next <= MAX_RAYS / GROWTH[1];
         if next > MAX_RAYS || (needed > MAX_RAYS && !is_few) {
@@ -33,6 +44,13 @@ impl Effort {
         }
         next
     }
+}
+
+/// Returns the shares of noise that the backward rays and the other estimate should have, if the
+/// backward rays have this noise now.
+pub(super) fn targets(rays: f64) -> [f64; 2] {
+    let half = TARGET * FRAC_1_SQRT_2;
+    [half, (TARGET * TARGET - rays.min(half).powi(2)).sqrt()]
 }
 
 /// The effort so far at a plane that is undecided.
@@ -49,20 +67,14 @@ pub(super) struct PlaneEffort {
 }
 
 impl PlaneEffort {
-    /// Returns the numbers of backward rays, photons and BSDF rays that the plane needs, where
-    /// either photons or BSDF rays suffice. Returns `None` if the plane needs too many.
-    fn needed(&self) -> Option<[f64; 3]> {
-        let half = TARGET * std::f64::consts::FRAC_1_SQRT_2;
-        let rays = if self.rays.noise <= half {
-            self.rays.count as f64
-        } else {
-            self.rays.needed(half)
-        };
-        let left = (TARGET * TARGET - self.rays.noise.min(half).powi(2)).sqrt();
-        let of = |effort: Option<Effort>| effort.map_or(f64::INFINITY, |it| it.needed(left));
-        let needed = [rays, of(self.photons), of(self.bsdf_rays)];
-        let [rays, photons, bsdf_rays] = needed;
-        (rays.is_finite() && photons.min(bsdf_rays).is_finite()).then_some(needed)
+    /// Returns the numbers of backward rays, photons and BSDF rays to trace next, where either
+    /// photons or BSDF rays suffice. Returns `None` if the plane needs too many.
+    fn next(&self) -> Option<[f64; 3]> {
+        let [own, other] = targets(self.rays.noise);
+        let of = |effort: Option<Effort>| effort.map_or(f64::INFINITY, |it| it.next(other));
+        let next = [self.rays.next(own), of(self.photons), of(self.bsdf_rays)];
+        let [rays, photons, bsdf_rays] = next;
+        (rays.is_finite() && photons.min(bsdf_rays).is_finite()).then_some(next)
     }
 }
 
@@ -71,7 +83,7 @@ impl PlaneEffort {
 pub(super) struct TracePlan {
     /// Planes with their numbers of backward rays.
     pub(super) rays: Vec<(usize, u64)>,
-    /// Photons for all planes.
+    /// Photons, which serve all planes.
     pub(super) photons: Option<u64>,
     /// Planes with their numbers of BSDF rays.
     pub(super) bsdf_rays: Vec<(usize, u64)>,
@@ -81,28 +93,25 @@ impl TracePlan {
     /// Plans the least work for the undecided planes. Photons serve all planes at once, and BSDF
     /// rays only one. A photon takes about as long as a BSDF ray.
     pub(super) fn new(open: &[PlaneEffort]) -> Self {
-        let needed = open.iter().map(|of| (of, of.needed()));
-        let needed: Vec<(&PlaneEffort, [f64; 3])> = needed
-            .filter_map(|(of, needed)| Some((of, needed?)))
-            .collect();
+        let next = open.iter().filter_map(|of| Some((of.plane, of.next()?)));
+        let next: Vec<(usize, [f64; 3])> = next.collect();
         let bsdf_rays = |limit: f64| {
-            let rest = needed.iter().filter(move |(_, [_, n, _])| *n > limit);
-            rest.map(|(of, [.., n])| (of.plane, *n))
+            let rest = next.iter().filter(move |(_, [_, n, _])| *n > limit);
+            rest.map(|(plane, [.., n])| (*plane, *n))
         };
         let work = |photons: f64| photons + bsdf_rays(photons).map(|(_, n)| n).sum::<f64>();
-        let counts = needed.iter().map(|(_, [_, n, _])| *n);
+        let counts = next.iter().map(|(_, [_, n, _])| *n);
         let photons = counts
             .filter(|n| n.is_finite())
             .fold(0.0, |a, b| if work(b) < work(a) { b } else { a });
-        let grown = needed
-            .iter()
-            .filter(|(of, [n, ..])| *n > of.rays.count as f64);
+        let whole = |counts: &mut dyn Iterator<Item = (usize, f64)>| {
+            let some = counts.filter(|(_, n)| *n > 0.0);
+            some.map(|(plane, n)| (plane, whole(n))).collect()
+        };
         Self {
-            rays: grown.map(|(of, [n, ..])| (of.plane, whole(*n))).collect(),
-            photons: (photons > 0.0).then(|| whole(photons)),
-            bsdf_rays: bsdf_rays(photons)
-                .map(|(plane, n)| (plane, whole(n)))
-                .collect(),
+            rays: whole(&mut next.iter().map(|(plane, [n, ..])| (*plane, *n))),
+            photons: (photons > 0.0).then(|| self::whole(photons)),
+            bsdf_rays: whole(&mut bsdf_rays(photons)),
         }
     }
 }
@@ -160,6 +169,14 @@ mod tests {
         assert!(plan.rays.is_empty());
     }
 
+    /// Tests that only the noisier of two estimates grows.
+    #[test]
+    fn precise_estimates_are_kept() {
+        let plan = TracePlan::new(&[plane(1, 0.2, 0.001, 5.0)]);
+        assert_eq!(plan.rays.len(), 1);
+        assert!(plan.photons.is_none() && plan.bsdf_rays.is_empty());
+    }
+
     /// Tests that a plane without hope takes no time, and that growth is limited.
     #[test]
     fn too_many_rays_are_not_traced() {
@@ -172,8 +189,8 @@ mod tests {
         of.bsdf_rays = Some(effort(1 << 24, f64::INFINITY));
         assert_eq!(TracePlan::new(&[of]), TracePlan::default());
         let many = effort(1 << 28, 0.09);
-        assert!(many.needed(0.08).is_infinite());
-        let few = effort(100, 0.08);
-        assert!((few.needed(0.08) - 200.0).abs() < 1e-9); // rounding
+        assert!(many.next(0.08).is_infinite());
+        let few = effort(100, 0.081);
+        assert!((few.next(0.08) - 200.0).abs() < 1e-9); // rounding
     }
 }

@@ -1,8 +1,8 @@
 //! Estimates the light at each plane of a probe in two ways, until they can be compared.
 
-use super::effort::{Effort, PlaneEffort, TracePlan};
+use super::effort::{Effort, PlaneEffort, TracePlan, targets};
 use super::found::{Found, SecondEstimate, verdict};
-use super::scene::{ALPHA, BATCHES, ProbeRequest, RESOLUTION, budget};
+use super::scene::{ALPHA, BATCHES, ProbeRequest, RESOLUTION, budget, seed_at};
 use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
 use etendue_paths::{BackwardProbe, PhotonProbe, Probe};
@@ -13,8 +13,8 @@ use etendue_spectrum::{CrossPower, Measurement, measure};
 use etendue_store::Failure;
 use std::rc::Rc;
 
-/// The largest number of comparisons of a plane.
-const MAX_COMPARISONS: usize = 6;
+/// The largest number of comparisons of a plane: by photons, by BSDF rays, and after more rays.
+const MAX_COMPARISONS: usize = 5;
 /// The difference between the seed of BSDF rays and the seed of the backward rays.
 const BSDF_SEED: u64 = 1 << 63;
 
@@ -22,6 +22,8 @@ const BSDF_SEED: u64 = 1 << 63;
 #[derive(Clone, Debug)]
 struct LightEstimate {
     light: Rc<Measurement>,
+    /// The number of the plane in `light`.
+    index: usize,
     effort: Effort,
 }
 
@@ -48,6 +50,15 @@ impl PlaneEstimates {
             _ => (SecondEstimate::Photons, &self.photons),
         }
     }
+
+    /// Checks whether more rays may change the verdict. If no light was found, BSDF rays may find
+    /// some.
+    fn is_open(&self, can_bsdf: bool) -> bool {
+        self.found.as_ref().is_some_and(|(found, _)| {
+            verdict(found) == Verdict::Undecided
+                || (found.is_dark() && can_bsdf && self.bsdf_rays.is_none())
+        })
+    }
 }
 
 /// A probe whose light is estimated.
@@ -70,6 +81,7 @@ pub(super) fn measured(
         probe,
         reporter,
     };
+    let can_bsdf = probe.bsdf_finds_lights();
     let mut planes = estimator.first()?;
     for comparison in 1.. {
         for (i, plane) in planes.iter_mut().enumerate() {
@@ -77,16 +89,13 @@ pub(super) fn measured(
                 plane.found = Some(estimator.compared(i, plane)?);
             }
         }
-        let is_open = |plane: &PlaneEstimates| {
-            let verdict = plane.found.as_ref().map(|(found, _)| verdict(found));
-            verdict == Some(Verdict::Undecided)
-        };
-        let open = (0..planes.len()).filter(|i| is_open(&planes[*i]));
-        let plan = estimator.plan(&planes, &open.collect::<Vec<usize>>());
-        if comparison == MAX_COMPARISONS || plan == TracePlan::default() {
+        let open = (0..planes.len()).filter(|i| planes[*i].is_open(can_bsdf));
+        let open: Vec<usize> = open.collect();
+        let plan = estimator.plan(&planes, &open);
+        if comparison == estimator.comparisons() || plan == TracePlan::default() {
             break;
         }
-        estimator.follow(&plan, &mut planes)?;
+        estimator.follow(&plan, &mut planes, &open)?;
     }
     let mut all: Vec<(Found, Prediction)> = planes.into_iter().filter_map(|of| of.found).collect();
     for (found, _) in &mut all {
@@ -96,19 +105,26 @@ pub(super) fn measured(
 }
 
 impl Estimator<'_> {
+    /// Returns the largest number of comparisons of a plane.
+    fn comparisons(&self) -> usize {
+        match self.request.photons {
+            Some(_) => 2,
+            None => MAX_COMPARISONS,
+        }
+    }
+
     fn first(&self) -> Result<Vec<PlaneEstimates>, Failure> {
-        let [rays, photons] = [self.request.rays, self.request.first_photons()];
-        let backward = BackwardProbe::new(self.probe, budget(rays, self.request.seed));
-        let backward = self.trace(&backward, rays);
-        let forward = PhotonProbe::new(self.probe, budget(photons, !self.request.seed));
-        let misses = |i| forward.misses(i);
-        let light = self.trace(&forward, photons);
+        let request = self.request;
+        let backward = BackwardProbe::new(self.probe, budget(request.rays, request.seed));
+        let backward = self.trace(self.probe, &backward, request.rays);
+        let photons = PhotonProbe::new(self.probe, budget(request.first_photons(), !request.seed));
+        let light = self.trace(self.probe, &photons, request.first_photons());
         let planes = (0..self.probe.planes.len()).map(|i| {
             Ok(PlaneEstimates {
-                rays: estimate_of(&backward, i, rays)?,
-                photons: estimate_of(&light, i, photons)?,
+                rays: estimate_of(&backward, i, request.rays)?,
+                photons: estimate_of(&light, i, request.first_photons())?,
                 bsdf_rays: None,
-                misses: misses(i),
+                misses: photons.misses(i),
                 found: None,
             })
         });
@@ -121,9 +137,8 @@ impl Estimator<'_> {
         let untried = open
             .iter()
             .filter(|i| can_bsdf && planes[**i].bsdf_rays.is_none());
-        let bsdf_rays: Vec<(usize, u64)> = untried
-            .map(|i| (*i, self.request.first_photons()))
-            .collect();
+        let count = self.request.first_bsdf_rays();
+        let bsdf_rays: Vec<(usize, u64)> = untried.map(|i| (*i, count)).collect();
         if !bsdf_rays.is_empty() {
             return TracePlan {
                 bsdf_rays,
@@ -145,37 +160,44 @@ impl Estimator<'_> {
         TracePlan::new(&efforts.collect::<Vec<PlaneEffort>>())
     }
 
-    /// Traces the rays of a plan.
-    fn follow(&self, plan: &TracePlan, planes: &mut [PlaneEstimates]) -> Result<(), Failure> {
+    /// Traces the rays of a plan. The estimates of planes that are not open stay as they are.
+    fn follow(
+        &self,
+        plan: &TracePlan,
+        planes: &mut [PlaneEstimates],
+        open: &[usize],
+    ) -> Result<(), Failure> {
         let seed = self.request.seed;
         for (i, count) in &plan.rays {
-            let rays = BackwardProbe::new(self.probe, budget(*count, seed)).at_plane(*i);
-            planes[*i].rays = estimate_of(&self.trace(&rays, *count), *i, *count)?;
-            planes[*i].found = None;
+            let probe = self.probe.at_plane(*i);
+            let rays = BackwardProbe::new(&probe, budget(*count, seed_at(seed, *i)));
+            planes[*i].rays = estimate_of(&self.trace(&probe, &rays, *count), 0, *count)?;
         }
         for (i, count) in &plan.bsdf_rays {
-            let seed = seed.wrapping_add(BSDF_SEED);
-            let rays = BackwardProbe::new(self.probe, budget(*count, seed)).at_plane(*i);
+            let probe = self.probe.at_plane(*i);
+            let seed = seed_at(seed.wrapping_add(BSDF_SEED), *i);
+            let rays = BackwardProbe::new(&probe, budget(*count, seed));
             if let Some(rays) = rays.by_bsdf() {
-                let found = estimate_of(&self.trace(&rays, *count), *i, *count)?;
-                planes[*i].bsdf_rays = Some(found);
-                planes[*i].found = None;
+                let light = self.trace(&probe, &rays, *count);
+                planes[*i].bsdf_rays = Some(estimate_of(&light, 0, *count)?);
             }
         }
         if let Some(count) = plan.photons {
             let photons = PhotonProbe::new(self.probe, budget(count, !seed));
-            let light = self.trace(&photons, count);
-            for (i, plane) in planes.iter_mut().enumerate() {
-                plane.photons = estimate_of(&light, i, count)?;
-                plane.found = None;
+            let light = self.trace(self.probe, &photons, count);
+            for i in open {
+                planes[*i].photons = estimate_of(&light, *i, count)?;
             }
+        }
+        for i in open {
+            planes[*i].found = None;
         }
         Ok(())
     }
 
-    fn trace(&self, source: &dyn PhotonSource, count: u64) -> Rc<Measurement> {
+    fn trace(&self, probe: &Probe<'_>, source: &dyn PhotonSource, count: u64) -> Rc<Measurement> {
         let bar = self.reporter.begin(Work::Photons(count));
-        Rc::new(measure(source, &self.probe.planes, 0..BATCHES, &|done| {
+        Rc::new(measure(source, &probe.planes, 0..BATCHES, &|done| {
             bar.advance(done);
         }))
     }
@@ -183,23 +205,30 @@ impl Estimator<'_> {
     /// Compares the two estimates of a plane.
     fn compared(&self, i: usize, plane: &PlaneEstimates) -> Result<(Found, Prediction), Failure> {
         let test = Test {
-            level: sidak(ALPHA, MAX_COMPARISONS * self.probe.planes.len()),
+            level: sidak(ALPHA, self.comparisons() * self.probe.planes.len()),
             resolution: RESOLUTION,
             seed: self.request.seed,
         };
         let (judge, other) = plane.judge();
-        let prediction = Prediction::measured(&other.light, i).map_err(Failure::cannot_run)?;
-        let rays = &plane.rays.light;
-        let comparison = compare(rays, i, &prediction, &test).map_err(Failure::cannot_run)?;
+        let LightEstimate {
+            light,
+            index,
+            effort,
+        } = &plane.rays;
+        let prediction = Prediction::measured(&other.light, other.index);
+        let prediction = prediction.map_err(Failure::cannot_run)?;
+        let comparison = compare(light, *index, &prediction, &test).map_err(Failure::cannot_run)?;
         let azimuths = 0..self.probe.planes[i].grid.azimuths;
-        let varying = rays.without_mean(i);
+        let varying = light.without_mean(*index);
         let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
+        let [own, others] = targets(effort.noise);
         let found = Found {
             comparison,
             nu: power.bandwidth(bandwidth_nu),
             rho: power.bandwidth(bandwidth_rho),
             judge,
-            counts: [plane.rays.effort.count, other.effort.count],
+            counts: [effort.count, other.effort.count],
+            needed: [effort.needed(own), other.effort.needed(others)],
             misses: plane.misses,
             covariance: None,
             variance: None,
@@ -210,12 +239,13 @@ impl Estimator<'_> {
 
 fn estimate_of(
     light: &Rc<Measurement>,
-    plane: usize,
+    index: usize,
     count: u64,
 ) -> Result<LightEstimate, Failure> {
-    let noise = estimate::noise(light, plane).map_err(Failure::cannot_run)?;
+    let noise = estimate::noise(light, index).map_err(Failure::cannot_run)?;
     Ok(LightEstimate {
         light: Rc::clone(light),
+        index,
         effort: Effort {
             count,
             noise: noise.unwrap_or(f64::INFINITY),

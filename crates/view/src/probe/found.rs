@@ -16,6 +16,8 @@ pub(super) struct Found {
     pub(super) judge: SecondEstimate,
     /// The number of backward rays, and the number of rays or photons of the judge.
     pub(super) counts: [u64; 2],
+    /// The numbers with which the noise would allow a verdict; infinite if not known.
+    pub(super) needed: [f64; 2],
     /// The reason why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
     /// The covariance of the plane's spectrum, if requested.

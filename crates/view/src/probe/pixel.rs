@@ -4,7 +4,7 @@ use super::covariance;
 use super::estimates::measured;
 use super::found::Found;
 use super::picture::PictureBandwidth;
-use super::scene::{BATCHES, ProbeRequest, ProbedScene, budget};
+use super::scene::{BATCHES, ProbeRequest, ProbedScene};
 use super::variance;
 use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{Prediction, Verdict};
@@ -66,8 +66,7 @@ pub fn probe_pixel(
     let (results, folder) = scene.claim(format!("{name}-{column}-{row}"), files.collect())?;
     let mut found = measured(request, &probe, reporter)?;
     if request.covariance {
-        let budget = budget(request.rays, request.seed);
-        let all = covariance::measured(&probe, budget, reporter)?;
+        let all = covariance::measured(&probe, request, reporter)?;
         for ((found, _), covariance) in found.iter_mut().zip(all) {
             found.covariance = Some(covariance);
         }
@@ -100,9 +99,10 @@ fn written(
 ) -> Result<Verdict, Failure> {
     let mut made_from = scene.made_from();
     made_from["pixel"] = tree_of!(pixel);
-    made_from["rays"] = tree_of!(scene.request.rays);
     for (plane, (found, photons)) in probe.planes.iter().zip(found) {
-        arrays::write(&mut results, made_from.clone(), &found.comparison)?;
+        let mut made_from = made_from.clone();
+        made_from["rays"] = tree_of!(found.counts[0]);
+        arrays::write(&mut results, made_from, &found.comparison)?;
         let source = (note, ["backward rays", found.judge.word()]);
         pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
         if let Some(found) = &found.variance {
@@ -117,6 +117,8 @@ fn written(
     let stops = probe.stops.iter();
     let stage = reporter.begin(Work::Stage("writing results"));
     let finished = results.finish(|files| {
+        made_from["rays"] = tree_of!(scene.request.rays);
+        made_from["photons"] = tree_of!(scene.request.photons);
         made_from["verdict"] = tree_of!(verdict);
         made_from["picture"] = picture.tree();
         made_from["surfaces"] = stops

@@ -18,7 +18,7 @@ pub(super) const ALPHA: f64 = 0.01;
 /// A plane can pass only if its noise, as a share of the spectrum, is at most this number.
 pub(super) const RESOLUTION: f64 = 0.1;
 
-/// Number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per
+/// Number of frequencies on either side of zero; adjacent frequencies differ by one cycle per
 /// width of the window.
 pub(super) const FREQUENCIES: usize = 12;
 
@@ -28,6 +28,11 @@ pub(super) fn budget(count: u64, seed: u64) -> Budget {
         each: count.div_ceil(u64::from(BATCHES)),
         seed,
     }
+}
+
+/// Returns the seed of rays that are traced for one plane alone.
+pub(super) fn seed_at(seed: u64, plane: usize) -> u64 {
+    seed ^ ((plane as u64 + 1) << 48)
 }
 
 /// A request for a probe, with its scene.
@@ -44,8 +49,9 @@ pub struct ProbeRequest {
     pub window: Option<f64>,
     /// Number of backward rays for each plane.
     pub rays: u64,
-    /// Number of photons or BSDF rays that check the rays; `None` for as many as a verdict needs.
-    /// Then planes that need more backward rays get more, too.
+    /// Number of photons that check the rays; planes that photons cannot decide get at least as many
+    /// BSDF rays. If it is `None`, planes get as many of both and of backward rays as their verdicts
+    /// need.
     pub photons: Option<u64>,
     /// Seed of rays and photons.
     pub seed: u64,
@@ -92,6 +98,15 @@ impl ProbeRequest {
     /// Returns the number of photons with which a probe begins.
     pub(super) fn first_photons(&self) -> u64 {
         self.photons.unwrap_or(Self::FIRST_PHOTONS)
+    }
+
+    /// Returns the first number of BSDF rays of a plane. BSDF rays have more noise than backward
+    /// rays, so a fixed number is at least four times as large.
+    pub(super) fn first_bsdf_rays(&self) -> u64 {
+        match self.photons {
+            Some(photons) => photons.max(self.rays.saturating_mul(4)),
+            None => Self::FIRST_PHOTONS,
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Predicts the Monte Carlo errors of samplers at the planes of a probe, and finds these errors.
 
-use super::scene::{BATCHES, ProbeRequest, budget};
+use super::scene::{BATCHES, ProbeRequest, budget, seed_at};
 use etendue_field::{TwoPlane, VirtualPlane};
 use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::Reporter;
@@ -45,18 +45,18 @@ pub(super) fn studied(
     (probe, are_dark): (&Probe<'_>, &[bool]),
     reporter: &dyn Reporter,
 ) -> Result<Vec<Option<FoundVariance>>, Failure> {
-    let of_plane = |(plane, is_dark): (&VirtualPlane, &bool)| {
+    let of_plane = |(number, (plane, is_dark)): (usize, (&VirtualPlane, &bool))| {
         if *is_dark {
             return Ok(None);
         }
         let plane = box_window(plane, options.frequencies);
-        let mut probe = probe.clone();
-        probe.planes = vec![plane.clone()];
-        let budget = budget(request.rays, request.seed ^ SPECTRUM_SEED);
+        let probe = probe.seen_at(plane.clone());
+        let seed = seed_at(request.seed, number);
+        let budget = budget(request.rays, seed ^ SPECTRUM_SEED);
         let radiance = ProbeRadiance {
             probe: &probe,
             plane: &plane,
-            seed: request.seed ^ RADIANCE_SEED,
+            seed: seed ^ RADIANCE_SEED,
         };
         let light = WindowLight {
             source: Box::new(BackwardProbe::new(&probe, budget)),
@@ -64,7 +64,7 @@ pub(super) fn studied(
             plane: plane.clone(),
             batches: BATCHES,
             photons: request.rays,
-            seed: request.seed,
+            seed,
         };
         let study = VarianceStudy::of_light(light, options.clone())?;
         study.check_memory()?;
@@ -74,5 +74,6 @@ pub(super) fn studied(
             variance,
         }))
     };
-    probe.planes.iter().zip(are_dark).map(of_plane).collect()
+    let planes = probe.planes.iter().zip(are_dark).enumerate();
+    planes.map(of_plane).collect()
 }

@@ -7,6 +7,7 @@ use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{FrequencyAxis, Lobe, VirtualPlane, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_pipeline::table::aligned;
+use etendue_pipeline::variance::CONSTANT;
 use etendue_pipeline::variance_table::text;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
@@ -116,26 +117,19 @@ pub(super) fn lines(
         // The comparison states only that there are too few photons, but there may also be too few
         // rays.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
-        let more = match report.photons_needed {
-            Some(needed) => {
-                let times = needed / found.counts[0] as f64;
-                let [rays, photons] = found
-                    .counts
-                    .map(|count| power_of_two(count as f64 * times, arguments));
-                let [rays, photons] = [("rays", rays), ("photons", photons)]
-                    .map(|(name, count)| arguments.with(name, count));
-                // The noise is underestimated if it is a large part of the spectrum.
-                let most = if report.noise_limit > Some(NOISY) {
-                    "at least "
-                } else {
-                    ""
-                };
-                format!("{most}{rays} and {photons} are needed")
-            }
-            None => {
-                let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
-                format!("more {rays} or {photons} may decide it")
-            }
+        let more = if found.needed.iter().all(|n| n.is_finite()) {
+            let [rays, photons] = [("rays", found.needed[0]), ("photons", found.needed[1])]
+                .map(|(name, n)| arguments.with(name, power_of_two(n, arguments)));
+            // The noise is underestimated if it is a large part of the spectrum.
+            let about = if report.noise_limit > Some(NOISY) {
+                "at least"
+            } else {
+                "about"
+            };
+            format!("needs {about} {rays} and {photons}")
+        } else {
+            let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
+            format!("more {rays} or {photons} may decide it")
         };
         Some(format!("{}: {why}; {more}", report.name))
     }));
@@ -146,9 +140,20 @@ pub(super) fn lines(
     lines.extend(bandwidths(picture, arguments));
     lines.extend(covariances(found));
     if let Some(options) = &request.variance {
-        for variance in found.iter().filter_map(|found| found.variance.as_ref()) {
+        for found in found {
             lines.push(String::new());
-            lines.push(text(&variance.variance, options));
+            lines.push(match &found.variance {
+                Some(variance) => text(&variance.variance, options),
+                None => format!(
+                    "{}: {}",
+                    found.comparison.report.name,
+                    if found.is_dark() {
+                        "dark, so its mean has no error"
+                    } else {
+                        CONSTANT
+                    }
+                ),
+            });
         }
     }
     lines
@@ -156,7 +161,7 @@ pub(super) fn lines(
 
 /// Returns the next power of two, as an argument is written.
 fn power_of_two(count: f64, arguments: ArgumentStyle) -> String {
-    let exponent = libm::log2(count).ceil();
+    let exponent = libm::log2(count).ceil().min(63.0);
     match arguments {
         ArgumentStyle::Command => format!("2^{exponent}"),
         ArgumentStyle::Python => format!("2**{exponent}"),
