@@ -327,13 +327,12 @@ def _sampled(mi: Any, integrator: Any, scene: Any, sampler: Any, ray: Any, mediu
     """The spectra that an integrator finds along rays."""
     if not isinstance(integrator, mi.ad.integrators.common.ADIntegrator):
         return integrator.sample(scene, sampler, ray, medium)[0]
-    import drjit as dr
-
     if medium is not None:
         raise ValueError("the integrator is for derivatives, and begins outside of media; allowed where rays start in a medium: 'volpath', 'volpathmis'")
     # Integrators for derivatives take the kind of derivative first.
+    primal = importlib.import_module("drjit").ADMode.Primal
     nothing = {"δL": None, "δaovs": None, "state_in": None}
-    return integrator.sample(dr.ADMode.Primal, scene, sampler, mi.Ray3f(ray), depth=mi.UInt32(0), active=mi.Bool(True), **nothing)[0]
+    return integrator.sample(primal, scene, sampler, mi.Ray3f(ray), depth=mi.UInt32(0), active=mi.Bool(True), **nothing)[0]
 
 
 def _first_surface(mi: Any, scene: Any, frame: _Frame) -> Any:
