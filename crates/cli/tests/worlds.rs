@@ -180,7 +180,8 @@ fn a_probe_names_surfaces_and_judges_planes() {
 fn a_probe_predicts_the_errors_of_samplers() {
     let folder = room();
     let path = folder.path();
-    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 --variance=sobol,jitter --out p";
+    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 \
+        --variance=sobol,jitter --out p";
     call(path, line);
     let found = json(&path.join("p/probe.json"));
     let mut compared = 0;

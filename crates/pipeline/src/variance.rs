@@ -112,6 +112,10 @@ impl VarianceOptions {
 pub struct PlaneVariance {
     /// Name of the plane.
     pub plane: String,
+    /// The seed of the points of samplers.
+    pub seed: u64,
+    /// Number of photons behind the spectrum.
+    pub photons: u64,
     /// Half-widths of the window along (x, u, y, v), in metres and slope.
     pub half_widths: [f64; 4],
     /// The mean of the radiance over the window, by photons.
@@ -209,6 +213,8 @@ impl<'a> VarianceStudy<'a> {
             samplers.map(|sampler| study.sampler(sampler, options.counts.all(), &progress));
         Ok(Some(PlaneVariance {
             plane: plane.name.clone(),
+            seed,
+            photons: light.photons,
             half_widths: self.half_widths(),
             mean_by_photons: power.mean,
             inside: power.spectrum.total() / moments.variance.value,
@@ -269,7 +275,7 @@ impl<'a> VarianceStudy<'a> {
         (scene, method): (&Scene, Method),
         found: &PlaneVariance,
     ) -> serde_json::Value {
-        let mut tree = self.tree(found);
+        let mut tree = found.tree(&self.options);
         tree["scene"] = scene.name.as_str().into();
         tree["scene_hash"] = serde_json::json!(scene.hash());
         tree["scene_file"] = serde_json::json!(scene.file);
@@ -277,31 +283,30 @@ impl<'a> VarianceStudy<'a> {
         tree["method"] = serde_json::json!(method);
         tree
     }
-
-    /// Returns the result as JSON, without the scene.
-    #[must_use]
-    pub fn tree(&self, found: &PlaneVariance) -> serde_json::Value {
-        let options = &self.options;
-        serde_json::json!({
-            "seed": self.light.seed,
-            "photons": self.light.photons,
-            "plane": found.plane,
-            "window": { "profile": "Box", "half_widths": found.half_widths },
-            "axes": AXES,
-            "frequencies": options.frequencies,
-            "shifts": options.shifts,
-            "mean_by_photons": found.mean_by_photons,
-            "mean_by_rays": found.moments.mean,
-            "variance": found.moments.variance,
-            "noise": found.moments.noise,
-            "inside": found.inside,
-            "axis_sets": found.axis_sets,
-            "samplers": found.samplers,
-        })
-    }
 }
 
 impl PlaneVariance {
+    /// Returns the result as JSON, without the scene.
+    #[must_use]
+    pub fn tree(&self, options: &VarianceOptions) -> serde_json::Value {
+        serde_json::json!({
+            "seed": self.seed,
+            "photons": self.photons,
+            "plane": self.plane,
+            "window": { "profile": "Box", "half_widths": self.half_widths },
+            "axes": AXES,
+            "frequencies": options.frequencies,
+            "shifts": options.shifts,
+            "mean_by_photons": self.mean_by_photons,
+            "mean_by_rays": self.moments.mean,
+            "variance": self.moments.variance,
+            "noise": self.moments.noise,
+            "inside": self.inside,
+            "axis_sets": self.axis_sets,
+            "samplers": self.samplers,
+        })
+    }
+
     /// Checks whether a prediction is undecided.
     #[must_use]
     pub fn is_undecided(&self) -> bool {

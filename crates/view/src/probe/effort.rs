@@ -104,16 +104,18 @@ impl TracePlan {
         let photons = counts
             .filter(|n| n.is_finite())
             .fold(0.0, |a, b| if work(b) < work(a) { b } else { a });
-        let whole = |counts: &mut dyn Iterator<Item = (usize, f64)>| {
-            let some = counts.filter(|(_, n)| *n > 0.0);
-            some.map(|(plane, n)| (plane, whole(n))).collect()
-        };
         Self {
-            rays: whole(&mut next.iter().map(|(plane, [n, ..])| (*plane, *n))),
-            photons: (photons > 0.0).then(|| self::whole(photons)),
-            bsdf_rays: whole(&mut bsdf_rays(photons)),
+            rays: counted(next.iter().map(|(plane, [n, ..])| (*plane, *n))),
+            photons: (photons > 0.0).then(|| whole(photons)),
+            bsdf_rays: counted(bsdf_rays(photons)),
         }
     }
+}
+
+/// Returns the planes that get rays, with the whole numbers of these rays.
+fn counted(planes: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, u64)> {
+    let some = planes.filter(|(_, n)| *n > 0.0);
+    some.map(|(plane, n)| (plane, whole(n))).collect()
 }
 
 #[expect(

@@ -51,12 +51,11 @@ impl PlaneEstimates {
         }
     }
 
-    /// Checks whether more rays may change the verdict. If no light was found, BSDF rays may find
-    /// some.
-    fn is_open(&self, can_bsdf: bool) -> bool {
+    /// Checks whether more rays may change the verdict. If no light was found, BSDF rays that were
+    /// not yet tried may find some.
+    fn is_open(&self, is_untried: bool) -> bool {
         self.found.as_ref().is_some_and(|(found, _)| {
-            verdict(found) == Verdict::Undecided
-                || (found.is_dark() && can_bsdf && self.bsdf_rays.is_none())
+            verdict(found) == Verdict::Undecided || (found.is_dark() && is_untried)
         })
     }
 }
@@ -81,7 +80,6 @@ pub(super) fn measured(
         probe,
         reporter,
     };
-    let can_bsdf = probe.bsdf_finds_lights();
     let mut planes = estimator.first()?;
     for comparison in 1.. {
         for (i, plane) in planes.iter_mut().enumerate() {
@@ -89,7 +87,8 @@ pub(super) fn measured(
                 plane.found = Some(estimator.compared(i, plane)?);
             }
         }
-        let open = (0..planes.len()).filter(|i| planes[*i].is_open(can_bsdf));
+        let open =
+            (0..planes.len()).filter(|i| planes[*i].is_open(estimator.is_untried(&planes[*i])));
         let open: Vec<usize> = open.collect();
         let plan = estimator.plan(&planes, &open);
         if comparison == estimator.comparisons() || plan == TracePlan::default() {
@@ -113,6 +112,11 @@ impl Estimator<'_> {
         }
     }
 
+    /// Checks whether BSDF rays would find all light of a plane, and were not yet traced.
+    fn is_untried(&self, plane: &PlaneEstimates) -> bool {
+        plane.bsdf_rays.is_none() && self.probe.bsdf_finds_lights()
+    }
+
     fn first(&self) -> Result<Vec<PlaneEstimates>, Failure> {
         let request = self.request;
         let backward = BackwardProbe::new(self.probe, budget(request.rays, request.seed));
@@ -133,10 +137,7 @@ impl Estimator<'_> {
 
     /// Plans the next rays of the undecided planes.
     fn plan(&self, planes: &[PlaneEstimates], open: &[usize]) -> TracePlan {
-        let can_bsdf = self.probe.bsdf_finds_lights();
-        let untried = open
-            .iter()
-            .filter(|i| can_bsdf && planes[**i].bsdf_rays.is_none());
+        let untried = open.iter().filter(|i| self.is_untried(&planes[**i]));
         let count = self.request.first_bsdf_rays();
         let bsdf_rays: Vec<(usize, u64)> = untried.map(|i| (*i, count)).collect();
         if !bsdf_rays.is_empty() {

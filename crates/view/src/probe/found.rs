@@ -1,8 +1,8 @@
 //! The results of a probe at a plane.
 
 use super::covariance::FoundCovariance;
-use super::variance::FoundVariance;
 use etendue_compare::{PlaneComparison, Verdict};
+use etendue_pipeline::variance::PlaneVariance;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
 
@@ -23,7 +23,7 @@ pub(super) struct Found {
     /// The covariance of the plane's spectrum, if requested.
     pub(super) covariance: Option<FoundCovariance>,
     /// The variances of samplers, if requested. A dark plane and one of constant radiance have none.
-    pub(super) variance: Option<FoundVariance>,
+    pub(super) variance: Option<PlaneVariance>,
 }
 
 /// The measurement with which the backward rays are compared; below it is called the judge.

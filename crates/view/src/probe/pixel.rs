@@ -11,7 +11,6 @@ use etendue_compare::{Prediction, Verdict};
 use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
-use etendue_report::variance::drawn as figure;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
@@ -106,7 +105,7 @@ fn written(
         let source = (note, ["backward rays", found.judge.word()]);
         pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
         if let Some(found) = &found.variance {
-            let figure = figure(note, &found.variance)?;
+            let figure = etendue_report::variance::drawn(note, found)?;
             pictures::write(&mut results, &format!("{}/variance", plane.name), &figure)?;
         }
     }
@@ -127,7 +126,7 @@ fn written(
         made_from["batches"] = tree_of!(BATCHES);
         let planes = found.iter().zip(&probe.planes);
         made_from["planes"] = planes
-            .map(|((found, _), plane)| of_plane(found, plane))
+            .map(|((found, _), plane)| of_plane(scene.request, found, plane))
             .collect();
         made_from["files"] = tree_of!(files);
         json(&made_from)

@@ -5,35 +5,27 @@ use etendue_field::{TwoPlane, VirtualPlane};
 use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::Reporter;
 use etendue_pipeline::variance::{
-    PlaneVariance, VarianceOptions, VarianceStudy, WindowLight, WindowRadiance,
+    PlaneVariance, RayRadiance, VarianceOptions, VarianceStudy, WindowLight, WindowRadiance,
+    box_window,
 };
-use etendue_pipeline::variance::{RayRadiance, box_window};
 use etendue_store::Failure;
-use serde_json::Value;
 
 /// The differences between the seed of the backward rays and the seeds of the rays for the spectrum
 /// and for single radiances.
 const SPECTRUM_SEED: u64 = 1 << 62;
 const RADIANCE_SEED: u64 = 3 << 62;
 
-/// The variances at a plane, and their JSON.
-#[derive(Clone, Debug)]
-pub(super) struct FoundVariance {
-    pub(super) variance: PlaneVariance,
-    pub(super) tree: Value,
-}
-
-/// The radiance along rays through a plane of a probe.
+/// The radiance along rays through the only plane of a probe.
 #[derive(Debug)]
 struct ProbeRadiance<'a> {
     probe: &'a Probe<'a>,
-    plane: &'a VirtualPlane,
     seed: u64,
 }
 
 impl RayRadiance for ProbeRadiance<'_> {
     fn along(&self, ray: &TwoPlane, index: u64) -> f64 {
-        self.probe.radiance(self.plane, ray, self.seed, index)
+        self.probe
+            .radiance(&self.probe.planes[0], ray, self.seed, index)
     }
 }
 
@@ -44,35 +36,31 @@ pub(super) fn studied(
     options: &VarianceOptions,
     (probe, are_dark): (&Probe<'_>, &[bool]),
     reporter: &dyn Reporter,
-) -> Result<Vec<Option<FoundVariance>>, Failure> {
+) -> Result<Vec<Option<PlaneVariance>>, Failure> {
     let of_plane = |(number, (plane, is_dark)): (usize, (&VirtualPlane, &bool))| {
         if *is_dark {
             return Ok(None);
         }
         let plane = box_window(plane, options.frequencies);
+        let window = plane.window;
         let probe = probe.seen_at(plane.clone());
         let seed = seed_at(request.seed, number);
         let budget = budget(request.rays, seed ^ SPECTRUM_SEED);
         let radiance = ProbeRadiance {
             probe: &probe,
-            plane: &plane,
             seed: seed ^ RADIANCE_SEED,
         };
         let light = WindowLight {
             source: Box::new(BackwardProbe::new(&probe, budget)),
-            radiance: WindowRadiance::of(plane.window, Box::new(radiance)),
-            plane: plane.clone(),
+            radiance: WindowRadiance::of(window, Box::new(radiance)),
+            plane,
             batches: BATCHES,
             photons: request.rays,
             seed,
         };
         let study = VarianceStudy::of_light(light, options.clone())?;
         study.check_memory()?;
-        let variance = study.run(reporter)?;
-        Ok(variance.map(|variance| FoundVariance {
-            tree: study.tree(&variance),
-            variance,
-        }))
+        study.run(reporter)
     };
     let planes = probe.planes.iter().zip(are_dark).enumerate();
     planes.map(of_plane).collect()

@@ -57,7 +57,7 @@ pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
     })
 }
 
-pub(super) fn of_plane(found: &Found, plane: &VirtualPlane) -> Value {
+pub(super) fn of_plane(request: &ProbeRequest, found: &Found, plane: &VirtualPlane) -> Value {
     let number = |of: &Option<Widest<Uncertain>>| of.map(|of| [of.value.value, of.value.error]);
     let azimuth = |of: &Option<Widest<Uncertain>>| of.map(|of| of.azimuth);
     let axis = |axis: &FrequencyAxis| tree_of!({ "max": axis.max(), "spacing": axis.spacing });
@@ -77,8 +77,8 @@ pub(super) fn of_plane(found: &Found, plane: &VirtualPlane) -> Value {
     if let Some(covariance) = &found.covariance {
         tree["spectral_covariance"] = covariance.tree();
     }
-    if let Some(variance) = &found.variance {
-        tree["variance"] = variance.tree.clone();
+    if let (Some(options), Some(variance)) = (&request.variance, &found.variance) {
+        tree["variance"] = variance.tree(options);
     }
     tree
 }
@@ -143,7 +143,7 @@ pub(super) fn lines(
         for found in found {
             lines.push(String::new());
             lines.push(match &found.variance {
-                Some(variance) => text(&variance.variance, options),
+                Some(variance) => text(variance, options),
                 None => format!(
                     "{}: {}",
                     found.comparison.report.name,
