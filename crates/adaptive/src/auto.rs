@@ -55,8 +55,8 @@ impl AdaptiveRun<'_> {
     fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let visible = self.visible;
         let samples = values(pilot);
-        (self.stage)(Stage::Guide, visible.places.len());
-        let mut guide = LightGuide::new(visible, &self.shader, self.progress);
+        (self.stage)(Stage::Guide, 1);
+        let mut guide = LightGuide::new(visible, &std::mem::take(&mut self.direct));
         let guides: Vec<SampleGuide> = samples.iter().map(|at| guide.at(visible, at)).collect();
         let of_guide = samples.iter().zip(&guides).map(|(sample, guide)| {
             let value = guide.value;

@@ -1,10 +1,9 @@
 //! Measures the nearness of blockers at sparse points of the picture, and interpolates it between
 //! these points.
 
-use crate::criterion::shaded;
 use crate::cutoffs::Cutoffs;
 use crate::metric::Metric;
-use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_pixels};
 use crate::visible::{SeenSurface, Visible};
 use etendue_paths::{Nearness, Paths};
 use etendue_world::Camera;
@@ -45,14 +44,12 @@ pub(crate) fn nearness(
             })
         })
         .collect();
-    let places = reconstruct(visible, &samples, SampleFit::Mean);
-    visible.pixels(|pixel| {
-        let range = visible.range(pixel);
-        let of_shaded = visible.of_pixel(pixel).iter().zip(&places[range]);
-        let mut found = of_shaded.filter_map(|(place, value)| shaded(place).and(*value));
-        let [reflected, shadow] = found.next().unwrap_or_default();
+    let values = reconstruct_pixels(visible, &samples, SampleFit::Mean);
+    let of = |value: &Option<[f64; 2]>| {
+        let [reflected, shadow] = value.unwrap_or_default();
         Nearness { reflected, shadow }
-    })
+    };
+    values.iter().map(of).collect()
 }
 
 /// Returns the slope between adjacent pixels at the centre of the picture.

@@ -154,6 +154,7 @@ fn of_columns(right: DVec3, down: DVec3) -> Metric {
 mod tests {
     use super::*;
     use crate::cutoffs::Cutoffs;
+    use crate::shading::Shader;
     use etendue_paths::Paths;
     use etendue_world::{
         Camera, Geometry, Material, MicrofacetDistribution, Projection, Roughness, Shape, Texture,
@@ -207,7 +208,14 @@ mod tests {
     fn screen_differences_are_the_criteria() {
         let (paths, camera) = seen();
         let cutoffs = Cutoffs::default();
-        let visible = Visible::new(&paths, &camera, &cutoffs, &|_| {});
+        let shader = Shader {
+            paths: &paths,
+            camera: &camera,
+            cutoffs: &cutoffs,
+            each: 1,
+            seed: 0,
+        };
+        let (visible, _) = Visible::new(&shader, &|_| {}, |_, _, _| ());
         let slope = 0.4 / 801.0;
         let mut farthest: f64 = 0.0;
         for column in [400, 500, 600, 680] {

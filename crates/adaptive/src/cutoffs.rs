@@ -28,45 +28,30 @@ impl Cutoffs {
     }
 
     fn of_lobe(&self, lobe: Lobe) -> f64 {
-        let (kind, lobe): (u64, Lobe) = match lobe {
+        // Widths are rounded to a few per cent, so that a textured roughness requires few cutoffs.
+        let step = |width: f64| (STEPS * libm::log2(width.max(1e-4))).round();
+        let (kind, step) = match lobe {
             Lobe::Lambertian => return COSINE_CUTOFF,
-            Lobe::Phong { exponent } => (
-                0,
-                Lobe::Phong {
-                    exponent: rounded(exponent),
-                },
-            ),
-            Lobe::Beckmann { roughness } => (
-                1,
-                Lobe::Beckmann {
-                    roughness: rounded(roughness),
-                },
-            ),
-            Lobe::Ggx { roughness } => (
-                2,
-                Lobe::Ggx {
-                    roughness: rounded(roughness),
-                },
-            ),
-        };
-        let width = match lobe {
-            Lobe::Phong { exponent } => exponent,
-            Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => roughness,
-            Lobe::Lambertian => 0.0,
+            Lobe::Phong { exponent } => (0, step(exponent)),
+            Lobe::Beckmann { roughness } => (1, step(roughness)),
+            Lobe::Ggx { roughness } => (2, step(roughness)),
         };
         let find = || {
-            let found = lobe_cutoff(lobe).filter(|cutoff| cutoff.is_finite());
+            let width = libm::exp2(step / STEPS);
+            let rounded = match lobe {
+                Lobe::Phong { .. } => Lobe::Phong { exponent: width },
+                Lobe::Beckmann { .. } => Lobe::Beckmann { roughness: width },
+                Lobe::Lambertian | Lobe::Ggx { .. } => Lobe::Ggx { roughness: width },
+            };
+            let found = lobe_cutoff(rounded).filter(|cutoff| cutoff.is_finite());
             found.unwrap_or(COSINE_CUTOFF).min(MIRROR)
         };
         let Ok(mut known) = self.known.lock() else {
             return find();
         };
-        *known.entry([kind, width.to_bits()]).or_insert_with(find)
+        *known.entry([kind, step.to_bits()]).or_insert_with(find)
     }
 }
 
-/// Rounds a width to a few per cent, so that a textured roughness requires few cutoffs.
-fn rounded(width: f64) -> f64 {
-    let steps = 16.0;
-    libm::exp2((steps * libm::log2(width.max(1e-4))).round() / steps)
-}
+/// Number of widths between a width and twice this width.
+const STEPS: f64 = 16.0;

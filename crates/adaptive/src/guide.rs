@@ -12,8 +12,9 @@ use crate::cross::{CrossError, dark};
 use crate::objects::ObjectSums;
 use crate::reconstruct::{ShadedSample, bell, unlike};
 use crate::shading::Shader;
-use crate::smooth::{EdgeFilter, PlaceValues, detailed};
-use crate::visible::{FOUR, SeenSurface, Visible, at, squared_distance};
+use crate::smooth::{EdgeFilter, FilterPoints, PlaceValues, detailed};
+use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance};
+use etendue_paths::View;
 use rayon::prelude::*;
 
 /// Width in pixels of a tile. The paths from the points of a tile share a net.
@@ -55,17 +56,14 @@ pub(crate) struct SampleGuide {
 }
 
 impl LightGuide {
-    /// Traces a path from each point; `progress` receives the number of finished points.
-    pub(crate) fn new(
-        visible: &Visible,
-        shader: &Shader<'_>,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Self {
-        let rough = direct(visible, shader, progress);
-        let soft = SOFT.smoothed(visible, &rough);
-        let slow = SLOW.smoothed(visible, &soft);
+    /// Smooths the noisy direct light `rough` of all points.
+    pub(crate) fn new(visible: &Visible, rough: &[[f64; 2]]) -> Self {
+        let points = FilterPoints::new(visible);
+        let filtered = |filter: EdgeFilter, values: &[[f64; 2]]| filter.smoothed(&points, values);
+        let soft = filtered(SOFT, rough);
+        let slow = filtered(SLOW, &soft);
         let smooth = detailed(visible, &soft, &slow);
-        let sharp = SHARP.smoothed(visible, &rough);
+        let sharp = filtered(SHARP, rough);
         Self {
             values: detailed(visible, &sharp, &smooth),
             shares: GuideShares::default(),
@@ -149,28 +147,23 @@ impl LightGuide {
     }
 }
 
-/// Computes direct light by one path from each point.
-fn direct(visible: &Visible, shader: &Shader<'_>, progress: &(dyn Fn(u64) + Sync)) -> PlaceValues {
-    let tiles = visible.size[0].div_ceil(TILE);
-    let of = |index: usize| {
-        let [column, row] = visible.pixel(index);
-        let surface = shaded(&visible.places[index])?;
-        let seen = shader.seen(at([column, row], index % FOUR))?;
-        let tile = (row / TILE) * tiles + column / TILE;
+/// Computes direct light by one path from the point with an index, in a picture of a width.
+pub(crate) fn direct(
+    shader: &Shader<'_>,
+    width: usize,
+    index: usize,
+    view: &View,
+    place: &SeenPlace,
+) -> [f64; 2] {
+    let of = || {
+        let surface = shaded(place)?;
+        let [column, row] = [index / FOUR % width, index / FOUR / width];
+        let tile = (row / TILE) * width.div_ceil(TILE) + column / TILE;
         let point = morton([column % TILE, row % TILE]) * FOUR + index % FOUR;
-        Some(shader.direct(
-            &seen,
-            surface.factors,
-            (tile as u64, u32::try_from(point).ok()?),
-        ))
+        let of_net = (tile as u64, u32::try_from(point).ok()?);
+        Some(shader.direct(view.surface.as_ref()?, surface.factors, of_net))
     };
-    let all = (0..visible.places.len()).into_par_iter();
-    all.map(|index| {
-        let light = of(index).unwrap_or_default();
-        progress(1);
-        light
-    })
-    .collect()
+    of().unwrap_or_default()
 }
 
 /// Returns the number of a pixel in a tile, in the order of Morton 1966. In this order, the pixels

@@ -8,12 +8,13 @@ use crate::cross::{WIDER, cross_errors, squared};
 use crate::cutoffs::Cutoffs;
 use crate::density::{scaled, to_power, wanted};
 use crate::edges;
-use crate::guide::LightGuide;
+use crate::guide::{LightGuide, direct};
 use crate::metric::Metric;
-use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct, reconstruct_pixels};
 use crate::shading::Shader;
-use crate::visible::{FOUR, Visible, at};
-use etendue_paths::Paths;
+use crate::smooth::PlaceValues;
+use crate::visible::{FOUR, SeenPlace, Visible, at};
+use etendue_paths::{Paths, View};
 use etendue_world::Camera;
 
 /// The distribution of shading samples.
@@ -58,13 +59,13 @@ pub struct SamplePlan {
 /// A stage of the work, reported before it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Finding visible points, four per pixel.
+    /// Finding visible points, four per pixel, and for the default method their direct light.
     Visibility,
     /// Measuring the nearness of blockers.
     Blockers,
     /// Evaluating the criteria.
     Criterion,
-    /// Computing the direct light at all visible points, which guides the reconstruction.
+    /// Smoothing the direct light at all visible points, which guides the reconstruction.
     Guide,
     /// Choosing the points to shade.
     Samples,
@@ -131,13 +132,20 @@ pub fn render(
     let cutoffs = Cutoffs::default();
     let [w, h] = camera.size;
     stage(Stage::Visibility, w * h);
-    let visible = Visible::new(paths, camera, &cutoffs, progress);
     let shader = Shader {
         paths,
         camera,
         cutoffs: &cutoffs,
         each: plan.each,
         seed: plan.seed,
+    };
+    let (visible, direct) = if plan.method == SampleMethod::Auto {
+        let of =
+            |index: usize, view: &View, place: &SeenPlace| direct(&shader, w, index, view, place);
+        Visible::new(&shader, progress, of)
+    } else {
+        let (visible, _) = Visible::new(&shader, progress, |_, _, _| ());
+        (visible, Vec::new())
     };
     let mut work = AdaptiveRun {
         visible: &visible,
@@ -146,6 +154,7 @@ pub fn render(
         stage,
         progress,
         layers: Layers::default(),
+        direct,
         guide: None,
     };
     let samples = work.samples();
@@ -159,6 +168,8 @@ pub(crate) struct AdaptiveRun<'a> {
     pub(crate) stage: &'a dyn Fn(Stage, usize),
     pub(crate) progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
+    /// Noisy direct light at all points, if the method uses a guide.
+    pub(crate) direct: PlaceValues,
     /// The guide of the reconstruction, if the method uses one.
     pub(crate) guide: Option<LightGuide>,
 }
@@ -237,11 +248,9 @@ impl AdaptiveRun<'_> {
 
     /// Returns the mean of squared errors around each pixel.
     pub(crate) fn around(&self, missed: &[ShadedSample]) -> Vec<f64> {
-        let places = reconstruct(self.visible, missed, SampleFit::Mean);
-        self.visible.pixels(|pixel| {
-            let mut of = places[self.visible.range(pixel)].iter().flatten();
-            of.next().map_or(0.0, |value| value[0])
-        })
+        let values = reconstruct_pixels(self.visible, missed, SampleFit::Mean);
+        let of = |value: &Option<[f64; 2]>| value.map_or(0.0, |[error, _]| error);
+        values.iter().map(of).collect()
     }
 
     /// Returns the metrics by the criteria.
@@ -325,12 +334,10 @@ impl AdaptiveRun<'_> {
                 }
             })
             .collect();
-        let places = reconstruct(self.visible, &wider, SampleFit::Mean);
-        let found = self.visible.pixels(|pixel| {
-            let mut of = places[self.visible.range(pixel)].iter().flatten();
-            let spread = |[mean, square]: &[f64; 2]| [*mean, (square - mean * mean).max(0.0)];
-            of.next().map_or([f64::NAN; 2], spread)
-        });
+        let spread = |[mean, square]: [f64; 2]| [mean, (square - mean * mean).max(0.0)];
+        let values = reconstruct_pixels(self.visible, &wider, SampleFit::Mean);
+        let of = |value: &Option<[f64; 2]>| value.map_or([f64::NAN; 2], spread);
+        let found: Vec<[f64; 2]> = values.iter().map(of).collect();
         self.layers.variance = found.iter().map(|[_, variance]| *variance).collect();
         let of_all: Vec<f64> = found.iter().map(|[mean, _]| *mean).collect();
         let seen = of_all.iter().filter(|mean| mean.is_finite());

@@ -7,6 +7,7 @@ use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
 use crate::metric::Metric;
 use crate::visible::{FOUR, SeenSurface, Visible, at};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -75,6 +76,21 @@ pub(crate) fn reconstruct_where(
     let bands = visible.size[1].div_ceil(BAND);
     let of = |band: usize| Band::new(visible, band).filled(samples, fit, is_wanted);
     (0..bands).into_par_iter().flat_map_iter(of).collect()
+}
+
+/// Reconstructs values like [`reconstruct()`], but only at the first shaded point of each pixel.
+pub(crate) fn reconstruct_pixels(
+    visible: &Visible,
+    samples: &[ShadedSample],
+    fit: SampleFit,
+) -> Vec<Option<[f64; 2]>> {
+    let first = visible.pixels(|pixel| {
+        let mut points = visible.range(pixel);
+        points.find(|i| shaded(&visible.places[*i]).is_some())
+    });
+    let is_first = |i: usize| first[i / FOUR] == Some(i);
+    let values = reconstruct_where(visible, samples, fit, &is_first);
+    first.iter().map(|i| values[(*i)?]).collect()
 }
 
 /// Sums over samples at one point. The positions of samples are relative to the point, in units of
@@ -252,23 +268,30 @@ impl LightMean {
 
 /// Returns a bell-shaped weight at a squared distance, in squared standard deviations. The weight
 /// is close to exp(−square/2) up to 2 standard deviations, and faster to compute.
+#[inline(always)]
 pub(crate) fn bell(square: f64) -> f64 {
-    (1.0 + square / 16.0).powi(-8)
+    let root = 1.0 + square / 16.0;
+    let fourth = (root * root) * (root * root);
+    1.0 / (fourth * fourth)
 }
 
 /// Returns how much two points of a shape differ in normal and elevation, in squared standard
 /// deviations.
 pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
-    let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
-    let between = sample.position - place.position;
-    let length = between.length_squared();
-    if length <= 0.0 {
-        return turned;
-    }
-    let height = between.dot(place.normal);
+    let [place, sample] = [place, sample].map(|seen| [seen.normal, seen.position]);
+    unlike_points(place, sample)
+}
+
+/// Like [`unlike()`], for points with a normal and a position.
+#[inline(always)]
+pub(crate) fn unlike_points(place: [DVec3; 2], sample: [DVec3; 2]) -> f64 {
+    let [turned, between] = [0, 1].map(|k: usize| sample[k] - place[k]);
+    let height = between.dot(place[0]);
     // From a point of a sphere to another, the normal turns by twice the elevation angle between
     // them. A larger elevation angle shows that the points are on different parts of the shape.
-    turned + height * height / (length * HEIGHTS * HEIGHTS)
+    // Two points at one position have a height of 0, and the least length keeps the quotient 0.
+    let length = between.length_squared().max(f64::MIN_POSITIVE);
+    turned.length_squared() / (NORMALS * NORMALS) + height * height / (length * (HEIGHTS * HEIGHTS))
 }
 
 /// Pixels that overlap an interval.

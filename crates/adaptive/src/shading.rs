@@ -4,7 +4,7 @@ use crate::blue_noise::{PicturePoint, PixelPosition};
 use crate::cutoffs::Cutoffs;
 use crate::reconstruct::ShadedSample;
 use crate::visible::{SeenPlace, SeenSurface};
-use etendue_paths::{Paths, SurfaceHit};
+use etendue_paths::{Paths, SurfaceHit, View};
 use etendue_world::Camera;
 use rayon::prelude::*;
 
@@ -39,7 +39,7 @@ impl Shader<'_> {
     }
 
     pub(crate) fn one(&self, point: &PicturePoint, number: u64) -> Option<(ShadedSample, f64)> {
-        let seen = self.seen(point.at)?;
+        let seen = self.view(point.at).surface?;
         let surface = SeenSurface::new(self.paths, &seen, self.cutoffs);
         if surface.cutoff <= 0.0 {
             return None;
@@ -54,14 +54,14 @@ impl Shader<'_> {
         Some((sample, variance))
     }
 
-    /// Returns the surface at a position of the picture.
-    pub(crate) fn seen(&self, at: PixelPosition) -> Option<SurfaceHit> {
-        self.paths.view(&self.camera.look(at, [0.0; 2])).surface
+    /// Traces the ray from the camera through a position of the picture.
+    pub(crate) fn view(&self, at: PixelPosition) -> View {
+        self.paths.view(&self.camera.look(at, [0.0; 2]))
     }
 
     /// Finds what is visible at a position of the picture.
     pub(crate) fn place(&self, at: PixelPosition) -> SeenPlace {
-        SeenPlace::new(self.paths, self.camera, self.cutoffs, at)
+        SeenPlace::new(self.paths, self.cutoffs, &self.view(at))
     }
 
     /// Computes the direct light of base and lobe by one path, without the given texture factors.

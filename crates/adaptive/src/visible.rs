@@ -1,8 +1,8 @@
 //! The points visible in the pixels of a picture.
 
 use crate::cutoffs::Cutoffs;
-use etendue_paths::{Paths, Reflects, SurfaceHit};
-use etendue_world::Camera;
+use crate::shading::Shader;
+use etendue_paths::{Paths, Reflects, SurfaceHit, View};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -47,14 +47,12 @@ pub(crate) struct SeenPlace {
 }
 
 impl SeenPlace {
-    /// Finds what is visible at a position of the picture.
-    pub(crate) fn new(paths: &Paths, camera: &Camera, cutoffs: &Cutoffs, at: [f64; 2]) -> Self {
-        let view = paths.view(&camera.look(at, [0.0; 2]));
+    /// Describes what a ray from the camera meets.
+    pub(crate) fn new(paths: &Paths, cutoffs: &Cutoffs, view: &View) -> Self {
+        let of = |seen| SeenSurface::new(paths, seen, cutoffs);
         Self {
             emitted: view.emitted,
-            surface: view
-                .surface
-                .map(|seen| SeenSurface::new(paths, &seen, cutoffs)),
+            surface: view.surface.as_ref().map(of),
         }
     }
 }
@@ -105,25 +103,27 @@ impl SeenSurface {
 }
 
 impl Visible {
-    /// Finds the visible points; `progress` receives the number of finished pixels.
-    pub(crate) fn new(
-        paths: &Paths,
-        camera: &Camera,
-        cutoffs: &Cutoffs,
+    /// Finds the visible points; `progress` receives the number of finished pixels. Also returns
+    /// `of` each point, computed from the index of the point and from what is visible there.
+    pub(crate) fn new<T: Send>(
+        shader: &Shader<'_>,
         progress: &(dyn Fn(u64) + Sync),
-    ) -> Self {
-        let [w, h] = camera.size;
+        of: impl Fn(usize, &View, &SeenPlace) -> T + Sync,
+    ) -> (Self, Vec<T>) {
+        let size @ [w, h] = shader.camera.size;
         let row = |row: usize| {
-            let place =
-                |i: usize| SeenPlace::new(paths, camera, cutoffs, at([i / FOUR, row], i % FOUR));
-            let places: Vec<SeenPlace> = (0..FOUR * w).map(place).collect();
+            let point = |i: usize| {
+                let view = shader.view(at([i / FOUR, row], i % FOUR));
+                let place = SeenPlace::new(shader.paths, shader.cutoffs, &view);
+                let found = of(FOUR * row * w + i, &view, &place);
+                (place, found)
+            };
+            let points: Vec<(SeenPlace, T)> = (0..FOUR * w).map(point).collect();
             progress(w as u64);
-            places
+            points
         };
-        Self {
-            size: camera.size,
-            places: (0..h).into_par_iter().flat_map_iter(row).collect(),
-        }
+        let (places, found) = (0..h).into_par_iter().flat_map_iter(row).unzip();
+        (Self { size, places }, found)
     }
 
     /// Returns the points of a pixel.
@@ -135,12 +135,6 @@ impl Visible {
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR
-    }
-
-    /// Returns the pixel of a point, given the point's index.
-    pub(crate) fn pixel(&self, index: usize) -> [usize; 2] {
-        let pixel = index / FOUR;
-        [pixel % self.size[0], pixel / self.size[0]]
     }
 
     /// Returns the pixel at a position of the picture.
