@@ -11,7 +11,7 @@ use crate::threads::on_threads;
 use etendue_pipeline::covariance::CovarianceStudy;
 use etendue_pipeline::{load, planes};
 use etendue_report::covariance::drawn;
-use etendue_report::pictures;
+use etendue_report::pictures::PictureFiles;
 use etendue_scene::Scene;
 use etendue_store::{ArgumentStyle, COVARIANCE, Failure, Plan, Results};
 
@@ -40,7 +40,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     })?;
     for (index, plane) in scene.planes.iter().enumerate() {
         let figure = drawn(&scene, &found, index)?;
-        pictures::write(&mut results, &format!("{}/covariance", plane.name), &figure)?;
+        PictureFiles::new(format!("{}/covariance", plane.name), figure)?.write(&mut results)?;
     }
     if !args.work.quiet {
         deliver(&table::text(&found.reports))?;

@@ -7,7 +7,8 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
 use etendue_pipeline::{load, method, variance_table};
-use etendue_report::{pictures, variance};
+use etendue_report::pictures::PictureFiles;
+use etendue_report::variance;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE};
 
 /// The exit code if a prediction is undecided.
@@ -48,7 +49,7 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
         deliver(&variance_table::text(&found, study.options()))?;
     }
     let figure = variance::drawn(&scene.name, &found)?;
-    pictures::write(&mut results, "variance", &figure)?;
+    PictureFiles::new("variance".to_owned(), figure)?.write(&mut results)?;
     finish(
         results,
         study.index((&scene, method), &found),

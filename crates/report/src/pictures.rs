@@ -56,19 +56,20 @@ pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
 /// Returns the pictures `primal` and `spectrum` of a plane. `made_from` describes their source, and
 /// `sides` are the names of the two sides.
 pub fn plane(
-    results: &mut Results,
     (made_from, sides): (&str, [&str; 2]),
     prediction: &Prediction,
     at: &VirtualPlane,
     plane: &PlaneComparison,
-) -> Result<(), Failure> {
+) -> Result<[PictureFiles; 2], Failure> {
     let name = &plane.report.name;
     let note = format!("{made_from}; {}", verdict_line(plane));
-    let drawn = primal((&note, sides), prediction, at, plane)?;
-    write(results, &format!("{name}/primal"), &drawn)?;
+    let light_field = primal((&note, sides), prediction, at, plane)?;
     let note = format!("{note}. {}", Outliers::of(plane).words());
-    let drawn = spectrum((&note, sides), at, plane)?;
-    write(results, &format!("{name}/spectrum"), &drawn)
+    let spectrum = spectrum((&note, sides), at, plane)?;
+    Ok([
+        PictureFiles::new(format!("{name}/primal"), light_field)?,
+        PictureFiles::new(format!("{name}/spectrum"), spectrum)?,
+    ])
 }
 
 /// Returns the light field of a plane.
@@ -185,12 +186,45 @@ pub fn drawn_scene(scene: &Scene, path: &Path) -> Result<Vec<u8>, Failure> {
     })
 }
 
-/// Writes a figure as PNG, SVG and the numbers behind it.
-pub fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failure> {
-    let png = figure.png().map_err(Failure::cannot_run)?;
-    results.write(&format!("{name}.png"), &png)?;
-    results.write(&format!("{name}.svg"), figure.svg.as_bytes())?;
-    results.write(&format!("{name}.csv"), figure.csv.as_bytes())
+/// The files of a figure: PNG, SVG and the numbers behind it.
+#[derive(Debug)]
+pub struct PictureFiles {
+    name: String,
+    png: Vec<u8>,
+    svg: String,
+    csv: String,
+}
+
+impl PictureFiles {
+    /// Draws the pixels of a figure. `name` is the path of its files, without their extensions.
+    pub fn new(name: String, figure: Figure) -> Result<Self, Failure> {
+        let png = figure.png().map_err(Failure::cannot_run)?;
+        let Figure { svg, csv, .. } = figure;
+        Ok(Self {
+            name,
+            png,
+            svg,
+            csv,
+        })
+    }
+
+    /// Returns the figure as SVG.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// Writes the files.
+    pub fn write(&self, results: &mut Results) -> Result<(), Failure> {
+        let Self {
+            name,
+            png,
+            svg,
+            csv,
+        } = self;
+        results.write(&format!("{name}.png"), png)?;
+        results.write(&format!("{name}.svg"), svg.as_bytes())?;
+        results.write(&format!("{name}.csv"), csv.as_bytes())
+    }
 }
 
 /// Returns the verdict on a plane and its reasons, in one line.

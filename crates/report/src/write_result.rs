@@ -7,6 +7,7 @@ use etendue_pipeline::{Judged, MeasuredScene, Outcome, Stopwatch, field, photons
 use etendue_scene::Scene;
 use etendue_store::stored::check_earlier;
 use etendue_store::{ArgumentStyle, Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// The user's options for a result folder.
@@ -69,20 +70,26 @@ pub fn write_result(
     if options.compact {
         results.leave_out(NOT_COMPACT);
     }
-    let each = case.predictions.iter().zip(planes);
-    for ((prediction, plane), at) in each.zip(&case.scene.planes) {
+    let made_from = pictures::made_from(summary);
+    let drawn = |((prediction, plane), at)| {
+        pictures::plane((&made_from, pictures::sides(plane)), prediction, at, plane)
+    };
+    let each = case.predictions.par_iter().zip(planes);
+    let each = each.zip(&case.scene.planes);
+    let (path, of_planes) = rayon::join(
+        || pictures::path(case, planes),
+        || each.map(drawn).collect::<Result<Vec<_>, _>>(),
+    );
+    for (plane, pictures) in planes.iter().zip(of_planes?) {
         arrays::write(&mut results, summary.made_from(), plane)?;
-        pictures::plane(
-            &mut results,
-            (&pictures::made_from(summary), pictures::sides(plane)),
-            prediction,
-            at,
-            plane,
-        )?;
+        pictures
+            .iter()
+            .try_for_each(|files| files.write(&mut results))?;
     }
-    let path = pictures::path(&mut results, case, planes)?;
+    let path = path?;
+    path.write(&mut results)?;
     let explorer = explorer::fragment(&summary.scene_file).filter(|_| !options.compact);
-    let data = page::data(case, summary, planes, (&path, explorer.as_deref()));
+    let data = page::data(case, summary, planes, (path.svg(), explorer.as_deref()));
     results.write(
         page::NAME,
         page::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),

@@ -9,6 +9,7 @@ use crate::values::{Sweep, SweepPoint, short, shown};
 use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Work, limits, load, method};
+use etendue_report::pictures::PictureFiles;
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::VERSION;
 use etendue_store::sealed::json;
@@ -238,8 +239,9 @@ fn finish(
     results.write(TABLE, &table::csv(&paths, found)?)?;
     let stage = reporter.begin(Work::Stage("writing results"));
     let figures = pictures::drawn(&base.name, found, request.together)?;
-    for (name, figure) in pictures::NAMES.iter().zip(&figures) {
-        etendue_report::pictures::write(&mut results, name, figure)?;
+    let has_curves = !figures.is_empty();
+    for (name, figure) in pictures::NAMES.iter().zip(figures) {
+        PictureFiles::new((*name).to_owned(), figure)?.write(&mut results)?;
     }
     let finished = results.finish(|files| {
         json(&SweepIndex {
@@ -268,7 +270,7 @@ fn finish(
     Ok(FinishedSweep {
         folder: finished.folder,
         rows: rows(&paths, found),
-        has_curves: !figures.is_empty(),
+        has_curves,
         verdicts: ["pass", "fail", "undecided"].map(count),
         undecided: found.iter().flat_map(undecided).collect(),
     })

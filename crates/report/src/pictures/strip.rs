@@ -6,7 +6,7 @@ use super::words::{
     CoordinateNames, across_axes, full_radial_axes, full_radial_quantity, light_field_quantity,
     spectrum_quantity,
 };
-use super::{FLOOR, verdict_lines, write};
+use super::{FLOOR, PictureFiles, verdict_lines};
 use crate::drawing;
 use etendue_compare::{
     Applicability, Class, FullRadialComparison, PlaneComparison, Theory, Verdict, stands_before,
@@ -17,20 +17,15 @@ use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::table::grouped;
 use etendue_scene::Scene;
 use etendue_store::Failure;
-use etendue_store::Results;
 use ndarray::{Array2, Axis};
+use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Draws the strip along the path, and returns the strip as SVG.
-pub fn path(
-    results: &mut Results,
-    case: &MeasuredScene,
-    planes: &[PlaneComparison],
-) -> Result<String, Failure> {
+/// Draws the strip along the path.
+pub fn path(case: &MeasuredScene, planes: &[PlaneComparison]) -> Result<PictureFiles, Failure> {
     let photons = case.measurement.emitted();
     let figure = strip_of(&case.scene, photons, &case.theories, planes, None)?;
-    write(results, "path", &figure)?;
-    Ok(figure.svg)
+    PictureFiles::new("path".to_owned(), figure)
 }
 
 /// Draws the planes in the order in which light meets them. If the strip is a figure, it also shows
@@ -72,8 +67,12 @@ pub fn strip_of(
         both.show(column);
     }
     // Figures are not interpolated, because they were run at finer frequencies.
-    let drawn = along.iter().filter(|_| !is_figure && both.is_none());
-    let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
+    let drawn = if is_figure || both.is_some() {
+        &[][..]
+    } else {
+        &along
+    };
+    let drawn: Vec<_> = drawn.par_iter().map(PlaneOnPath::finer_power).collect();
     for (column, values) in columns.iter_mut().zip(&drawn) {
         column.finer = values.as_ref().map(|values| Picture {
             values: values.view(),

@@ -6,7 +6,7 @@ use super::scene::{ProbeRequest, ProbedScene};
 use super::words::criterion;
 use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
 use etendue_pipeline::{Reporter, Work};
-use etendue_report::pictures;
+use etendue_report::pictures::PictureFiles;
 use etendue_store::Failure;
 use etendue_store::Results;
 use etendue_store::exr::{Part, exr};
@@ -147,7 +147,7 @@ fn write(
     }
     results.write(FILES[0], &exr([w, h], parts, &made_from)?)?;
     results.write(FILES[1], &npz.bytes()?)?;
-    pictures::write(&mut results, "map", &drawn(case, map)?)?;
+    PictureFiles::new("map".to_owned(), drawn(case, map)?)?.write(&mut results)?;
     let finished = results.finish(|files| {
         made_from["files"] = tree_of!(files);
         json(&made_from)

@@ -10,7 +10,7 @@ use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{Prediction, Verdict};
 use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
-use etendue_report::pictures;
+use etendue_report::pictures::{self, PictureFiles};
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
@@ -103,10 +103,13 @@ fn written(
         made_from["rays"] = tree_of!(found.counts[0]);
         arrays::write(&mut results, made_from, &found.comparison)?;
         let source = (note, ["backward rays", found.judge.word()]);
-        pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
+        let pictures = pictures::plane(source, photons, plane, &found.comparison)?;
+        pictures
+            .iter()
+            .try_for_each(|files| files.write(&mut results))?;
         if let Some(found) = &found.variance {
             let figure = etendue_report::variance::drawn(note, found)?;
-            pictures::write(&mut results, &format!("{}/variance", plane.name), &figure)?;
+            PictureFiles::new(format!("{}/variance", plane.name), figure)?.write(&mut results)?;
         }
     }
     let each = found
