@@ -24,7 +24,7 @@ BLOCKS = 64    # a pixel's mean is tested, not its samples: sixteen means of the
 
 
 def size_of(scene):
-    """Pixels across and down: as many as fit into 64 x 64 and have the shape of the file's."""
+    """Pixels across and down: as many as fit into 64 x 64 and have the shape of the file's; all pixels if the sides share no factor, as 683 x 512."""
     w, h = (int(n) for n in scene.sensors()[0].film().size())
     w, h = w // math.gcd(w, h), h // math.gcd(w, h)
     return [n * max(1, SIDE // max(w, h)) for n in (w, h)]

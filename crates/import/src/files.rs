@@ -57,6 +57,9 @@ impl Files {
     /// Returns the bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
         let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
+        if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
+            return Err("is a pointer of Git LFS; `git lfs pull` fetches its content".to_owned());
+        }
         self.spend(bytes.len() as u64)?;
         Ok(bytes)
     }

@@ -4,6 +4,9 @@ use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DMat3, DVec2, DVec3};
 
+/// Says why a mesh is left out or refused.
+pub(crate) const NO_AREA: &str = "has no triangle with an area above 0";
+
 /// The parts of a mesh from which [`Triangles`] will be made.
 #[derive(Debug)]
 pub(crate) struct MeshParts {

@@ -107,7 +107,9 @@ pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
         "bmp" => bmp::read(bytes),
         "jpg" | "jpeg" => jpeg::read(bytes),
         "hdr" | "rgbe" => hdr::read(bytes),
-        "png" | "exr" => read_channels(path, bytes).map_err(|fault| fault.to_string()),
+        "png" | "exr" => {
+            read_channels(path, bytes).map_err(|fault| format!("is not a valid picture: {fault}"))
+        }
         other => Err(format!(
             "has extension {other:?}; allowed: bmp, exr, hdr, jpg, png"
         )),

@@ -345,6 +345,43 @@ fn serialized_files_hold_several_meshes() {
     );
 }
 
+/// A mesh whose triangles have no area is left out with its material, also within a group.
+#[test]
+fn meshes_without_area_are_left_out() {
+    let files = folder(&[
+        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
+        ("bend.obj", BEND),
+    ]);
+    let flat = file("obj", "flat.obj", "<bsdf type=\"diffuse\"/>");
+    let bend = file("obj", "bend.obj", "");
+    let group = format!(
+        "<shape type=\"shapegroup\" id=\"g\">{flat}{bend}</shape>\
+        <shape type=\"instance\"><ref id=\"g\"/></shape>"
+    );
+    for inside in [flat.clone() + &bend, group] {
+        let imported = read_in(&inside, files.path(), Color::Luminance).unwrap();
+        assert_eq!(imported.world.shapes.len(), 1);
+        let notes = imported.notes.iter().map(ToString::to_string);
+        let notes: Vec<String> = notes.collect();
+        assert!(
+            notes[0]
+                .contains("file `flat.obj` has no triangle with an area above 0 and is left out"),
+            "{notes:?}"
+        );
+    }
+}
+
+#[test]
+fn pointers_of_git_lfs_are_named() {
+    let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+    let files = folder(&[("a.obj", pointer), ("a.png", pointer)]);
+    let causes = read_in(&file("obj", "a.obj", ""), files.path(), Color::Luminance).unwrap_err();
+    assert!(
+        causes[0].contains("file `a.obj` is a pointer of Git LFS"),
+        "{causes:?}"
+    );
+}
+
 #[test]
 fn mesh_files_that_are_damaged_are_causes() {
     let files = folder(&[
@@ -353,14 +390,10 @@ fn mesh_files_that_are_damaged_are_causes() {
     ]);
     let inside = file("obj", "a.obj", "") + &file("obj", "b.obj", "") + &file("ply", "a.obj", "");
     let causes = read_in(&inside, files.path(), Color::Luminance).unwrap_err();
-    assert_eq!(causes.len(), 3, "{causes:#?}");
+    assert_eq!(causes.len(), 2, "{causes:#?}");
     assert!(
         causes[0].contains("line 2, face 1, corner 2"),
         "{causes:#?}"
     );
-    assert!(
-        causes[1].contains("no triangle with an area"),
-        "{causes:#?}"
-    );
-    assert!(causes[2].contains("has extension `obj`"), "{causes:#?}");
+    assert!(causes[1].contains("has extension `obj`"), "{causes:#?}");
 }

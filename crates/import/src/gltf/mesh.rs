@@ -1,7 +1,7 @@
 //! Primitives of meshes, as triangles.
 
 use super::reader::GltfReader;
-use crate::meshes::MeshParts;
+use crate::meshes::{MeshParts, NO_AREA};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
@@ -90,7 +90,7 @@ impl GltfReader<'_> {
         spent.map_err(|error| self.cause(path, error)).ok()?;
         parts.drop_empty();
         if parts.corners.is_empty() {
-            self.note(path, "has no triangle with an area above 0 and is left out");
+            self.note(path, format!("{NO_AREA} and is left out"));
             return None;
         }
         let mended = parts.mend_normals();

@@ -5,7 +5,7 @@ use super::mesh_key::MitsubaMeshKey;
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::{cube, serialized};
-use crate::meshes::MeshParts;
+use crate::meshes::{MeshParts, NO_AREA};
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
 use glam::{DAffine3, DMat3, DVec3};
@@ -52,6 +52,12 @@ impl<'a> MitsubaReader<'a> {
         let (triangles, is_made) = self.triangles(object, &key, to_world, is_new);
         let (triangles, attributes) = match triangles {
             Ok(read) => read,
+            Err(error) if error == NO_AREA => {
+                let message = format!("file {} {NO_AREA} and is left out", quoted(name));
+                self.report.note(&object.place, message);
+                self.is_left_out = true;
+                return None;
+            }
             Err(error) => {
                 self.unread(object, name, &error);
                 return None;
@@ -186,7 +192,7 @@ impl<'a> MitsubaReader<'a> {
         }
         let made = parts.finish().map(Arc::new);
         made.map(|triangles| (triangles, Rc::new(attributes)))
-            .ok_or_else(|| "has no triangle with an area above 0".to_owned())
+            .ok_or_else(|| NO_AREA.to_owned())
     }
 }
 

@@ -32,6 +32,8 @@ pub(super) struct MitsubaReader<'a> {
     pub(super) wanted: HashMap<usize, Rc<[String]>>,
     /// The mesh of the shape that is read now, if it has one.
     pub(super) current_mesh: Option<MitsubaMesh>,
+    /// Whether the shape that is being read is left out, which a note states.
+    pub(super) is_left_out: bool,
     /// The material of each bsdf; `None` if the bsdf is invalid. If textures of the bsdf use
     /// attributes of meshes, each mesh, known by its address, has its own material.
     pub(super) materials: HashMap<(usize, usize), Option<usize>>,
@@ -64,6 +66,7 @@ impl<'a> MitsubaReader<'a> {
             meshes: HashMap::new(),
             wanted: HashMap::new(),
             current_mesh: None,
+            is_left_out: false,
             materials: HashMap::new(),
             groups: HashMap::new(),
             made_materials: 0,

@@ -93,8 +93,9 @@ impl<'a> MitsubaReader<'a> {
     fn shape(&mut self, object: &'a MitsubaObject, is_in_group: bool) -> Option<Shape> {
         object.is_used.set(true);
         let own = self.to_world(object);
+        self.is_left_out = false;
         let placed = self.geometry(object, own);
-        if placed.is_none() && !self.wanted(object).is_empty() {
+        if placed.is_none() && (self.is_left_out || !self.wanted(object).is_empty()) {
             // The attributes of a mesh that was not read are unknown.
             self.drop_all(object);
             return None;

@@ -5,7 +5,7 @@ use super::mtl::{self, left_out};
 use super::surface::ObjSurface;
 use crate::Color;
 use crate::files::Files;
-use crate::meshes::MeshParts;
+use crate::meshes::{MeshParts, NO_AREA};
 use crate::report::{Report, SourcePlace, quoted};
 use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
 use etendue_world::{Geometry, Shape, World};
@@ -114,10 +114,8 @@ impl<'a> ObjReader<'a> {
             return self.report.cause(&place, message);
         }
         let Some(mesh) = parts.finish() else {
-            return self.report.note(
-                &place,
-                "has no triangle with an area above 0 and is left out",
-            );
+            let message = format!("{NO_AREA} and is left out");
+            return self.report.note(&place, message);
         };
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),

@@ -5,7 +5,7 @@ use super::include;
 use super::parameter::ParameterKind;
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
-use crate::meshes::MeshParts;
+use crate::meshes::{MeshParts, NO_AREA};
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
@@ -224,7 +224,7 @@ impl PbrtReader<'_> {
         parts.face_normals();
         parts.mend_normals();
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
+        made.ok_or_else(|| NO_AREA.to_owned())
     }
 }
 
