@@ -10,8 +10,8 @@ use glam::DVec3;
 /// Paths of light through a world. They are traced back from the place where they are seen.
 ///
 /// At each surface, direct light is sampled in two ways: from the lights and from the BSDF. The
-/// balance heuristic of multiple importance sampling weights the two results (Veach and Guibas
-/// 1995, *Optimally combining sampling techniques*).
+/// power heuristic of multiple importance sampling weights the two results (Veach and Guibas 1995,
+/// *Optimally combining sampling techniques*).
 #[derive(Debug)]
 pub struct Paths {
     pub(crate) geometry: SceneGeometry,
@@ -148,13 +148,13 @@ impl Paths {
     /// Returns the light emitted along a ray that hits a light, with its weight in multiple
     /// importance sampling.
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
-        let balanced = |(radiance, looked): (f64, f64)| match last {
-            Some(last) => radiance * last / (last + looked),
+        let weighted = |(radiance, looked): (f64, f64)| match last {
+            Some(last) => radiance * mis_weight(last, looked),
             None => radiance,
         };
         match hit {
-            Some(hit) => balanced(self.lights.of_hit(ray.from, ray.along, hit)),
-            None => self.lights.of_sky(ray.along).map(balanced).sum(),
+            Some(hit) => weighted(self.lights.of_hit(ray.from, ray.along, hit)),
+            None => self.lights.of_sky(ray.along).map(weighted).sum(),
         }
     }
 
@@ -182,11 +182,20 @@ impl Paths {
         if !self.geometry.is_free(&ray, light.distance) {
             return (wi, 0.0);
         }
-        let share = light.density.map_or(1.0, |looked| {
-            looked / (looked + scatter.density(&hit.point, wi, wo))
+        let mis_weight = light.density.map_or(1.0, |looked| {
+            mis_weight(looked, scatter.density(&hit.point, wi, wo))
         });
-        (wi, value * light.weight * share)
+        (wi, value * light.weight * mis_weight)
     }
+}
+
+/// Returns the weight of a direction with density `own` in multiple importance sampling, where the
+/// other sampling strategy has density `other`. This is the power heuristic with exponent 2. A small
+/// light has almost no light left for the rare directions of the BSDF that find it, so a picture
+/// without such directions is not too dark.
+fn mis_weight(own: f64, other: f64) -> f64 {
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
 }
 
 fn onward(hit: &Hit, bounce: &BsdfSample) -> Ray {

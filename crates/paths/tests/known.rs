@@ -171,6 +171,22 @@ fn lights_shine_by_their_units() {
     }
 }
 
+/// Rare directions of the BSDF that find a small light have almost no share of its light, so the
+/// standard error of a pixel without such directions covers what is missing.
+#[test]
+fn errors_under_a_small_light_are_honest() {
+    let light = shape(Geometry::Sphere, scaled(0.1, 9.0), 1, Some(1.0));
+    let mut camera = camera(ASIDE, DVec3::ZERO);
+    camera.size = [16, 16];
+    let world = floor(vec![light], vec![]);
+    let picture = Paths::new(&world).picture(&camera, 256, 3, &|_| {});
+    let expected = 0.5 * (0.1_f64 / 9.0).powi(2);
+    let squares = picture.mean.iter().zip(&picture.variance);
+    let squares = squares.map(|(mean, variance)| (mean - expected).powi(2) / variance);
+    let mean = squares.sum::<f64>() / 256.0;
+    assert!(mean < 1.5, "{mean}"); // 1 if errors are right, with a deviation of 0.09
+}
+
 #[test]
 fn surfaces_shine_by_their_area() {
     let turned = |height: f64, scale: f64| {
