@@ -14,6 +14,7 @@ mod binary_hierarchy;
 mod build;
 mod collapse;
 mod leaf;
+mod parts;
 mod single;
 mod space;
 mod wide;

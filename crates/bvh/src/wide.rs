@@ -77,7 +77,7 @@ impl NodeRay {
 }
 
 impl Wide {
-    /// Builds a tree from nodes with a given depth.
+    /// Builds a tree from nodes with a given depth; the root is the first node.
     pub(crate) fn new(nodes: Vec<Node>, depth: usize) -> Self {
         let memory = WIDTH * depth;
         Self { nodes, memory }
@@ -163,6 +163,25 @@ impl Node {
 
     pub(crate) fn leaf(place: usize) -> u32 {
         Self::inner(place) | LEAF
+    }
+
+    /// Returns this node with larger numbers of nodes and leaves.
+    pub(crate) fn moved(mut self, nodes: u32, leaves: u32) -> Self {
+        for child in &mut self.children {
+            *child += if *child & LEAF == 0 { nodes } else { leaves };
+        }
+        self
+    }
+
+    /// Replaces the numbers of leaves by numbers of nodes.
+    pub(crate) fn with_nodes_below(mut self, node: impl Fn(usize) -> usize) -> Self {
+        for (i, child) in self.children.iter_mut().enumerate() {
+            let is_filled = self.planes[0][i] <= self.planes[1][i];
+            if *child & LEAF != 0 && is_filled {
+                *child = Self::inner(node((*child ^ LEAF) as usize));
+            }
+        }
+        self
     }
 
     /// Stores a child in one of the slots, with a box from its lowest to its highest corner.

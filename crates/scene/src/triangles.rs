@@ -1,6 +1,6 @@
 //! The triangles of a mesh in a scene.
 
-use etendue_bvh::BinaryHierarchy;
+use etendue_bvh::WideHierarchy;
 use etendue_field::enclosing;
 use glam::DVec3;
 use std::fmt;
@@ -15,7 +15,7 @@ pub struct Triangles(Arc<SharedTriangles>);
 struct SharedTriangles {
     corners: Vec<[DVec3; 3]>,
     bounds: [DVec3; 2],
-    hierarchy: BinaryHierarchy,
+    hierarchy: WideHierarchy,
 }
 
 impl Triangles {
@@ -25,7 +25,7 @@ impl Triangles {
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
         Self(Arc::new(SharedTriangles {
-            hierarchy: BinaryHierarchy::new(corners.len(), origins, bounds),
+            hierarchy: WideHierarchy::in_parts(corners.len(), origins, bounds),
             bounds: enclosing(corners.as_flattened()),
             corners,
         }))
@@ -37,7 +37,7 @@ impl Triangles {
         self.0.bounds
     }
 
-    /// Calls [`BinaryHierarchy::along`] for the triangles that a ray may meet.
+    /// Calls [`WideHierarchy::along`] for the triangles that a ray may meet.
     #[inline]
     pub fn along(
         &self,

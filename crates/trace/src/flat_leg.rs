@@ -3,13 +3,14 @@
 
 use crate::grid::Grid;
 use crate::lanes::{inside, lanes};
+use crate::mesh::BlockerMesh;
 use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
 
-/// A first leg on which all obstacles and planes lie across the leg, so their distances are the
-/// same for all photons.
+/// A first leg on which all planes lie across the leg and all obstacles lie across the leg or are
+/// meshes between planes. So all photons meet them in the same order.
 #[derive(Debug)]
 pub(crate) struct FlatLeg {
     /// The obstacles beyond the light, the farthest first.
@@ -20,20 +21,24 @@ pub(crate) struct FlatLeg {
     level: Level,
 }
 
-/// An obstacle across the leg.
+/// An obstacle across the leg, or a mesh.
 #[derive(Debug)]
 pub(crate) struct FlatObstacle {
+    /// The distance of the obstacle; for a mesh, the distance of its farthest point.
     pub(crate) distance: f64,
+    /// The distance of the nearest point.
+    pub(crate) nearest: f64,
     pub(crate) outline: Outline,
     pub(crate) end: PhotonEnd,
 }
 
-/// The points of an obstacle across the leg.
+/// The points of an obstacle.
 #[derive(Debug)]
 pub(crate) enum Outline {
     Shape(Shape),
     Grid(Box<Grid>),
     HalfPlane(HalfPlane),
+    Mesh(Box<BlockerMesh>),
 }
 
 /// What becomes of a photon: the shares of its flux that are added to the ledger, and whether it
@@ -79,18 +84,20 @@ impl PhotonEnd {
 }
 
 impl FlatLeg {
-    /// Returns `None` if a plane does not lie across the leg or lies beyond the surface that ends
-    /// the leg, if two different obstacles have the same distance, or if there are many obstacles.
-    #[expect(
-        clippy::float_cmp,
-        reason = "obstacles at the same distance are hit at the same time"
-    )]
+    /// Returns `None` if a plane does not lie across the leg, lies inside a mesh or beyond the
+    /// surface that ends the leg, if photons may meet two different obstacles in either order, or
+    /// if there are many obstacles.
     pub(crate) fn new(mut obstacles: Vec<FlatObstacle>, planes: &[PlaneOnLeg]) -> Option<Self> {
         obstacles.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-        let differ = |pair: &[FlatObstacle]| {
-            pair[0].distance == pair[1].distance && pair[0].end != pair[1].end
+        let in_order = |(i, far): (usize, &FlatObstacle)| {
+            let nearer = &obstacles[i + 1..];
+            nearer.iter().all(|near| far.is_beyond(near) || far.end == near.end)
         };
-        if !planes.iter().all(PlaneOnLeg::is_across) {
+        let is_inside = |plane: &PlaneOnLeg, obstacle: &FlatObstacle| {
+            is_crossed(plane, obstacle.distance) && !is_crossed(plane, obstacle.nearest)
+        };
+        let is_outside_all = |plane| !obstacles.iter().any(|obstacle| is_inside(plane, obstacle));
+        if !planes.iter().all(|plane| plane.is_across() && is_outside_all(plane)) {
             return None;
         }
         let planes: Vec<FlatPlane> = planes
@@ -98,10 +105,7 @@ impl FlatLeg {
             .map(|plane| FlatPlane {
                 plane: plane.plane,
                 distance: plane.distance,
-                obstacles: obstacles.partition_point(|obstacle| match plane.side {
-                    Side::Before => plane.distance <= obstacle.distance,
-                    Side::After => plane.distance < obstacle.distance,
-                }),
+                obstacles: obstacles.partition_point(|obstacle| is_crossed(plane, obstacle.distance)),
             })
             .collect();
         let last = obstacles.iter().position(|obstacle| obstacle.end.arrives);
@@ -109,7 +113,7 @@ impl FlatLeg {
             .iter()
             .all(|plane| last.is_none_or(|last| last < plane.obstacles))
             && obstacles.len() <= MAX_OBSTACLES
-            && !obstacles.windows(2).any(differ);
+            && obstacles.iter().enumerate().all(in_order);
         let ends = [PhotonEnd::ESCAPED].into_iter();
         let ends = ends.chain(obstacles.iter().map(|obstacle| obstacle.end));
         let ends = ends.chain([PhotonEnd::default()]).collect();
@@ -132,7 +136,8 @@ impl FlatLeg {
         ledger: &mut Ledger,
     ) -> impl Iterator<Item = (usize, f64)> {
         let hits = dispatch!(self.level, _simd => {
-            let hits = self.hits(photons);
+            let mut hits = self.hits(photons);
+            self.meet_meshes(photons, &mut hits);
             for plane in &self.planes {
                 plane.record(photons, &hits, &mut crossings[plane.plane]);
             }
@@ -160,6 +165,7 @@ impl FlatLeg {
                 Outline::Shape(shape) => inside(shape, [&x, &y]),
                 Outline::Grid(grid) => grid.contains_each([&x, &y]),
                 Outline::HalfPlane(half_plane) => lanes(|i| half_plane.contains(x[i], y[i])),
+                Outline::Mesh(_) => continue,
             };
             hits = lanes(|i| {
                 if is_inside[i] {
@@ -170,6 +176,36 @@ impl FlatLeg {
             });
         }
         hits
+    }
+
+    /// Updates the obstacles that photons meet with the meshes that they meet. Photons that meet a
+    /// nearer obstacle are not tested.
+    fn meet_meshes(&self, photons: &PhotonGroup, hits: &mut Hits) {
+        for (number, obstacle) in (1..).zip(&self.obstacles) {
+            let Outline::Mesh(mesh) = &obstacle.outline else {
+                continue;
+            };
+            for (i, hit) in hits.iter_mut().enumerate() {
+                if *hit < number && mesh.is_met(&photons.ray(i)) {
+                    *hit = number;
+                }
+            }
+        }
+    }
+}
+
+/// Checks whether light crosses a plane before it meets an obstacle.
+fn is_crossed(plane: &PlaneOnLeg, obstacle: f64) -> bool {
+    match plane.side {
+        Side::Before => plane.distance <= obstacle,
+        Side::After => plane.distance < obstacle,
+    }
+}
+
+impl FlatObstacle {
+    /// Checks whether all photons that meet both obstacles meet the other obstacle first.
+    fn is_beyond(&self, other: &Self) -> bool {
+        self.nearest > other.distance
     }
 }
 

@@ -86,6 +86,31 @@ impl BlockerMesh {
         blocked
     }
 
+    /// Checks whether a ray meets any triangle beyond the beginning of the leg. The mesh lies
+    /// beyond the beginning, and its frame is the frame at the light ([`Self::extent`]).
+    pub(crate) fn is_met(&self, ray: &TwoPlane) -> bool {
+        let (start, direction) = (start(ray), direction(ray));
+        let mut is_met = false;
+        self.triangles
+            .along(start, direction, [0.0, f64::INFINITY], |i| {
+                is_met |= triangle_distance(&self.triangles[i], ray).is_some();
+                // The search ends after the first hit.
+                if is_met {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }
+            });
+        is_met
+    }
+
+    /// Returns the distances of the nearest and the farthest point, if the mesh lies beyond the
+    /// beginning of a leg whose frame is the frame at the light.
+    pub(crate) fn extent(&self) -> Option<[f64; 2]> {
+        let [low, high] = self.triangles.bounds();
+        (self.leg.is_none() && low.z > 0.0).then_some([low.z, high.z])
+    }
+
     /// Calls `tell` with the distance and number of every triangle on the line of a ray.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
         self.along(ray, 1.0, [f64::NEG_INFINITY, f64::INFINITY], |at, i| {
