@@ -43,10 +43,9 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
 ///
 /// Panics if a leaf has more than [`MAX_LEAF`] boxes.
 pub(crate) fn collapsed_parts(bvh: &Bvh2) -> Collapsed {
-    // The largest possible number of nodes. The operating system provides memory only when the
-    // program writes to the memory.
-    let most = bvh.nodes.len() / 2 + 1;
-    let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
+    // Usually, a tenth of the binary tree's nodes become nodes.
+    let mut nodes = Vec::with_capacity(bvh.nodes.len() / 8 + 1);
+    let mut leaves = Vec::with_capacity(bvh.nodes.len() / 2 + 1);
     nodes.push(Node::EMPTY);
     let mut deepest = 0;
     // Nodes of the binary tree, with their positions and depths.

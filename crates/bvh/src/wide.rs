@@ -15,7 +15,7 @@ pub(crate) struct Wide {
 pub(crate) const WIDTH: usize = 8;
 
 /// Stack size without allocation. It is enough for the depth of any tree with a million triangles.
-const STACK: usize = 96;
+const STACK: usize = 160;
 
 #[derive(Clone)]
 #[repr(align(32))]
@@ -79,7 +79,8 @@ impl NodeRay {
 impl Wide {
     /// Builds a tree from nodes with a given depth; the root is the first node.
     pub(crate) fn new(nodes: Vec<Node>, depth: usize) -> Self {
-        let memory = WIDTH * depth;
+        // Each node leaves at most seven children on the stack.
+        let memory = (WIDTH - 1) * depth + 1;
         Self { nodes, memory }
     }
 

@@ -5,6 +5,7 @@ use crate::grid::Grid;
 use crate::lanes::{inside, lanes};
 use crate::mesh::BlockerMesh;
 use crate::photon_group::{ABREAST, PhotonGroup};
+use crate::mesh_order::meet_mesh;
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
@@ -63,7 +64,7 @@ pub(crate) struct FlatPlane {
 /// For each photon, the number of the obstacle that the photon meets, from 1 on in the order of a
 /// [`FlatLeg`]. The number 0 stands for no obstacle, and the number after the last for a photon that
 /// carries no light.
-type Hits = [usize; ABREAST];
+pub(crate) type Hits = [usize; ABREAST];
 
 /// The largest number of obstacles that are tested one after another. More obstacles are left to
 /// their hierarchy.
@@ -125,38 +126,61 @@ impl FlatLeg {
         })
     }
 
-    /// Traces photons from the light to the obstacles that they meet, and reports the virtual
-    /// planes before these obstacles. Returns the indices and the distances of photons that arrive
+    /// Checks whether there are meshes on the leg.
+    pub(crate) fn has_meshes(&self) -> bool {
+        let mut outlines = self.obstacles.iter().map(|obstacle| &obstacle.outline);
+        outlines.any(|outline| matches!(outline, Outline::Mesh(_)))
+    }
+
+    /// Returns the obstacles that photons meet.
+    pub(crate) fn hits_of_all(&self, groups: &[PhotonGroup]) -> Vec<Hits> {
+        let each = groups.iter().map(|photons| self.hits(photons));
+        let mut hits = each.collect::<Vec<Hits>>();
+        for (number, obstacle) in (1..).zip(&self.obstacles) {
+            if let Outline::Mesh(mesh) = &obstacle.outline {
+                // Photons that meet a nearer obstacle are not tested.
+                meet_mesh(mesh, number, groups, &mut hits);
+            }
+        }
+        hits
+    }
+
+    /// Returns the obstacles that photons meet, if there are no meshes.
+    #[inline]
+    pub(crate) fn hits(&self, photons: &PhotonGroup) -> Hits {
+        dispatch!(self.level, _simd => self.flat_hits(photons))
+    }
+
+    /// Reports the virtual planes before the obstacles that photons meet, and adds to the ledger
+    /// what becomes of the photons. Returns the indices and the distances of photons that arrive
     /// at the surface that ends the leg.
     #[inline]
     pub(crate) fn trace(
         &self,
         photons: &PhotonGroup,
+        hits: &Hits,
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) -> impl Iterator<Item = (usize, f64)> {
-        let hits = dispatch!(self.level, _simd => {
-            let mut hits = self.hits(photons);
-            self.meet_meshes(photons, &mut hits);
+        dispatch!(self.level, _simd => {
             for plane in &self.planes {
-                plane.record(photons, &hits, &mut crossings[plane.plane]);
+                plane.record(photons, hits, &mut crossings[plane.plane]);
             }
-            hits
         });
-        for (hit, flux) in hits.into_iter().zip(photons.fluxes) {
-            let end = &self.ends[hit];
+        for (hit, flux) in hits.iter().zip(photons.fluxes) {
+            let end = &self.ends[*hit];
             ledger.absorbed += end.absorbed * flux;
             ledger.escaped += end.escaped * flux;
             ledger.stopped += end.stopped * flux;
         }
         let arrives = |(_, hit): &(usize, usize)| self.ends[*hit].arrives;
-        let arrivals = hits.into_iter().enumerate().filter(arrives);
+        let arrivals = hits.iter().copied().enumerate().filter(arrives);
         arrivals.map(|(i, hit)| (i, self.obstacles[hit - 1].distance))
     }
 
-    /// Returns the number of the obstacle that each photon meets.
+    /// Returns the number of the flat obstacle that each photon meets.
     #[inline(always)]
-    fn hits(&self, photons: &PhotonGroup) -> Hits {
+    fn flat_hits(&self, photons: &PhotonGroup) -> Hits {
         let none = self.obstacles.len() + 1;
         let mut hits: Hits = lanes(|i| if photons.weights[i] > 0.0 { 0 } else { none });
         for (number, obstacle) in (1..).zip(&self.obstacles) {
@@ -176,21 +200,6 @@ impl FlatLeg {
             });
         }
         hits
-    }
-
-    /// Updates the obstacles that photons meet with the meshes that they meet. Photons that meet a
-    /// nearer obstacle are not tested.
-    fn meet_meshes(&self, photons: &PhotonGroup, hits: &mut Hits) {
-        for (number, obstacle) in (1..).zip(&self.obstacles) {
-            let Outline::Mesh(mesh) = &obstacle.outline else {
-                continue;
-            };
-            for (i, hit) in hits.iter_mut().enumerate() {
-                if *hit < number && mesh.is_met(&photons.ray(i)) {
-                    *hit = number;
-                }
-            }
-        }
     }
 }
 

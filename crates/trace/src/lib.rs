@@ -25,6 +25,7 @@ mod heading;
 mod lanes;
 mod line;
 mod mesh;
+mod mesh_order;
 mod numbers;
 mod obstacles;
 mod photon_group;

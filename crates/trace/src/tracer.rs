@@ -5,7 +5,7 @@ use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
 use crate::courses::{Both, rounding};
 use crate::emit::Emitter;
-use crate::flat_leg::FlatLeg;
+use crate::flat_leg::{FlatLeg, Hits};
 use crate::heading::Heading;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
@@ -93,6 +93,29 @@ pub(crate) struct Flight {
     pub(crate) weight: f64,
 }
 
+/// Photons of several blocks that were emitted together, and the obstacles that they meet.
+#[derive(Debug, Default)]
+struct Ahead {
+    /// The number of the first photon.
+    first: u64,
+    groups: Vec<PhotonGroup>,
+    hits: Vec<Hits>,
+}
+
+/// The number of photons that are emitted together if they may meet meshes: several blocks, so that
+/// many photons meet nearby triangles.
+const AHEAD: u64 = 16 * BLOCK as u64;
+
+impl Ahead {
+    /// Returns the group of photons that begins with a photon, and the obstacles that they meet;
+    /// `None` if they were not emitted.
+    #[inline]
+    fn of(&self, first: u64) -> Option<(&PhotonGroup, &Hits)> {
+        let i = usize::try_from(first.checked_sub(self.first)?).ok()? / ABREAST;
+        self.groups.get(i).zip(self.hits.get(i))
+    }
+}
+
 /// A photon of a block, on the current leg of the block.
 #[derive(Debug)]
 struct Photon {
@@ -159,6 +182,35 @@ impl Tracer {
         }
     }
 
+    /// Emits the photons of a group. Photons from `end` on carry no light.
+    #[inline]
+    fn emit_group(&self, first: u64, end: u64, numbers: &Numbers) -> PhotonGroup {
+        let words = |block| numbers.columns(self.level, first, block);
+        let mut group = self.emitter.emit(words);
+        group.end_at(end - first);
+        group
+    }
+
+    /// Emits the photons of several blocks and finds what they meet, if there are meshes on a flat
+    /// first leg. `numbers` returns the random numbers of the block that begins with a photon.
+    fn emit_ahead(&self, range: Range<u64>, numbers: impl Fn(u64) -> Numbers) -> Ahead {
+        let Some(flat) = self.flat.as_ref().filter(|flat| flat.has_meshes()) else {
+            return Ahead::default();
+        };
+        let mut groups = Vec::with_capacity(AHEAD as usize / ABREAST);
+        for start in range.clone().step_by(BLOCK) {
+            let end = range.end.min(start + BLOCK as u64);
+            let numbers = numbers(start);
+            let firsts = (start..end).step_by(ABREAST);
+            groups.extend(firsts.map(|first| self.emit_group(first, end, &numbers)));
+        }
+        Ahead {
+            first: range.start,
+            hits: flat.hits_of_all(&groups),
+            groups,
+        }
+    }
+
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the
     /// photons that are not traced to their end to `photons`.
     #[inline]
@@ -166,14 +218,17 @@ impl Tracer {
         &self,
         range: Range<u64>,
         numbers: &Numbers,
+        ahead: &Ahead,
         photons: &mut Vec<Photon>,
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            let words = |block| numbers.columns(self.level, first, block);
-            let mut group = self.emitter.emit(words);
-            group.end_at(range.end - first);
+            let known = ahead.of(first);
+            let group = known.map_or_else(
+                || self.emit_group(first, range.end, numbers),
+                |(group, _)| *group,
+            );
             for flux in group.fluxes {
                 ledger.emitted += flux;
             }
@@ -184,9 +239,11 @@ impl Tracer {
                 photons.extend(lit.map(|i| Photon::emitted(&group, i, first)));
                 continue;
             };
-            let arrivals = flat.trace(&group, crossings, ledger);
+            let hits = known.map_or_else(|| flat.hits(&group), |(_, hits)| *hits);
+            let arrivals = flat.trace(&group, &hits, crossings, ledger);
             if let Some(next) = self.legs.get(1) {
-                let words = words(self.emitter.bounces_from());
+                let block = self.emitter.bounces_from();
+                let words: [[u32; ABREAST]; 4] = numbers.columns(self.level, first, block);
                 let course = &self.legs[0].courses.along;
                 photons.extend(arrivals.filter_map(|(i, distance)| {
                     let arrival = group.arrival(i, distance);
@@ -437,13 +494,19 @@ impl PhotonSource for Tracer {
         let mut total = Ledger::default();
         let first = self.shares.of(batch).start;
         let range = self.shares.part(batch, part);
+        let mut ahead = Ahead::default();
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
+            if (start - range.start).is_multiple_of(AHEAD) {
+                let until = range.end.min(start + AHEAD);
+                ahead = self.emit_ahead(start..until, |at| self.numbers.of(batch, first, at));
+            }
             let numbers = self.numbers.of(batch, first, start);
             self.emit_block(
                 start..end,
                 &numbers,
+                &ahead,
                 &mut photons,
                 &mut crossings,
                 &mut block,
