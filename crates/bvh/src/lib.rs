@@ -14,6 +14,7 @@ mod binary_hierarchy;
 mod build;
 mod collapse;
 mod leaf;
+mod mesh_hierarchy;
 mod parts;
 mod single;
 mod space;
@@ -21,4 +22,5 @@ mod wide;
 mod wide_hierarchy;
 
 pub use binary_hierarchy::BinaryHierarchy;
+pub use mesh_hierarchy::{MeshHierarchy, SearchMemory};
 pub use wide_hierarchy::WideHierarchy;

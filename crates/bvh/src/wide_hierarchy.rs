@@ -2,7 +2,6 @@
 
 use crate::build::{TreeKind, bvh};
 use crate::collapse;
-use crate::parts;
 use crate::leaf::{self, Leaf, LeafRay};
 use crate::single::single;
 use crate::space::{Space, vector};
@@ -28,8 +27,6 @@ pub struct WideHierarchy {
 enum TreeLeaves {
     /// The first box and the number of boxes.
     Boxes(Vec<[u32; 2]>),
-    /// Each leaf is a single box; its number is the position of the box in the order of leaves.
-    SingleBoxes,
     Triangles(Vec<Leaf>),
 }
 
@@ -45,25 +42,6 @@ impl WideHierarchy {
             order: bvh.primitive_indices,
             tree,
             leaves: TreeLeaves::Boxes(leaves),
-            space,
-            level: Level::new(),
-        }
-    }
-
-    /// Builds the same hierarchy as [`Self::new`], with one box in each leaf, in little memory: 40
-    /// bytes for each box. Parts of a large set of boxes are built and collapsed one by one.
-    #[must_use]
-    pub fn in_parts(
-        count: usize,
-        origins: f64,
-        bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
-    ) -> Self {
-        let space = Space::around((0..count).map(&bounds), origins);
-        let (tree, order) = parts::tree(count, &space, bounds);
-        Self {
-            order,
-            tree,
-            leaves: TreeLeaves::SingleBoxes,
             space,
             level: Level::new(),
         }
@@ -120,9 +98,6 @@ impl WideHierarchy {
                 let visit = Boxes { leaves, meet };
                 dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
             }
-            TreeLeaves::SingleBoxes => {
-                dispatch!(self.level, simd => self.tree.along(simd, &ray, SingleBoxes { meet }));
-            }
             TreeLeaves::Triangles(leaves) => {
                 let tolerance = single(self.space.unit * self.space.padding);
                 let origin = vector(self.space.unit * origin);
@@ -152,18 +127,6 @@ impl<M: FnMut(usize) -> f32> Visit for Boxes<'_, M> {
             until = until.min((self.meet)(i as usize));
         }
         until
-    }
-}
-
-/// The leaves of a tree with one box in each leaf.
-struct SingleBoxes<M> {
-    meet: M,
-}
-
-impl<M: FnMut(usize) -> f32> Visit for SingleBoxes<M> {
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
-        (self.meet)(leaf)
     }
 }
 

@@ -4,8 +4,8 @@
 use crate::grid::Grid;
 use crate::lanes::{inside, lanes};
 use crate::mesh::BlockerMesh;
-use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::mesh_order::meet_mesh;
+use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
@@ -92,13 +92,18 @@ impl FlatLeg {
         obstacles.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         let in_order = |(i, far): (usize, &FlatObstacle)| {
             let nearer = &obstacles[i + 1..];
-            nearer.iter().all(|near| far.is_beyond(near) || far.end == near.end)
+            nearer
+                .iter()
+                .all(|near| far.is_beyond(near) || far.end == near.end)
         };
         let is_inside = |plane: &PlaneOnLeg, obstacle: &FlatObstacle| {
             is_crossed(plane, obstacle.distance) && !is_crossed(plane, obstacle.nearest)
         };
         let is_outside_all = |plane| !obstacles.iter().any(|obstacle| is_inside(plane, obstacle));
-        if !planes.iter().all(|plane| plane.is_across() && is_outside_all(plane)) {
+        if !planes
+            .iter()
+            .all(|plane| plane.is_across() && is_outside_all(plane))
+        {
             return None;
         }
         let planes: Vec<FlatPlane> = planes
@@ -106,7 +111,8 @@ impl FlatLeg {
             .map(|plane| FlatPlane {
                 plane: plane.plane,
                 distance: plane.distance,
-                obstacles: obstacles.partition_point(|obstacle| is_crossed(plane, obstacle.distance)),
+                obstacles: obstacles
+                    .partition_point(|obstacle| is_crossed(plane, obstacle.distance)),
             })
             .collect();
         let last = obstacles.iter().position(|obstacle| obstacle.end.arrives);

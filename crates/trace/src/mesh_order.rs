@@ -4,6 +4,7 @@
 use crate::flat_leg::Hits;
 use crate::mesh::BlockerMesh;
 use crate::photon_group::PhotonGroup;
+use etendue_bvh::SearchMemory;
 use etendue_field::TwoPlane;
 
 /// The number of cells along each axis of the plane in which photons are sorted.
@@ -31,7 +32,11 @@ pub(crate) fn meet_mesh(
     let mut cells = Vec::new();
     for (group, (photons, hits)) in (0..).zip(groups.iter().zip(hits.iter())) {
         let [x, y] = photons.positions(grid.distance);
-        for lane in (0..).zip(hits).filter(|(_, hit)| **hit < number).map(|(lane, _)| lane) {
+        for lane in (0..)
+            .zip(hits)
+            .filter(|(_, hit)| **hit < number)
+            .map(|(lane, _)| lane)
+        {
             let i = lane as usize;
             let cell = grid.cell([x[i], y[i]]);
             starts[cell as usize + 1] += 1;
@@ -57,8 +62,9 @@ pub(crate) fn meet_mesh(
         sorted[*place as usize] = *test;
         *place += 1;
     }
+    let mut memory = SearchMemory::default();
     for Test { ray, group, lane } in sorted {
-        if mesh.is_met(&ray) {
+        if mesh.is_met(&mut memory, &ray) {
             hits[group as usize][lane as usize] = number;
         }
     }

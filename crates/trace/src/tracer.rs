@@ -1,11 +1,12 @@
 //! The forward tracer: traces photons from the light, leg by leg.
 
+use crate::ahead::{AHEAD, Ahead};
 use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
 use crate::courses::{Both, rounding};
 use crate::emit::Emitter;
-use crate::flat_leg::{FlatLeg, Hits};
+use crate::flat_leg::FlatLeg;
 use crate::heading::Heading;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
@@ -33,15 +34,15 @@ use std::ops::Range;
 /// the scattered light.
 #[derive(Debug)]
 pub struct Tracer {
-    emitter: Emitter,
+    pub(crate) emitter: Emitter,
     /// The first leg, if photons can be traced over it many at a time.
-    flat: Option<FlatLeg>,
+    pub(crate) flat: Option<FlatLeg>,
     legs: Vec<FlightLeg>,
     planes: usize,
     shares: BatchRanges,
     numbers: PhotonNumbers,
     is_precise: bool,
-    level: Level,
+    pub(crate) level: Level,
 }
 
 /// The largest number of photons with which spectra have reduced precision. Random photons then
@@ -91,29 +92,6 @@ pub(crate) struct Flight {
     pub(crate) from: f64,
     /// The contribution of the photon to radiance space.
     pub(crate) weight: f64,
-}
-
-/// Photons of several blocks that were emitted together, and the obstacles that they meet.
-#[derive(Debug, Default)]
-struct Ahead {
-    /// The number of the first photon.
-    first: u64,
-    groups: Vec<PhotonGroup>,
-    hits: Vec<Hits>,
-}
-
-/// The number of photons that are emitted together if they may meet meshes: several blocks, so that
-/// many photons meet nearby triangles.
-const AHEAD: u64 = 16 * BLOCK as u64;
-
-impl Ahead {
-    /// Returns the group of photons that begins with a photon, and the obstacles that they meet;
-    /// `None` if they were not emitted.
-    #[inline]
-    fn of(&self, first: u64) -> Option<(&PhotonGroup, &Hits)> {
-        let i = usize::try_from(first.checked_sub(self.first)?).ok()? / ABREAST;
-        self.groups.get(i).zip(self.hits.get(i))
-    }
 }
 
 /// A photon of a block, on the current leg of the block.
@@ -182,35 +160,6 @@ impl Tracer {
         }
     }
 
-    /// Emits the photons of a group. Photons from `end` on carry no light.
-    #[inline]
-    fn emit_group(&self, first: u64, end: u64, numbers: &Numbers) -> PhotonGroup {
-        let words = |block| numbers.columns(self.level, first, block);
-        let mut group = self.emitter.emit(words);
-        group.end_at(end - first);
-        group
-    }
-
-    /// Emits the photons of several blocks and finds what they meet, if there are meshes on a flat
-    /// first leg. `numbers` returns the random numbers of the block that begins with a photon.
-    fn emit_ahead(&self, range: Range<u64>, numbers: impl Fn(u64) -> Numbers) -> Ahead {
-        let Some(flat) = self.flat.as_ref().filter(|flat| flat.has_meshes()) else {
-            return Ahead::default();
-        };
-        let mut groups = Vec::with_capacity(AHEAD as usize / ABREAST);
-        for start in range.clone().step_by(BLOCK) {
-            let end = range.end.min(start + BLOCK as u64);
-            let numbers = numbers(start);
-            let firsts = (start..end).step_by(ABREAST);
-            groups.extend(firsts.map(|first| self.emit_group(first, end, &numbers)));
-        }
-        Ahead {
-            first: range.start,
-            hits: flat.hits_of_all(&groups),
-            groups,
-        }
-    }
-
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the
     /// photons that are not traced to their end to `photons`.
     #[inline]
@@ -224,11 +173,14 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            let known = ahead.of(first);
-            let group = known.map_or_else(
-                || self.emit_group(first, range.end, numbers),
-                |(group, _)| *group,
-            );
+            let emitted;
+            let (group, hits) = match ahead.of(first) {
+                Some((group, hits)) => (group, Some(*hits)),
+                None => {
+                    emitted = self.emit_group(first, range.end, numbers);
+                    (&emitted, None)
+                }
+            };
             for flux in group.fluxes {
                 ledger.emitted += flux;
             }
@@ -236,11 +188,11 @@ impl Tracer {
                 // If a point is drawn inside the bounding square of a disc but outside the disc, it
                 // counts as a photon that carries no light.
                 let lit = (0..ABREAST).filter(|i| group.weights[*i] > 0.0);
-                photons.extend(lit.map(|i| Photon::emitted(&group, i, first)));
+                photons.extend(lit.map(|i| Photon::emitted(group, i, first)));
                 continue;
             };
-            let hits = known.map_or_else(|| flat.hits(&group), |(_, hits)| *hits);
-            let arrivals = flat.trace(&group, &hits, crossings, ledger);
+            let hits = hits.unwrap_or_else(|| flat.hits(group));
+            let arrivals = flat.trace(group, &hits, crossings, ledger);
             if let Some(next) = self.legs.get(1) {
                 let block = self.emitter.bounces_from();
                 let words: [[u32; ABREAST]; 4] = numbers.columns(self.level, first, block);
@@ -498,8 +450,8 @@ impl PhotonSource for Tracer {
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
-            if (start - range.start).is_multiple_of(AHEAD) {
-                let until = range.end.min(start + AHEAD);
+            if (start - range.start).is_multiple_of(AHEAD as u64) {
+                let until = range.end.min(start + AHEAD as u64);
                 ahead = self.emit_ahead(start..until, |at| self.numbers.of(batch, first, at));
             }
             let numbers = self.numbers.of(batch, first, start);
