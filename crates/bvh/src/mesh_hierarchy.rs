@@ -136,7 +136,7 @@ mod tests {
     /// in several.
     #[test]
     fn misses_no_box_that_a_ray_meets() {
-        for (count, size, rays) in [(1, 0.3, 2000), (300, 0.05, 2000), (70_000, 0.01, 40)] {
+        for (count, size, rays) in [(1, 1.0, 2000), (300, 0.05, 2000), (70_000, 0.01, 40)] {
             let mut draw = Draw(count as u64);
             let mut boxes = Vec::new();
             for _ in 0..count {
