@@ -46,7 +46,7 @@ fn scene(seed: u64) -> Scene {
             r#"(name: "b{layer}", at: Before("{layer}")), (name: "a{layer}", at: After("{layer}")),"#
         );
     }
-    if seed % 3 == 0 {
+    if seed.is_multiple_of(3) {
         blockers += r#"Mesh(
             name: "star", center: (0.1, 0, 2.5),
             mesh: Star(radius: 0.3, relief: 0.3, lobes: 3, rings: 12),
