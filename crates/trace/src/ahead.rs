@@ -2,10 +2,11 @@
 //! of a flat leg together.
 
 use crate::batch_ranges::BLOCK;
-use crate::flat_leg::Hits;
+use crate::emit::Emitter;
+use crate::flat_leg::FlatLeg;
 use crate::numbers::Numbers;
-use crate::photon_group::{ABREAST, PhotonGroup};
-use crate::tracer::Tracer;
+use crate::photon_group::{ABREAST, Hits, PhotonGroup};
+use fearless_simd::Level;
 use std::ops::Range;
 
 /// Photons of several blocks that were emitted together, and the obstacles that they meet.
@@ -29,35 +30,44 @@ impl Ahead {
         let i = usize::try_from(first.checked_sub(self.first)?).ok()? / ABREAST;
         self.groups.get(i).zip(self.hits.get(i))
     }
-}
 
-impl Tracer {
     /// Emits the photons of several blocks and finds what they meet, if there are meshes on a flat
     /// first leg. `numbers` returns the random numbers of the block that begins with a photon.
-    pub(crate) fn emit_ahead(&self, range: Range<u64>, numbers: impl Fn(u64) -> Numbers) -> Ahead {
-        let Some(flat) = self.flat.as_ref().filter(|flat| flat.has_meshes()) else {
-            return Ahead::default();
+    pub(crate) fn new(
+        emitter: &Emitter,
+        flat: Option<&FlatLeg>,
+        range: Range<u64>,
+        numbers: impl Fn(u64) -> Numbers,
+    ) -> Self {
+        let Some(flat) = flat.filter(|flat| flat.has_meshes()) else {
+            return Self::default();
         };
+        let level = Level::new();
         let mut groups = Vec::with_capacity(AHEAD / ABREAST);
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let numbers = numbers(start);
             let firsts = (start..end).step_by(ABREAST);
-            groups.extend(firsts.map(|first| self.emit_group(first, end, &numbers)));
+            groups.extend(firsts.map(|first| emit_group(emitter, level, first..end, &numbers)));
         }
-        Ahead {
+        Self {
             first: range.start,
             hits: flat.hits_of_all(&groups),
             groups,
         }
     }
+}
 
-    /// Emits the photons of a group. Photons from `end` on carry no light.
-    #[inline]
-    pub(crate) fn emit_group(&self, first: u64, end: u64, numbers: &Numbers) -> PhotonGroup {
-        let words = |block| numbers.columns(self.level, first, block);
-        let mut group = self.emitter.emit(words);
-        group.end_at(end - first);
-        group
-    }
+/// Emits a group of photons from the first of a range on. Photons beyond the range carry no light.
+#[inline]
+pub(crate) fn emit_group(
+    emitter: &Emitter,
+    level: Level,
+    range: Range<u64>,
+    numbers: &Numbers,
+) -> PhotonGroup {
+    let words = |block| numbers.columns(level, range.start, block);
+    let mut group = emitter.emit(words);
+    group.end_at(range.end - range.start);
+    group
 }

@@ -5,7 +5,7 @@ use crate::grid::Grid;
 use crate::lanes::{inside, lanes};
 use crate::mesh::BlockerMesh;
 use crate::mesh_order::meet_mesh;
-use crate::photon_group::{ABREAST, PhotonGroup};
+use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
@@ -60,11 +60,6 @@ pub(crate) struct FlatPlane {
     /// The number of obstacles at or beyond the plane.
     obstacles: usize,
 }
-
-/// For each photon, the number of the obstacle that the photon meets, from 1 on in the order of a
-/// [`FlatLeg`]. The number 0 stands for no obstacle, and the number after the last for a photon that
-/// carries no light.
-pub(crate) type Hits = [usize; ABREAST];
 
 /// The largest number of obstacles that are tested one after another. More obstacles are left to
 /// their hierarchy.

@@ -1,9 +1,8 @@
 //! Tests many photons against a mesh in an order in which successive photons meet nearby triangles,
 //! so that the nodes and triangles that a photon needs are often in the processor's cache.
 
-use crate::flat_leg::Hits;
 use crate::mesh::BlockerMesh;
-use crate::photon_group::PhotonGroup;
+use crate::photon_group::{Hits, PhotonGroup};
 use etendue_bvh::SearchMemory;
 use etendue_field::TwoPlane;
 

@@ -1,6 +1,6 @@
 //! The forward tracer: traces photons from the light, leg by leg.
 
-use crate::ahead::{AHEAD, Ahead};
+use crate::ahead::{AHEAD, Ahead, emit_group};
 use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
@@ -34,15 +34,15 @@ use std::ops::Range;
 /// the scattered light.
 #[derive(Debug)]
 pub struct Tracer {
-    pub(crate) emitter: Emitter,
+    emitter: Emitter,
     /// The first leg, if photons can be traced over it many at a time.
-    pub(crate) flat: Option<FlatLeg>,
+    flat: Option<FlatLeg>,
     legs: Vec<FlightLeg>,
     planes: usize,
     shares: BatchRanges,
     numbers: PhotonNumbers,
     is_precise: bool,
-    pub(crate) level: Level,
+    level: Level,
 }
 
 /// The largest number of photons with which spectra have reduced precision. Random photons then
@@ -177,7 +177,7 @@ impl Tracer {
             let (group, hits) = match ahead.of(first) {
                 Some((group, hits)) => (group, Some(*hits)),
                 None => {
-                    emitted = self.emit_group(first, range.end, numbers);
+                    emitted = emit_group(&self.emitter, self.level, first..range.end, numbers);
                     (&emitted, None)
                 }
             };
@@ -452,7 +452,9 @@ impl PhotonSource for Tracer {
             let mut block = Ledger::default();
             if (start - range.start).is_multiple_of(AHEAD as u64) {
                 let until = range.end.min(start + AHEAD as u64);
-                ahead = self.emit_ahead(start..until, |at| self.numbers.of(batch, first, at));
+                let flat = self.flat.as_ref();
+                let numbers = |at| self.numbers.of(batch, first, at);
+                ahead = Ahead::new(&self.emitter, flat, start..until, numbers);
             }
             let numbers = self.numbers.of(batch, first, start);
             self.emit_block(
