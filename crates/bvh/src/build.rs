@@ -17,14 +17,17 @@ use std::time::Duration;
 pub(crate) enum TreeKind {
     /// Rays traverse the binary tree directly.
     Binary,
-    /// The binary tree is collapsed to a tree with eight boxes in a node.
+    /// The binary tree is collapsed to a tree with eight boxes in a node, and several boxes in a
+    /// leaf.
     Collapsed,
+    /// The binary tree is collapsed to a tree with eight boxes in a node, and one box in a leaf.
+    CollapsedSingle,
 }
 
 /// The maximum number of boxes that one thread builds; larger sets of boxes are built in parts of
 /// this size. The builder needs about 150 bytes for each box, but only for the parts that are
 /// being built.
-const PART: usize = 1 << 15;
+pub(crate) const PART: usize = 1 << 15;
 
 /// The largest number of boxes for which the tree is optimised by reinsertion. For this number of
 /// boxes or fewer, reinsertion takes a tenth of a second and makes rays up to twice as fast. For
@@ -57,7 +60,7 @@ pub(crate) fn bvh(
 }
 
 /// Builds the tree over some of the boxes.
-fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
+pub(crate) fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
     let preset = if boxes.len() <= MAX_REINSERTED {
         BvhBuildParams::very_slow_build()
@@ -71,6 +74,10 @@ fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh
     };
     let parameters = match kind {
         TreeKind::Binary => parameters,
+        TreeKind::CollapsedSingle => BvhBuildParams {
+            max_prims_per_leaf: 1,
+            ..parameters
+        },
         TreeKind::Collapsed => BvhBuildParams {
             max_prims_per_leaf: number(MAX_LEAF),
             collapse_traversal_cost: OPENING,
@@ -142,6 +149,6 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
     finished(bvh, kind)
 }
 
-fn number(count: usize) -> u32 {
+pub(crate) fn number(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }

@@ -15,17 +15,37 @@ struct Collapse<'a> {
     costs: Vec<[f32; WIDTH]>,
 }
 
+/// The parts of an eight-wide tree.
+pub(crate) struct Collapsed {
+    /// The nodes; the root is the first node.
+    pub(crate) nodes: Vec<Node>,
+    /// The first box and the number of boxes of each leaf.
+    pub(crate) leaves: Vec<[u32; 2]>,
+    pub(crate) depth: usize,
+}
+
 /// Returns the eight-wide tree made from a binary tree, with its leaves. A leaf is given by its
 /// first box and the number of its boxes.
+pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
+    let Collapsed {
+        mut nodes,
+        mut leaves,
+        depth,
+    } = collapsed_parts(bvh);
+    nodes.shrink_to_fit();
+    leaves.shrink_to_fit();
+    (Wide::new(nodes, depth), leaves)
+}
+
+/// Returns the parts of the eight-wide tree made from a binary tree.
 ///
 /// # Panics
 ///
 /// Panics if a leaf has more than [`MAX_LEAF`] boxes.
-pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // The largest possible number of nodes. The operating system provides memory only when the
-    // program writes to the memory.
-    let most = bvh.nodes.len() / 2 + 1;
-    let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
+pub(crate) fn collapsed_parts(bvh: &Bvh2) -> Collapsed {
+    // Usually, a tenth of the binary tree's nodes become nodes.
+    let mut nodes = Vec::with_capacity(bvh.nodes.len() / 8 + 1);
+    let mut leaves = Vec::with_capacity(bvh.nodes.len() / 2 + 1);
     nodes.push(Node::EMPTY);
     let mut deepest = 0;
     // Nodes of the binary tree, with their positions and depths.
@@ -56,9 +76,11 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
             nodes[place].set(i, [of.min.to_array(), of.max.to_array()], number);
         }
     }
-    nodes.shrink_to_fit();
-    leaves.shrink_to_fit();
-    (Wide::new(nodes, deepest), leaves)
+    Collapsed {
+        nodes,
+        leaves,
+        depth: deepest,
+    }
 }
 
 /// Returns the cost of rays below each node of the binary tree, if this node becomes at most 1, 2

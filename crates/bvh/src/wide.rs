@@ -57,6 +57,12 @@ pub(crate) trait Visit {
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
+/// The operation on the leaves in a search for any hit.
+pub(crate) trait AnyVisit {
+    /// Checks whether the ray hits the content of a leaf.
+    fn is_hit(&mut self, leaf: usize) -> bool;
+}
+
 impl NodeRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
@@ -77,9 +83,10 @@ impl NodeRay {
 }
 
 impl Wide {
-    /// Builds a tree from nodes with a given depth.
+    /// Builds a tree from nodes with a given depth; the root is the first node.
     pub(crate) fn new(nodes: Vec<Node>, depth: usize) -> Self {
-        let memory = WIDTH * depth;
+        // Each node leaves at most seven children on the stack.
+        let memory = (WIDTH - 1) * depth + 1;
         Self { nodes, memory }
     }
 
@@ -88,9 +95,46 @@ impl Wide {
     pub(crate) fn along<S: Simd>(&self, simd: S, ray: &NodeRay, visit: impl Visit) {
         if self.memory <= STACK {
             self.remembering(simd, ray, &mut [Waiting::default(); STACK], visit);
+        } else if self.memory <= 2 * STACK {
+            self.remembering(simd, ray, &mut [Waiting::default(); 2 * STACK], visit);
         } else {
             let mut memory = vec![Waiting::default(); self.memory];
             self.remembering(simd, ray, &mut memory, visit);
+        }
+    }
+
+    /// Checks whether a ray hits the content of any leaf. `waiting` is the memory of the search.
+    #[inline(always)]
+    pub(crate) fn any<S: Simd>(
+        &self,
+        simd: S,
+        ray: &NodeRay,
+        waiting: &mut Vec<u32>,
+        mut visit: impl AnyVisit,
+    ) -> bool {
+        waiting.resize(self.memory, 0);
+        let mut count = 0;
+        let mut node = &self.nodes[0];
+        loop {
+            let (mut met, _) = node.meets(simd, ray, ray.until);
+            while met != 0 {
+                waiting[count] = node.children[met.trailing_zeros() as usize % WIDTH];
+                count += 1;
+                met &= met - 1;
+            }
+            node = loop {
+                if count == 0 {
+                    return false;
+                }
+                count -= 1;
+                let child = waiting[count];
+                if child & LEAF == 0 {
+                    break &self.nodes[child as usize];
+                }
+                if visit.is_hit((child ^ LEAF) as usize) {
+                    return true;
+                }
+            };
         }
     }
 
@@ -163,6 +207,16 @@ impl Node {
 
     pub(crate) fn leaf(place: usize) -> u32 {
         Self::inner(place) | LEAF
+    }
+
+    /// Replaces the children of this node; `new` receives whether a child is a leaf, and its number.
+    pub(crate) fn map_children(&mut self, new: impl Fn(bool, usize) -> u32) {
+        for (i, child) in self.children.iter_mut().enumerate() {
+            let is_filled = self.planes[0][i] <= self.planes[1][i];
+            if is_filled {
+                *child = new(*child & LEAF != 0, (*child & !LEAF) as usize);
+            }
+        }
     }
 
     /// Stores a child in one of the slots, with a box from its lowest to its highest corner.

@@ -51,6 +51,8 @@ pub use raster::Raster;
 pub use ray_light::{FluxRay, RayLight};
 pub use rectangle::Rectangle;
 pub use reflectance::{MOST_TERMS, Mixture, Reflectance, Term, Weight};
-pub use shape::{Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance};
+pub use shape::{
+    Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance, triangle_is_met,
+};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};

@@ -75,19 +75,35 @@ impl Shape {
 #[inline]
 #[must_use]
 pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
-    let [a, b, c] = corners.map(|p| [p.x - ray.x - ray.u * p.z, p.y - ray.y - ray.v * p.z]);
-    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
-    let weights = [cross(b, c), cross(c, a), cross(a, b)];
-    let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
-    let sum: f64 = weights.iter().sum();
+    let (weights, sum, inside) = triangle_weights(corners, ray);
     let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
-    (inside && sum != 0.0).then(|| {
+    inside.then(|| {
         // Rounding must not move the hit in front of the triangle's nearest corner, because a
         // virtual plane may be just before the triangle.
         let [a, b, c] = corners.map(|p| p.z);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         (depth / sum).max(low).min(high)
     })
+}
+
+/// Checks whether a ray meets a triangle, as [`triangle_distance`] decides.
+#[inline]
+#[must_use]
+pub fn triangle_is_met(corners: &[DVec3; 3], ray: &TwoPlane) -> bool {
+    triangle_weights(corners, ray).2
+}
+
+/// Returns the areas that a ray and the edges of a triangle span as seen along the ray, the sum of
+/// these areas, and whether the ray meets the triangle.
+#[inline]
+fn triangle_weights(corners: &[DVec3; 3], ray: &TwoPlane) -> ([f64; 3], f64, bool) {
+    let [a, b, c] = corners.map(|p| [p.x - ray.x - ray.u * p.z, p.y - ray.y - ray.v * p.z]);
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let [p, q, r] = [cross(b, c), cross(c, a), cross(a, b)];
+    let sum: f64 = [p, q, r].iter().sum();
+    // There are no branches, because the processor could not predict them.
+    let inside = (p >= 0.0) & (q >= 0.0) & (r >= 0.0) | (p <= 0.0) & (q <= 0.0) & (r <= 0.0);
+    ([p, q, r], sum, inside & (sum != 0.0))
 }
 
 /// Returns the unit normal at a point of a triangle, interpolated between the normals at its

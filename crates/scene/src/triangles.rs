@@ -1,6 +1,6 @@
 //! The triangles of a mesh in a scene.
 
-use etendue_bvh::BinaryHierarchy;
+use etendue_bvh::{MeshHierarchy, SearchMemory};
 use etendue_field::enclosing;
 use glam::DVec3;
 use std::fmt;
@@ -15,7 +15,7 @@ pub struct Triangles(Arc<SharedTriangles>);
 struct SharedTriangles {
     corners: Vec<[DVec3; 3]>,
     bounds: [DVec3; 2],
-    hierarchy: BinaryHierarchy,
+    hierarchy: MeshHierarchy,
 }
 
 impl Triangles {
@@ -25,7 +25,7 @@ impl Triangles {
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
         Self(Arc::new(SharedTriangles {
-            hierarchy: BinaryHierarchy::new(corners.len(), origins, bounds),
+            hierarchy: MeshHierarchy::new(corners.len(), origins, bounds),
             bounds: enclosing(corners.as_flattened()),
             corners,
         }))
@@ -37,18 +37,30 @@ impl Triangles {
         self.0.bounds
     }
 
-    /// Calls [`BinaryHierarchy::along`] for the triangles that a ray may meet.
+    /// Calls [`MeshHierarchy::along`] for the triangles that a ray may meet.
     #[inline]
     pub fn along(
         &self,
         start: DVec3,
         direction: DVec3,
         range: [f64; 2],
-        mut meet: impl FnMut(usize) -> f64,
+        meet: impl FnMut(usize) -> f64,
     ) {
+        self.0.hierarchy.along(start, direction, range, meet);
+    }
+
+    /// Calls [`MeshHierarchy::any`] for the triangles that a ray may meet.
+    #[inline]
+    pub fn any(
+        &self,
+        memory: &mut SearchMemory,
+        start: DVec3,
+        direction: DVec3,
+        from: f64,
+        meets: impl FnMut(usize) -> bool,
+    ) -> bool {
         let hierarchy = &self.0.hierarchy;
-        let order = hierarchy.order();
-        hierarchy.along(start, direction, range, |i| meet(order[i] as usize));
+        hierarchy.any(memory, start, direction, from, meets)
     }
 }
 

@@ -3,13 +3,15 @@
 
 use crate::grid::Grid;
 use crate::lanes::{inside, lanes};
-use crate::photon_group::{ABREAST, PhotonGroup};
+use crate::mesh::BlockerMesh;
+use crate::mesh_order::meet_mesh;
+use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
 
-/// A first leg on which all obstacles and planes lie across the leg, so their distances are the
-/// same for all photons.
+/// A first leg on which all planes lie across the leg and all obstacles lie across the leg or are
+/// meshes between planes. So all photons meet them in the same order.
 #[derive(Debug)]
 pub(crate) struct FlatLeg {
     /// The obstacles beyond the light, the farthest first.
@@ -20,20 +22,24 @@ pub(crate) struct FlatLeg {
     level: Level,
 }
 
-/// An obstacle across the leg.
+/// An obstacle across the leg, or a mesh.
 #[derive(Debug)]
 pub(crate) struct FlatObstacle {
+    /// The distance of the obstacle; for a mesh, the distance of its farthest point.
     pub(crate) distance: f64,
+    /// The distance of the nearest point.
+    pub(crate) nearest: f64,
     pub(crate) outline: Outline,
     pub(crate) end: PhotonEnd,
 }
 
-/// The points of an obstacle across the leg.
+/// The points of an obstacle.
 #[derive(Debug)]
 pub(crate) enum Outline {
     Shape(Shape),
     Grid(Box<Grid>),
     HalfPlane(HalfPlane),
+    Mesh(Box<BlockerMesh>),
 }
 
 /// What becomes of a photon: the shares of its flux that are added to the ledger, and whether it
@@ -55,11 +61,6 @@ pub(crate) struct FlatPlane {
     obstacles: usize,
 }
 
-/// For each photon, the number of the obstacle that the photon meets, from 1 on in the order of a
-/// [`FlatLeg`]. The number 0 stands for no obstacle, and the number after the last for a photon that
-/// carries no light.
-type Hits = [usize; ABREAST];
-
 /// The largest number of obstacles that are tested one after another. More obstacles are left to
 /// their hierarchy.
 const MAX_OBSTACLES: usize = 16;
@@ -79,18 +80,25 @@ impl PhotonEnd {
 }
 
 impl FlatLeg {
-    /// Returns `None` if a plane does not lie across the leg or lies beyond the surface that ends
-    /// the leg, if two different obstacles have the same distance, or if there are many obstacles.
-    #[expect(
-        clippy::float_cmp,
-        reason = "obstacles at the same distance are hit at the same time"
-    )]
+    /// Returns `None` if a plane does not lie across the leg, lies inside a mesh or beyond the
+    /// surface that ends the leg, if photons may meet two different obstacles in either order, or
+    /// if there are many obstacles.
     pub(crate) fn new(mut obstacles: Vec<FlatObstacle>, planes: &[PlaneOnLeg]) -> Option<Self> {
         obstacles.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-        let differ = |pair: &[FlatObstacle]| {
-            pair[0].distance == pair[1].distance && pair[0].end != pair[1].end
+        let in_order = |(i, far): (usize, &FlatObstacle)| {
+            let nearer = &obstacles[i + 1..];
+            nearer
+                .iter()
+                .all(|near| far.is_beyond(near) || far.end == near.end)
         };
-        if !planes.iter().all(PlaneOnLeg::is_across) {
+        let is_inside = |plane: &PlaneOnLeg, obstacle: &FlatObstacle| {
+            is_crossed(plane, obstacle.distance) && !is_crossed(plane, obstacle.nearest)
+        };
+        let is_outside_all = |plane| !obstacles.iter().any(|obstacle| is_inside(plane, obstacle));
+        if !planes
+            .iter()
+            .all(|plane| plane.is_across() && is_outside_all(plane))
+        {
             return None;
         }
         let planes: Vec<FlatPlane> = planes
@@ -98,10 +106,8 @@ impl FlatLeg {
             .map(|plane| FlatPlane {
                 plane: plane.plane,
                 distance: plane.distance,
-                obstacles: obstacles.partition_point(|obstacle| match plane.side {
-                    Side::Before => plane.distance <= obstacle.distance,
-                    Side::After => plane.distance < obstacle.distance,
-                }),
+                obstacles: obstacles
+                    .partition_point(|obstacle| is_crossed(plane, obstacle.distance)),
             })
             .collect();
         let last = obstacles.iter().position(|obstacle| obstacle.end.arrives);
@@ -109,7 +115,7 @@ impl FlatLeg {
             .iter()
             .all(|plane| last.is_none_or(|last| last < plane.obstacles))
             && obstacles.len() <= MAX_OBSTACLES
-            && !obstacles.windows(2).any(differ);
+            && obstacles.iter().enumerate().all(in_order);
         let ends = [PhotonEnd::ESCAPED].into_iter();
         let ends = ends.chain(obstacles.iter().map(|obstacle| obstacle.end));
         let ends = ends.chain([PhotonEnd::default()]).collect();
@@ -121,37 +127,61 @@ impl FlatLeg {
         })
     }
 
-    /// Traces photons from the light to the obstacles that they meet, and reports the virtual
-    /// planes before these obstacles. Returns the indices and the distances of photons that arrive
+    /// Checks whether there are meshes on the leg.
+    pub(crate) fn has_meshes(&self) -> bool {
+        let mut outlines = self.obstacles.iter().map(|obstacle| &obstacle.outline);
+        outlines.any(|outline| matches!(outline, Outline::Mesh(_)))
+    }
+
+    /// Returns the obstacles that photons meet.
+    pub(crate) fn hits_of_all(&self, groups: &[PhotonGroup]) -> Vec<Hits> {
+        let each = groups.iter().map(|photons| self.hits(photons));
+        let mut hits = each.collect::<Vec<Hits>>();
+        for (number, obstacle) in (1..).zip(&self.obstacles) {
+            if let Outline::Mesh(mesh) = &obstacle.outline {
+                // Photons that meet a nearer obstacle are not tested.
+                meet_mesh(mesh, number, groups, &mut hits);
+            }
+        }
+        hits
+    }
+
+    /// Returns the obstacles that photons meet, if there are no meshes.
+    #[inline]
+    pub(crate) fn hits(&self, photons: &PhotonGroup) -> Hits {
+        dispatch!(self.level, _simd => self.flat_hits(photons))
+    }
+
+    /// Reports the virtual planes before the obstacles that photons meet, and adds to the ledger
+    /// what becomes of the photons. Returns the indices and the distances of photons that arrive
     /// at the surface that ends the leg.
     #[inline]
     pub(crate) fn trace(
         &self,
         photons: &PhotonGroup,
+        hits: &Hits,
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) -> impl Iterator<Item = (usize, f64)> {
-        let hits = dispatch!(self.level, _simd => {
-            let hits = self.hits(photons);
+        dispatch!(self.level, _simd => {
             for plane in &self.planes {
-                plane.record(photons, &hits, &mut crossings[plane.plane]);
+                plane.record(photons, hits, &mut crossings[plane.plane]);
             }
-            hits
         });
-        for (hit, flux) in hits.into_iter().zip(photons.fluxes) {
-            let end = &self.ends[hit];
+        for (hit, flux) in hits.iter().zip(photons.fluxes) {
+            let end = &self.ends[*hit];
             ledger.absorbed += end.absorbed * flux;
             ledger.escaped += end.escaped * flux;
             ledger.stopped += end.stopped * flux;
         }
         let arrives = |(_, hit): &(usize, usize)| self.ends[*hit].arrives;
-        let arrivals = hits.into_iter().enumerate().filter(arrives);
+        let arrivals = hits.iter().copied().enumerate().filter(arrives);
         arrivals.map(|(i, hit)| (i, self.obstacles[hit - 1].distance))
     }
 
-    /// Returns the number of the obstacle that each photon meets.
+    /// Returns the number of the flat obstacle that each photon meets.
     #[inline(always)]
-    fn hits(&self, photons: &PhotonGroup) -> Hits {
+    fn flat_hits(&self, photons: &PhotonGroup) -> Hits {
         let none = self.obstacles.len() + 1;
         let mut hits: Hits = lanes(|i| if photons.weights[i] > 0.0 { 0 } else { none });
         for (number, obstacle) in (1..).zip(&self.obstacles) {
@@ -160,6 +190,7 @@ impl FlatLeg {
                 Outline::Shape(shape) => inside(shape, [&x, &y]),
                 Outline::Grid(grid) => grid.contains_each([&x, &y]),
                 Outline::HalfPlane(half_plane) => lanes(|i| half_plane.contains(x[i], y[i])),
+                Outline::Mesh(_) => continue,
             };
             hits = lanes(|i| {
                 if is_inside[i] {
@@ -170,6 +201,21 @@ impl FlatLeg {
             });
         }
         hits
+    }
+}
+
+/// Checks whether light crosses a plane before it meets an obstacle.
+fn is_crossed(plane: &PlaneOnLeg, obstacle: f64) -> bool {
+    match plane.side {
+        Side::Before => plane.distance <= obstacle,
+        Side::After => plane.distance < obstacle,
+    }
+}
+
+impl FlatObstacle {
+    /// Checks whether all photons that meet both obstacles meet the other obstacle first.
+    fn is_beyond(&self, other: &Self) -> bool {
+        self.nearest > other.distance
     }
 }
 

@@ -9,6 +9,7 @@
 //! reversed frame. The random numbers of a photon are functions of (seed, batch, photon), so its
 //! path does not depend on the thread that traces it.
 
+mod ahead;
 mod aim;
 mod area_sampler;
 mod arrival;
@@ -25,6 +26,7 @@ mod heading;
 mod lanes;
 mod line;
 mod mesh;
+mod mesh_order;
 mod numbers;
 mod obstacles;
 mod photon_group;

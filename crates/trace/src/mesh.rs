@@ -6,8 +6,9 @@
 //! arithmetic for the edge.
 
 use crate::line::{direction, start};
-use etendue_field::triangle_distance;
+use etendue_bvh::SearchMemory;
 use etendue_field::{Frame, TwoPlane, box_corners, enclosing, interpolated_normal};
+use etendue_field::{triangle_distance, triangle_is_met};
 use etendue_scene::Triangles;
 use glam::DVec3;
 use std::cmp::Reverse;
@@ -84,6 +85,22 @@ impl BlockerMesh {
             if blocked { f64::INFINITY } else { from }
         });
         blocked
+    }
+
+    /// Checks whether a ray meets any triangle beyond the beginning of the leg. The mesh lies
+    /// beyond the beginning, and its frame is the frame at the light ([`Self::extent`]).
+    pub(crate) fn is_met(&self, memory: &mut SearchMemory, ray: &TwoPlane) -> bool {
+        let triangles = &self.triangles;
+        triangles.any(memory, start(ray), direction(ray), 0.0, |i| {
+            triangle_is_met(&triangles[i], ray)
+        })
+    }
+
+    /// Returns the distances of the nearest and the farthest point, if the mesh lies beyond the
+    /// beginning of a leg whose frame is the frame at the light.
+    pub(crate) fn extent(&self) -> Option<[f64; 2]> {
+        let [low, high] = self.triangles.bounds();
+        (self.leg.is_none() && low.z > 0.0).then_some([low.z, high.z])
     }
 
     /// Calls `tell` with the distance and number of every triangle on the line of a ray.
@@ -209,6 +226,7 @@ mod tests {
     fn agrees_with_every_triangle_tried_in_turn() {
         for (n, rays) in [(16, 5000), (200, 200)] {
             let triangles = sheet(n);
+            let mut memory = SearchMemory::default();
             for leg in legs() {
                 let mesh = BlockerMesh::new(&triangles, None, leg);
                 let (mut hits, mut misses) = (0, 0);
@@ -238,6 +256,10 @@ mod tests {
                     let end = half + 0.2;
                     let blocks = mesh.is_occluded(&ray, [half, end], |at| at > half && at < end);
                     assert_eq!(blocks, expected.is_some_and(|(at, _)| at < end), "{ray:?}");
+                    if mesh.extent().is_some() {
+                        let is_met = mesh.is_met(&mut memory, &ray);
+                        assert_eq!(is_met, !all.is_empty(), "{ray:?}");
+                    }
                     hits += u64::from(expected.is_some());
                     misses += u64::from(all.is_empty());
                 }

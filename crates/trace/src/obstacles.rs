@@ -171,23 +171,29 @@ impl Obstacles {
         }
     }
 
-    /// Returns the obstacles beyond the beginning of the leg if all of them lie across the leg.
-    /// `end` is the object that ends the leg. Returns `None` for any other obstacles, and for
-    /// surfaces that do not scatter light by Lambert's law.
+    /// Returns the obstacles beyond the beginning of the leg if all of them lie across the leg or
+    /// are meshes at which light ends. `end` is the object that ends the leg. Returns `None` for any
+    /// other obstacles, and for surfaces that do not scatter light by Lambert's law.
     pub(crate) fn flat(&self, end: Option<Object>) -> Option<Vec<FlatObstacle>> {
         let half_planes = self.half_planes.iter().map(|layer| {
             layer.leg.is_none().then_some(FlatObstacle {
                 distance: layer.distance,
+                nearest: layer.distance,
                 outline: Outline::HalfPlane(layer.what),
                 end: PhotonEnd::ABSORBED,
             })
         });
         let primitives = self.primitives.primitives().iter().map(|target| {
-            let (distance, outline) = match &target.primitive {
-                Primitive::Flat { distance, shape } => (*distance, Outline::Shape(*shape)),
-                Primitive::Grid(grid) => (grid.distance, Outline::Grid(grid.clone())),
+            let (extent, outline) = match &target.primitive {
+                Primitive::Flat { distance, shape } => ([*distance; 2], Outline::Shape(*shape)),
+                Primitive::Grid(grid) => ([grid.distance; 2], Outline::Grid(grid.clone())),
+                // Light is followed no further from its hit, so any hit will do.
+                Primitive::Mesh(mesh) if !target.tag.is(end) => {
+                    (mesh.extent()?, Outline::Mesh(mesh.clone()))
+                }
                 _ => return None,
             };
+            let [nearest, distance] = extent;
             let end = match target.tag {
                 HitKind::Blocker => PhotonEnd::ABSORBED,
                 HitKind::Surface {
@@ -203,6 +209,7 @@ impl Obstacles {
             };
             Some(FlatObstacle {
                 distance,
+                nearest,
                 outline,
                 end,
             })

@@ -11,6 +11,11 @@ pub const ABREAST: usize = 16;
 /// A number for each photon of a group.
 pub(crate) type PhotonColumn = [f64; ABREAST];
 
+/// For each photon, the number of the obstacle that the photon meets, from 1 on in the order of a
+/// flat leg. The number 0 stands for no obstacle, and the number after the last for a photon that
+/// carries no light.
+pub(crate) type Hits = [usize; ABREAST];
+
 /// Photons that leave the light together.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonGroup {

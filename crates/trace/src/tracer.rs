@@ -1,5 +1,6 @@
 //! The forward tracer: traces photons from the light, leg by leg.
 
+use crate::ahead::{AHEAD, Ahead, emit_group};
 use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
@@ -166,14 +167,20 @@ impl Tracer {
         &self,
         range: Range<u64>,
         numbers: &Numbers,
+        ahead: &Ahead,
         photons: &mut Vec<Photon>,
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            let words = |block| numbers.columns(self.level, first, block);
-            let mut group = self.emitter.emit(words);
-            group.end_at(range.end - first);
+            let emitted;
+            let (group, hits) = match ahead.of(first) {
+                Some((group, hits)) => (group, Some(*hits)),
+                None => {
+                    emitted = emit_group(&self.emitter, self.level, first..range.end, numbers);
+                    (&emitted, None)
+                }
+            };
             for flux in group.fluxes {
                 ledger.emitted += flux;
             }
@@ -181,12 +188,14 @@ impl Tracer {
                 // If a point is drawn inside the bounding square of a disc but outside the disc, it
                 // counts as a photon that carries no light.
                 let lit = (0..ABREAST).filter(|i| group.weights[*i] > 0.0);
-                photons.extend(lit.map(|i| Photon::emitted(&group, i, first)));
+                photons.extend(lit.map(|i| Photon::emitted(group, i, first)));
                 continue;
             };
-            let arrivals = flat.trace(&group, crossings, ledger);
+            let hits = hits.unwrap_or_else(|| flat.hits(group));
+            let arrivals = flat.trace(group, &hits, crossings, ledger);
             if let Some(next) = self.legs.get(1) {
-                let words = words(self.emitter.bounces_from());
+                let block = self.emitter.bounces_from();
+                let words: [[u32; ABREAST]; 4] = numbers.columns(self.level, first, block);
                 let course = &self.legs[0].courses.along;
                 photons.extend(arrivals.filter_map(|(i, distance)| {
                     let arrival = group.arrival(i, distance);
@@ -437,13 +446,21 @@ impl PhotonSource for Tracer {
         let mut total = Ledger::default();
         let first = self.shares.of(batch).start;
         let range = self.shares.part(batch, part);
+        let mut ahead = Ahead::default();
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
+            if (start - range.start).is_multiple_of(AHEAD as u64) {
+                let until = range.end.min(start + AHEAD as u64);
+                let flat = self.flat.as_ref();
+                let numbers = |at| self.numbers.of(batch, first, at);
+                ahead = Ahead::new(&self.emitter, flat, start..until, numbers);
+            }
             let numbers = self.numbers.of(batch, first, start);
             self.emit_block(
                 start..end,
                 &numbers,
+                &ahead,
                 &mut photons,
                 &mut crossings,
                 &mut block,

@@ -12,7 +12,7 @@ fn dice(seed: u64, index: u64, count: u32) -> [u32; 4] {
 }
 
 /// Returns a scene with obstacles across the leg at distances of 1 to 3. All edges have coordinates
-/// that are multiples of 1/16.
+/// that are multiples of 1/16. Some scenes also have a mesh between the last two distances.
 fn scene(seed: u64) -> Scene {
     let mut blockers = String::new();
     let mut planes =
@@ -45,6 +45,12 @@ fn scene(seed: u64) -> Scene {
         planes += &format!(
             r#"(name: "b{layer}", at: Before("{layer}")), (name: "a{layer}", at: After("{layer}")),"#
         );
+    }
+    if seed.is_multiple_of(3) {
+        blockers += r#"Mesh(
+            name: "star", center: (0.1, 0, 2.5),
+            mesh: Star(radius: 0.3, relief: 0.3, lobes: 3, rings: 12),
+        ),"#;
     }
     let leaving = [r#"(name: "leaving", at: After("floor")),"#, ""][(seed % 2) as usize];
     let text = format!(
@@ -120,7 +126,8 @@ fn photons_that_touch_edges_end_at_the_same_obstacles() {
         let none = (vec![Vec::new(); tracer.planes], Ledger::default());
         let [mut together, mut one_by_one] = [none.clone(), none];
         for group in (0..500).map(|number| group(seed, number)) {
-            let arrivals = flat.trace(&group, &mut together.0, &mut together.1);
+            let hits = flat.hits_of_all(&[group])[0];
+            let arrivals = flat.trace(&group, &hits, &mut together.0, &mut together.1);
             let arrivals: Vec<_> = arrivals.map(|(i, _)| i).collect();
             for i in (0..ABREAST).filter(|i| group.weights[*i] > 0.0) {
                 let (leg, ray) = (&tracer.legs[0], group.ray(i));

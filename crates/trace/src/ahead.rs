@@ -1,0 +1,73 @@
+//! Photons that are emitted before their block, so that many photons are tested against the meshes
+//! of a flat leg together.
+
+use crate::batch_ranges::BLOCK;
+use crate::emit::Emitter;
+use crate::flat_leg::FlatLeg;
+use crate::numbers::Numbers;
+use crate::photon_group::{ABREAST, Hits, PhotonGroup};
+use fearless_simd::Level;
+use std::ops::Range;
+
+/// Photons of several blocks that were emitted together, and the obstacles that they meet.
+#[derive(Debug, Default)]
+pub(crate) struct Ahead {
+    /// The number of the first photon.
+    first: u64,
+    groups: Vec<PhotonGroup>,
+    hits: Vec<Hits>,
+}
+
+/// The number of photons that are emitted together if they may meet meshes. It is a multiple of
+/// [`BLOCK`], and large enough that many photons meet nearby triangles.
+pub(crate) const AHEAD: usize = 16 * BLOCK;
+
+impl Ahead {
+    /// Returns the group of photons that begins with a photon, and the obstacles that they meet;
+    /// `None` if they were not emitted.
+    #[inline]
+    pub(crate) fn of(&self, first: u64) -> Option<(&PhotonGroup, &Hits)> {
+        let i = usize::try_from(first.checked_sub(self.first)?).ok()? / ABREAST;
+        self.groups.get(i).zip(self.hits.get(i))
+    }
+
+    /// Emits the photons of several blocks and finds what they meet, if there are meshes on a flat
+    /// first leg. `numbers` returns the random numbers of the block that begins with a photon.
+    pub(crate) fn new(
+        emitter: &Emitter,
+        flat: Option<&FlatLeg>,
+        range: Range<u64>,
+        numbers: impl Fn(u64) -> Numbers,
+    ) -> Self {
+        let Some(flat) = flat.filter(|flat| flat.has_meshes()) else {
+            return Self::default();
+        };
+        let level = Level::new();
+        let mut groups = Vec::with_capacity(AHEAD / ABREAST);
+        for start in range.clone().step_by(BLOCK) {
+            let end = range.end.min(start + BLOCK as u64);
+            let numbers = numbers(start);
+            let firsts = (start..end).step_by(ABREAST);
+            groups.extend(firsts.map(|first| emit_group(emitter, level, first..end, &numbers)));
+        }
+        Self {
+            first: range.start,
+            hits: flat.hits_of_all(&groups),
+            groups,
+        }
+    }
+}
+
+/// Emits a group of photons from the first of a range on. Photons beyond the range carry no light.
+#[inline]
+pub(crate) fn emit_group(
+    emitter: &Emitter,
+    level: Level,
+    range: Range<u64>,
+    numbers: &Numbers,
+) -> PhotonGroup {
+    let words = |block| numbers.columns(level, range.start, block);
+    let mut group = emitter.emit(words);
+    group.end_at(range.end - range.start);
+    group
+}
