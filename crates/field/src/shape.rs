@@ -1,6 +1,6 @@
 //! Flat shapes across the central ray.
 
-use crate::{Rectangle, TwoPlane};
+use crate::{Hole, Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -163,6 +163,8 @@ pub enum Mask {
     },
     /// A grating over the whole plane.
     Grating(Grating),
+    /// An opaque, black screen over the whole plane with one hole.
+    Aperture(Hole),
 }
 
 impl Mask {
@@ -171,7 +173,7 @@ impl Mask {
     pub fn grating(&self) -> Option<&Grating> {
         match self {
             Self::Grating(grating) => Some(grating),
-            Self::Opaque { .. } => None,
+            Self::Opaque { .. } | Self::Aperture(_) => None,
         }
     }
 
@@ -189,6 +191,7 @@ impl Mask {
                 f64::from(u8::from(!stopped))
             }
             Self::Grating(grating) => grating.transmittance(x, y),
+            Self::Aperture(hole) => hole.transmittance(x, y),
         }
     }
 }

@@ -2,10 +2,11 @@
 //! photons at a time.
 
 use crate::grid::Grid;
-use crate::lanes::{inside, lanes};
+use crate::lanes::{inside, inside_polygon, lanes};
+use crate::obstacles::Unbounded;
 use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
-use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
+use etendue_field::{Crossing, Hole, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
 
 /// A first leg on which all obstacles and planes lie across the leg, so their distances are the
@@ -33,7 +34,7 @@ pub(crate) struct FlatObstacle {
 pub(crate) enum Outline {
     Shape(Shape),
     Grid(Box<Grid>),
-    HalfPlane(HalfPlane),
+    Unbounded(Unbounded),
 }
 
 /// What becomes of a photon: the shares of its flux that are added to the ledger, and whether it
@@ -159,7 +160,7 @@ impl FlatLeg {
             let is_inside = match &obstacle.outline {
                 Outline::Shape(shape) => inside(shape, [&x, &y]),
                 Outline::Grid(grid) => grid.contains_each([&x, &y]),
-                Outline::HalfPlane(half_plane) => lanes(|i| half_plane.contains(x[i], y[i])),
+                Outline::Unbounded(unbounded) => covered(unbounded, [&x, &y]),
             };
             hits = lanes(|i| {
                 if is_inside[i] {
@@ -171,6 +172,17 @@ impl FlatLeg {
         }
         hits
     }
+}
+
+/// Checks which points lie in an unbounded blocker.
+#[inline(always)]
+fn covered<const N: usize>(unbounded: &Unbounded, [x, y]: [&[f64; N]; 2]) -> [bool; N] {
+    let is_open = match unbounded {
+        Unbounded::HalfPlane(half_plane) => return lanes(|i| half_plane.contains(x[i], y[i])),
+        Unbounded::Aperture(Hole::Shape(shape)) => inside(shape, [x, y]),
+        Unbounded::Aperture(Hole::Polygon(polygon)) => inside_polygon(polygon, [x, y]),
+    };
+    lanes(|i| !is_open[i])
 }
 
 impl FlatPlane {

@@ -46,6 +46,15 @@ fn scene(seed: u64) -> Scene {
             r#"(name: "b{layer}", at: Before("{layer}")), (name: "a{layer}", at: After("{layer}")),"#
         );
     }
+    let hole = [
+        "Disc(center: (0.25, 0), radius: 1.25)",
+        "Rectangle(center: (0.25, 0), size: (2, 1.5))",
+        "Polygon(corners: [(1.5, 0), (0.5, 1.25), (-1, 0.75), (-0.75, -1)])",
+    ];
+    if let Some(hole) = hole.get((seed % 4) as usize) {
+        blockers += &format!(r#"Aperture(name: "hole", center: (0, 0.5, 2.5), hole: {hole}),"#);
+        planes += r#"(name: "hole", at: After("hole")),"#;
+    }
     let leaving = [r#"(name: "leaving", at: After("floor")),"#, ""][(seed % 2) as usize];
     let text = format!(
         r#"(
