@@ -1,5 +1,6 @@
 //! Faults planted in the prediction or in the photons, which a comparison must reject.
 
+mod holes;
 mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
@@ -7,11 +8,12 @@ use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, named, traced};
 use etendue_compare::{Residuals, chain, sidak};
 use etendue_field::{
-    Complex, Crossing, Ledger, Mask, PhotonSource, Rectangle, Shape, Slices, VirtualPlane,
+    Complex, Crossing, Hole, Ledger, Mask, PhotonSource, ProjectionGrid, Rectangle, Shape, Slices,
+    VirtualPlane,
 };
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::{Chain, Model, Operator, Parameter};
+use etendue_theory::{Chain, Model, Operator, Parameter, RayBudget};
 use etendue_trace::Tracer;
 pub(crate) use smallest::smallest;
 
@@ -158,6 +160,7 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
                 ),
             ],
         ),
+        ("iris", holes::faults()),
         (
             "grating",
             vec![
@@ -274,8 +277,25 @@ fn unchanged(scene: &Scene, plane: &VirtualPlane) -> Option<Slices> {
     Some(slices(&chain(scene, plane), plane))
 }
 
+/// Returns the slices in closed form, or by nets behind an aperture whose hole is a polygon.
 fn slices(chain: &Chain, plane: &VirtualPlane) -> Slices {
-    etendue_theory::slices(chain, &plane.window, &plane.grid)
+    let is_polygon = |operator: &Operator| {
+        let Operator::Visibility { mask, .. } = operator else {
+            return false;
+        };
+        matches!(mask, Mask::Aperture(Hole::Polygon(_)))
+    };
+    if !chain.operators.iter().any(is_polygon) {
+        return etendue_theory::slices(chain, &plane.window, &plane.grid);
+    }
+    // About as many rays as a run with four million photons.
+    let budget = RayBudget {
+        nodes: 4e6,
+        error: 1e-3,
+    };
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let over = (&plane.window, &plane.grid, &picture);
+    chain.predict(&[], over, budget).slices
 }
 
 /// Faults that are planted in the prediction.

@@ -232,7 +232,7 @@ fn point_light() {
 #[test]
 fn a_hole_passes_what_its_shape_would_block() {
     let light = area(disc([0.05, 0.0], 0.5), 2.0);
-    let wide = Shape::Rectangle(rectangle([-0.1, 0.1], [0.5, 0.3]));
+    let wide = rectangle([-0.1, 0.1], [0.5, 0.3]);
     for shape in [wide, disc([0.1, -0.05], 0.3)] {
         for light in [light.clone(), Light::Point { intensity: 1.7 }] {
             let open = alone(light.clone(), 2.0);
