@@ -208,9 +208,10 @@ impl Writer {
             } => (shapes, half_planes),
             Mask::Aperture(hole) => {
                 let (triangles, error) = aperture::screen(hole, layer.distance, beyond);
-                self.xml.comment(&format!(
-                    "aperture {name:?}: triangles around a hole, at most {error:.1e} m from its edge"
-                ));
+                let off = format!(", at most {error:.1e} m from its edge");
+                let off = if error > 0.0 { &off } else { "" };
+                self.xml
+                    .comment(&format!("aperture {name:?}: triangles around a hole{off}"));
                 self.mesh(&id, &triangles, &xml::black());
                 return Ok(());
             }

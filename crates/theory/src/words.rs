@@ -50,11 +50,13 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
         }
         Mask::Aperture(hole) => {
             let hole = match hole {
-                Hole::Shape(Shape::Rectangle(_)) => "rectangle".to_owned(),
-                Hole::Shape(Shape::Disc(_)) => "disc".to_owned(),
-                Hole::Polygon(polygon) => format!("polygon of {} corners", polygon.corners().len()),
+                Hole::Shape(Shape::Rectangle(_)) => "a rectangle".to_owned(),
+                Hole::Shape(Shape::Disc(_)) => "a disc".to_owned(),
+                Hole::Polygon(polygon) => {
+                    format!("a polygon of {} corners", polygon.corners().len())
+                }
             };
-            format!("multiply  by the hole of {named}1 {hole}, opaque around it")
+            format!("multiply  by the hole of {named}{hole}, opaque elsewhere")
         }
         Mask::Grating(grating) => {
             let formula = formula(grating, ["x", "y"]);
