@@ -8,12 +8,11 @@ use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, named, traced};
 use etendue_compare::{Residuals, chain, sidak};
 use etendue_field::{
-    Complex, Crossing, Hole, Ledger, Mask, PhotonSource, ProjectionGrid, Rectangle, Shape, Slices,
-    VirtualPlane,
+    Complex, Crossing, Ledger, Mask, PhotonSource, Rectangle, Shape, Slices, VirtualPlane,
 };
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::{Chain, Model, Operator, Parameter, RayBudget};
+use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
 pub(crate) use smallest::smallest;
 
@@ -99,11 +98,12 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         let faults = (found.len() - 1) as f64;
         let reason = "a scene without faults would show nothing";
         checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
-        rows.extend(found.into_iter().map(|mut row| {
-            row.cells.insert(0, name.to_owned());
-            row
-        }));
+        rows.extend(of_scene(name, found));
     }
+    rows.extend(of_scene(
+        holes::SCENE,
+        holes::rows(&named(holes::SCENE, Some(photons), Some(seed))),
+    ));
     ReportSection {
         title: format!(
             "Faults planted in other scenes at {:.0e} photons",
@@ -118,6 +118,14 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         rows,
         checks,
     }
+}
+
+/// Puts the name of a scene before its rows.
+fn of_scene(name: &'static str, rows: Vec<Row>) -> impl Iterator<Item = Row> {
+    rows.into_iter().map(move |mut row| {
+        row.cells.insert(0, name.to_owned());
+        row
+    })
 }
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
@@ -160,7 +168,6 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
                 ),
             ],
         ),
-        ("iris", holes::faults()),
         (
             "grating",
             vec![
@@ -252,6 +259,11 @@ fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &P
         Residuals::new(measurement, i, &prediction).p_value(scene.run.seed)
     };
     let p_values: Vec<Option<f64>> = scene.planes.iter().enumerate().map(p_value).collect();
+    judged(scene, name, &p_values)
+}
+
+/// Returns the row of a fault that has the given p-value at each plane.
+fn judged(scene: &Scene, name: &'static str, p_values: &[Option<f64>]) -> Row {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let least = p_values
         .iter()
@@ -277,25 +289,8 @@ fn unchanged(scene: &Scene, plane: &VirtualPlane) -> Option<Slices> {
     Some(slices(&chain(scene, plane), plane))
 }
 
-/// Returns the slices in closed form, or by nets behind an aperture whose hole is a polygon.
 fn slices(chain: &Chain, plane: &VirtualPlane) -> Slices {
-    let is_polygon = |operator: &Operator| {
-        let Operator::Visibility { mask, .. } = operator else {
-            return false;
-        };
-        matches!(mask, Mask::Aperture(Hole::Polygon(_)))
-    };
-    if !chain.operators.iter().any(is_polygon) {
-        return etendue_theory::slices(chain, &plane.window, &plane.grid);
-    }
-    // About as many rays as a run with four million photons.
-    let budget = RayBudget {
-        nodes: 4e6,
-        error: 1e-3,
-    };
-    let picture = ProjectionGrid::new(&plane.window, 1);
-    let over = (&plane.window, &plane.grid, &picture);
-    chain.predict(&[], over, budget).slices
+    etendue_theory::slices(chain, &plane.window, &plane.grid)
 }
 
 /// Faults that are planted in the prediction.

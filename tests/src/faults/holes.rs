@@ -1,25 +1,63 @@
-//! Faults in the holes of apertures.
+//! Faults in the holes of apertures. One hole is a polygon, so nets of rays predict the light behind
+//! it, and comparisons include the error of these nets.
 
-use super::{PlantedFaults, chained};
-use etendue_field::{ConvexPolygon, Hole, Mask};
-use etendue_theory::{Chain, Operator};
+use super::{NONE, judged};
+use crate::report::Row;
+use crate::scenes::traced;
+use etendue_compare::{Residuals, chain};
+use etendue_field::{ConvexPolygon, Hole, Mask, ProjectionGrid, VirtualPlane};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_theory::{Chain, Model, Operator, RayBudget};
 
-/// Returns faults of the scene `iris`.
-pub(super) fn faults() -> PlantedFaults {
-    vec![
-        (
-            "hole of the stop 1 % too wide",
-            chained(|c| scale_hole(c, "stop", 1.01)),
-        ),
-        (
-            "hole of the iris 1 % too wide",
-            chained(|c| scale_hole(c, "iris", 1.01)),
-        ),
-        (
-            "hole of the iris turned by 90 degrees",
-            chained(|c| each_hole(c, "iris", turned)),
-        ),
-    ]
+/// The name of the scene in which the faults are planted.
+pub(super) const SCENE: &str = "iris";
+
+/// About as many rays as a run with four million photons has.
+const BUDGET: RayBudget = RayBudget {
+    nodes: 4e6,
+    error: 1e-3,
+};
+
+/// Returns a row for the scene without a fault, and a row for each fault.
+pub(super) fn rows(scene: &Scene) -> Vec<Row> {
+    let sound = traced(scene);
+    let changes: [(&'static str, fn(&mut Chain)); 4] = [
+        (NONE, |_| ()),
+        ("hole of the stop 1 % too wide", |c| {
+            scale_hole(c, "stop", 1.01);
+        }),
+        ("hole of the iris 1 % too wide", |c| {
+            scale_hole(c, "iris", 1.01);
+        }),
+        ("hole of the iris turned by 90 degrees", |c| {
+            each_hole(c, "iris", turned);
+        }),
+    ];
+    let rows = changes.iter().map(|(name, change)| {
+        let planes = scene.planes.iter().enumerate();
+        let p_values = planes.map(|(i, plane)| {
+            let mut changed = chain(scene, plane);
+            change(&mut changed);
+            let is_changed = *name == NONE || changed != chain(scene, plane);
+            is_changed.then(|| p_value(scene, &sound, (i, plane), &changed))
+        });
+        judged(scene, name, &p_values.collect::<Vec<_>>())
+    });
+    rows.collect()
+}
+
+/// Returns the p-value of a plane if a chain predicts it.
+fn p_value(
+    scene: &Scene,
+    measurement: &Measurement,
+    (index, plane): (usize, &VirtualPlane),
+    chain: &Chain,
+) -> f64 {
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let found = chain.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);
+    let residuals = Residuals::between(measurement, index, &found.slices, &found.replicates);
+    residuals.p_value(scene.run.seed)
 }
 
 /// Changes the hole of the aperture with the given name.
