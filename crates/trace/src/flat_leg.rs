@@ -3,9 +3,9 @@
 
 use crate::grid::Grid;
 use crate::lanes::{inside, inside_polygon, lanes};
-use crate::obstacles::Unbounded;
 use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
+use crate::unbounded::Unbounded;
 use etendue_field::{Crossing, Hole, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
 

@@ -38,6 +38,7 @@ mod sampling;
 mod scatter;
 mod sky;
 mod tracer;
+mod unbounded;
 mod world;
 
 pub use backward::{Backward, LightNotFound, finds};

@@ -6,7 +6,8 @@ use crate::line::{direction, start};
 use crate::mesh::BlockerMesh;
 use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveHit, PrimitiveSet, TaggedPrimitive};
-use etendue_field::{Frame, HalfPlane, Hole, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
+use crate::unbounded::Unbounded;
+use etendue_field::{Frame, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -56,25 +57,6 @@ pub(crate) struct Obstacles {
     primitives: PrimitiveSet<HitKind>,
     unbounded: Vec<Layer<Unbounded>>,
     semi_transparent: Vec<Layer<Mask>>,
-}
-
-/// An opaque blocker that extends without bound in its plane.
-#[derive(Clone, Debug)]
-pub(crate) enum Unbounded {
-    HalfPlane(HalfPlane),
-    /// All of the plane except a hole.
-    Aperture(Hole),
-}
-
-impl Unbounded {
-    /// Checks whether the blocker contains the point (x, y) of its plane.
-    #[inline]
-    fn contains(&self, x: f64, y: f64) -> bool {
-        match self {
-            Self::HalfPlane(half_plane) => half_plane.contains(x, y),
-            Self::Aperture(hole) => !hole.contains(x, y),
-        }
-    }
 }
 
 /// A blocker that extends without bound in its plane: an opaque blocker or a semi-transparent mask.

@@ -40,20 +40,21 @@ pub(super) fn rows(scene: &Scene) -> Vec<Row> {
             let mut changed = chain(scene, plane);
             change(&mut changed);
             let is_changed = *name == NONE || changed != chain(scene, plane);
-            is_changed.then(|| p_value(scene, &sound, (i, plane), &changed))
+            let found = is_changed.then(|| p_value(scene, &sound, (i, plane), &changed));
+            found.flatten()
         });
         judged(scene, name, &p_values.collect::<Vec<_>>())
     });
     rows.collect()
 }
 
-/// Returns the p-value of a plane if a chain predicts it.
+/// Returns the p-value of a plane that a chain predicts.
 fn p_value(
     scene: &Scene,
     measurement: &Measurement,
     (index, plane): (usize, &VirtualPlane),
     chain: &Chain,
-) -> f64 {
+) -> Option<f64> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let found = chain.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);
     let residuals = Residuals::between(measurement, index, &found.slices, &found.replicates);
