@@ -19,10 +19,13 @@ const BUDGET: RayBudget = RayBudget {
     error: 1e-3,
 };
 
+/// The name of a fault, and the change of a chain that plants it.
+type HoleFault = (&'static str, fn(&mut Chain));
+
 /// Returns a row for the scene without a fault, and a row for each fault.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     let sound = traced(scene);
-    let changes: [(&'static str, fn(&mut Chain)); 4] = [
+    let changes: [HoleFault; 4] = [
         (NONE, |_| ()),
         ("hole of the stop 1 % too wide", |c| {
             scale_hole(c, "stop", 1.01);
