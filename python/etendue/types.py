@@ -18,6 +18,21 @@ class Axis(TypedDict):
     """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the largest allowed. 1e-9 to 1e9"""
 
 
+class BlockersAperture(TypedDict):
+    """An opaque screen over the whole plane, with one hole."""
+
+    Aperture: "BlockersApertureFields"
+
+
+class BlockersApertureFields(TypedDict):
+    center: Sequence[float]
+    """Origin of the hole's X and Y coordinates, in world coordinates"""
+    hole: "Hole"
+    """The hole; light passes only through it"""
+    name: str
+    """Name"""
+
+
 class BlockersBars(TypedDict):
     """Opaque bars with equal spacing. Each bar ends 10⁹ m from the central ray on either side."""
 
@@ -285,6 +300,43 @@ class Grating(TypedDict):
     """Modulation m. 0 to 1"""
     phase: NotRequired[float]
     """Phase p, in radians. -1e9 to 1e9"""
+
+
+class HoleDisc(TypedDict):
+    """A disc."""
+
+    Disc: "HoleDiscFields"
+
+
+class HoleDiscFields(TypedDict):
+    center: Sequence[float]
+    """Centre along X and Y"""
+    radius: float
+    """Radius. 1e-9 to 1e9"""
+
+
+class HolePolygon(TypedDict):
+    """A convex polygon."""
+
+    Polygon: "HolePolygonFieldscorners"
+
+
+class HolePolygonFieldscorners(TypedDict):
+    corners: Sequence[Sequence[float]]
+    """The 3 to 32 corners along X and Y, in order around the polygon"""
+
+
+class HoleRectangle(TypedDict):
+    """A rectangle with edges along X and Y."""
+
+    Rectangle: "HoleRectangleFields"
+
+
+class HoleRectangleFields(TypedDict):
+    center: Sequence[float]
+    """Centre along X and Y"""
+    size: Sequence[float]
+    """Side lengths along X and Y"""
 
 
 class Image(TypedDict):
@@ -773,7 +825,7 @@ class Window(TypedDict):
 AxisName = Union[Literal["X"], Literal["Y"]]
 """An axis orthogonal to the central ray."""
 
-Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersPicture", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
+Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersPicture", "BlockersShapes", "BlockersAperture", "BlockersGrating", "BlockersMesh"]
 """Black blockers. Each group except a mesh lies in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]
@@ -796,6 +848,9 @@ Fresnel = Union[Literal["White"], "FresnelDielectric", "FresnelConductor"]
 
 HalfName = Union[Literal["Below"], Literal["Above"]]
 """A side of a line."""
+
+Hole = Union["HoleDisc", "HoleRectangle", "HolePolygon"]
+"""The hole of an aperture."""
 
 Light = Union["LightRectangle", "LightDisc", "LightPoint", "LightSpot", "LightProjector", "LightBeam", "LightEnvironment", "LightRays"]
 """The light; the central ray starts at its centre."""

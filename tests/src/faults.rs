@@ -1,5 +1,6 @@
 //! Faults planted in the prediction or in the photons, which a comparison must reject.
 
+mod holes;
 mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
@@ -97,11 +98,12 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         let faults = (found.len() - 1) as f64;
         let reason = "a scene without faults would show nothing";
         checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
-        rows.extend(found.into_iter().map(|mut row| {
-            row.cells.insert(0, name.to_owned());
-            row
-        }));
+        rows.extend(of_scene(name, found));
     }
+    rows.extend(of_scene(
+        holes::SCENE,
+        holes::rows(&named(holes::SCENE, Some(photons), Some(seed))),
+    ));
     ReportSection {
         title: format!(
             "Faults planted in other scenes at {:.0e} photons",
@@ -116,6 +118,14 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         rows,
         checks,
     }
+}
+
+/// Puts the name of a scene before its rows.
+fn of_scene(name: &'static str, rows: Vec<Row>) -> impl Iterator<Item = Row> {
+    rows.into_iter().map(move |mut row| {
+        row.cells.insert(0, name.to_owned());
+        row
+    })
 }
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
@@ -249,6 +259,11 @@ fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &P
         Residuals::new(measurement, i, &prediction).p_value(scene.run.seed)
     };
     let p_values: Vec<Option<f64>> = scene.planes.iter().enumerate().map(p_value).collect();
+    judged(scene, name, &p_values)
+}
+
+/// Returns the row of a fault that has the given p-value at each plane.
+fn judged(scene: &Scene, name: &'static str, p_values: &[Option<f64>]) -> Row {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let least = p_values
         .iter()

@@ -32,6 +32,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("fig15"),
     scene!("grating"),
     scene!("two_layers"),
+    scene!("iris"),
     scene!("disc_light"),
     scene!("mesh_blocker"),
     scene!("furnace"),

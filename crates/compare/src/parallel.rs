@@ -105,7 +105,8 @@ fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec
     };
     let everywhere = [[-far, far]; 2];
     match &layer.mask {
-        Mask::Grating(_) => vec![corners(everywhere)],
+        // The opaque part of an aperture surrounds its hole on all sides.
+        Mask::Grating(_) | Mask::Aperture(_) => vec![corners(everywhere)],
         Mask::Opaque {
             shapes,
             half_planes,

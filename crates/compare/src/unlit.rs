@@ -21,7 +21,7 @@ const MOST_PARTS: usize = 4096;
 /// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
 /// plane.
 ///
-/// The rays of a section are points (position at the light, slope). Half-planes cut the set of
+/// The rays of a section are points (position at the light, slope). Half-planes and holes cut the set of
 /// these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a layer
 /// covers every place where rays cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
@@ -35,19 +35,15 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         let whole = section.measure();
         let mut cuts: Vec<&str> = Vec::new();
         for layer in &layers {
-            let Mask::Opaque { half_planes, .. } = &layer.mask else {
-                continue;
-            };
-            for half in half_planes.iter().filter(|half| half.axis == axis) {
-                let side = if half.above { -1.0 } else { 1.0 };
-                section.clip([side, side * layer.distance, -side * half.edge]);
+            for [side, edge] in ends(&layer.mask, axis) {
+                section.clip([side, side * layer.distance, -side * edge]);
                 cuts.push(&layer.name);
             }
         }
         cuts.dedup();
         if whole > 0.0 && section.measure() <= ROUNDING * whole {
             return Some(format!(
-                "the half-planes of {} block all paths of light",
+                "the edges of {} block all paths of light",
                 cuts.join(" and ")
             ));
         }
@@ -56,6 +52,24 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         .into_iter()
         .find(|layer| covers(layer, &sections, scene, plane));
     covering.map(|layer| format!("{} blocks all paths of light", layer.name))
+}
+
+/// Returns the edges across an axis beyond which a mask is opaque: the edges of half-planes, or the
+/// ends of the hole of an aperture. Each edge is given as a sign and a coordinate. The mask is open
+/// only where the sign times the coordinate less the edge is positive.
+fn ends(mask: &Mask, axis: usize) -> Vec<[f64; 2]> {
+    match mask {
+        Mask::Opaque { half_planes, .. } => {
+            let across = half_planes.iter().filter(|half| half.axis == axis);
+            let side = |above| if above { -1.0 } else { 1.0 };
+            across.map(|half| [side(half.above), half.edge]).collect()
+        }
+        Mask::Aperture(hole) => {
+            let [low, high] = hole.bounds().extent(axis);
+            vec![[1.0, low], [-1.0, high]]
+        }
+        Mask::Grating(_) => Vec::new(),
+    }
 }
 
 /// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a

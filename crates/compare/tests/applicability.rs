@@ -202,7 +202,7 @@ fn darkness_has_a_reason() {
     let closed = [
         (
             both.as_str(),
-            "the half-planes of other and edge block all paths of light",
+            "the edges of other and edge block all paths of light",
         ),
         (lid, "lid blocks all paths of light"),
     ];
@@ -273,7 +273,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
         )
     };
     let narrow = of(&built(0.03));
-    let dark = "the half-planes of edge block all paths of light";
+    let dark = "the edges of edge block all paths of light";
     assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
     let wide = of(&built(0.4));
     assert_eq!((wide.class(), wide.dark), (Class::FirstOrder, None));
@@ -342,4 +342,34 @@ fn what_passes_beside_a_shaded_surface_is_not_dark() {
     let dark = |at: &str| of(&scene(LIGHT, card, mirror, r#""mirror""#, at, 0.4)).dark;
     assert!(dark(r#"After("mirror")"#).is_some());
     assert_eq!(dark("Distance(0.8)"), None);
+}
+
+/// Light passes an aperture only through its hole. An aperture beside the light stops everything,
+/// and an aperture on the way back is in the way.
+#[test]
+fn light_passes_an_aperture_through_its_hole() {
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (10, 10))"#;
+    let hole = |x: f64| {
+        format!(
+            r#"Aperture(name: "iris", center: ({x}, 0, 0.5), hole: Polygon(corners: [(0.1, 0), (-0.1, 0.1), (-0.1, -0.1)]))"#
+        )
+    };
+    let built = |x: f64, at: &str| of(&scene(LIGHT, &hole(x), floor, r#""floor""#, at, 0.1));
+    let dark = "the edges of iris block all paths of light";
+    let before = r#"Before("floor")"#;
+    assert_eq!(built(0.0, before).dark, None);
+    assert_eq!(built(50.0, before).dark.as_deref(), Some(dark));
+    let back = built(0.0, "Distance(1.3)");
+    assert!(
+        matches!(back.theory, Theory::Parallel(_)),
+        "{:?}",
+        back.declined
+    );
+    let behind = built(0.0, "Distance(1.7)");
+    assert!(
+        matches!(behind.theory, Theory::Reflections(_)),
+        "{:?}",
+        behind.reasons
+    );
+    assert!(behind.declined[0].contains("visibility of iris"));
 }

@@ -4,6 +4,7 @@
 //! origin, and x, y and z are along X, Y and D of the central ray. Coordinates are written with so
 //! many digits that every f64 is read back exactly.
 
+mod aperture;
 mod id;
 mod light;
 mod material;
@@ -199,12 +200,22 @@ impl Writer {
         beyond: f64,
     ) -> Result<(), NotInMitsuba> {
         let name = &layer.name;
-        let Mask::Opaque {
-            shapes,
-            half_planes,
-        } = &layer.mask
-        else {
-            return Err(NotInMitsuba::Mask { name: name.clone() });
+        let id = format!("blockers_{number}");
+        let (shapes, half_planes) = match &layer.mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => (shapes, half_planes),
+            Mask::Aperture(hole) => {
+                let (triangles, error) = aperture::screen(hole, layer.distance, beyond);
+                let off = format!(", at most {error:.1e} m from its edge");
+                let off = if error > 0.0 { &off } else { "" };
+                self.xml
+                    .comment(&format!("aperture {name:?}: triangles around a hole{off}"));
+                self.mesh(&id, &triangles, &xml::black());
+                return Ok(());
+            }
+            Mask::Grating(_) => return Err(NotInMitsuba::Mask { name: name.clone() }),
         };
         self.xml.comment(&format!("blockers {name:?}"));
         let (mut rectangles, mut discs) = (Vec::new(), Vec::new());
@@ -215,7 +226,6 @@ impl Writer {
             }
         }
         rectangles.extend(half_planes.iter().map(|half| cut_off(half, beyond)));
-        let id = format!("blockers_{number}");
         // Thousands of shapes would load slowly, so rectangles form one mesh.
         if !rectangles.is_empty() {
             let triangles: Vec<[DVec3; 3]> = rectangles

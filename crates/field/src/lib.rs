@@ -17,8 +17,10 @@ mod environment;
 mod field_grid;
 mod frame;
 mod frequency;
+mod hole;
 mod image;
 mod light;
+mod mask;
 mod number;
 mod patch;
 mod pattern;
@@ -39,8 +41,10 @@ pub use environment::{Environment, EnvironmentMap, LatLong, SphericalGaussian};
 pub use field_grid::{Assignment, FieldGrid};
 pub use frame::{Frame, TwoPlane, box_corners, enclosing};
 pub use frequency::{FrequencyAxis, SliceGrid};
+pub use hole::{ConvexPolygon, Hole, HoleMoments};
 pub use image::Image;
 pub use light::Light;
+pub use mask::Mask;
 pub use number::{brief, decimals, fixed, percent, sinc, tidy, uncertain, whole};
 pub use patch::{Patch, Specular};
 pub use pattern::{Pattern, Picture};
@@ -52,7 +56,7 @@ pub use ray_light::{FluxRay, RayLight};
 pub use rectangle::Rectangle;
 pub use reflectance::{MOST_TERMS, Mixture, Reflectance, Term, Weight};
 pub use shape::{
-    Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance, triangle_is_met,
+    Disc, Grating, HalfPlane, Shape, interpolated_normal, triangle_distance, triangle_is_met,
 };
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};

@@ -167,48 +167,6 @@ impl Grating {
     }
 }
 
-/// A mask that multiplies radiance, in one plane across the central ray.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Mask {
-    /// Opaque, black shapes that do not overlap.
-    Opaque {
-        /// Bounded shapes.
-        shapes: Vec<Shape>,
-        /// Half-planes.
-        half_planes: Vec<HalfPlane>,
-    },
-    /// A grating over the whole plane.
-    Grating(Grating),
-}
-
-impl Mask {
-    /// Returns the grating, if the mask is one.
-    #[must_use]
-    pub fn grating(&self) -> Option<&Grating> {
-        match self {
-            Self::Grating(grating) => Some(grating),
-            Self::Opaque { .. } => None,
-        }
-    }
-
-    /// Returns the share of radiance that passes at (x, y).
-    #[inline]
-    #[must_use]
-    pub fn transmittance(&self, x: f64, y: f64) -> f64 {
-        match self {
-            Self::Opaque {
-                shapes,
-                half_planes,
-            } => {
-                let stopped = shapes.iter().any(|shape| shape.contains(x, y))
-                    || half_planes.iter().any(|half| half.contains(x, y));
-                f64::from(u8::from(!stopped))
-            }
-            Self::Grating(grating) => grating.transmittance(x, y),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

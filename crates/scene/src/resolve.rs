@@ -4,6 +4,7 @@ mod blockers;
 mod dark_rectangles;
 mod faults;
 mod fields;
+mod hole;
 mod jitter;
 mod light;
 mod limits;

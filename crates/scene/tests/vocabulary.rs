@@ -263,6 +263,83 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
     }
 }
 
+/// Returns the scene with an aperture as its only blockers.
+fn with_hole(hole: &str) -> Result<Scene, SceneError> {
+    let aperture = format!(r#"Aperture(name: "star", center: (0.3, -0.2, 1), hole: {hole})"#);
+    resolved(&text().replacen(BLOCKERS, &aperture, 1))
+}
+
+#[test]
+fn an_aperture_is_open_in_its_hole() {
+    for hole in [
+        "Rectangle(center: (0.1, 0), size: (0.2, 0.4))",
+        "Polygon(corners: [(0, -0.2), (0.2, -0.2), (0.2, 0.2), (0, 0.2)])",
+        "Polygon(corners: [(0, -0.2), (0, 0.2), (0.2, 0.2), (0.2, -0.2)])",
+    ] {
+        let scene = with_hole(hole).unwrap();
+        let mask = &scene.blockers[0].mask;
+        for (x, y, passes) in [
+            (0.31, -0.39, 1.0),
+            (0.49, -0.01, 1.0),
+            (0.29, -0.2, 0.0),
+            (0.51, -0.2, 0.0),
+            (0.4, 0.01, 0.0),
+            (0.4, -0.41, 0.0),
+            (1e8, 0.0, 0.0),
+        ] {
+            let found = mask.transmittance(x, y);
+            assert!(found.total_cmp(&passes).is_eq(), "{hole}: ({x}, {y})");
+        }
+    }
+    let scene = with_hole("Disc(center: (0.1, 0), radius: 0.2)").unwrap();
+    let mask = &scene.blockers[0].mask;
+    let passes = |x: f64| mask.transmittance(x, -0.2) > 0.5;
+    assert!(passes(0.21) && passes(0.59) && !passes(0.19) && !passes(0.61));
+}
+
+#[test]
+fn holes_have_limits() {
+    let many = "(0, 1),".repeat(33);
+    let many = format!("Polygon(corners: [{many}])");
+    let order = "corners in order around a convex polygon, no three of them on a line";
+    for (hole, told) in [
+        (
+            "Disc(center: (0, 0), radius: 0)",
+            "hole.radius is 0; allowed: 1e-9 to 1e9".to_owned(),
+        ),
+        (
+            "Rectangle(center: (0, 0), size: (1, -1))",
+            "hole.size[1] is -1; allowed: 1e-9 to 1e9".to_owned(),
+        ),
+        (
+            "Polygon(corners: [(0, 0), (1, 1)])",
+            "hole.corners is 2 corners; allowed: 3 to 32 corners".to_owned(),
+        ),
+        (
+            many.as_str(),
+            "hole.corners is 33 corners; allowed: 3 to 32 corners".to_owned(),
+        ),
+        (
+            "Polygon(corners: [(0, 0), (1, NaN), (1, 1)])",
+            "hole.corners[1][1] is NaN; allowed: -1e9 to 1e9".to_owned(),
+        ),
+        (
+            "Polygon(corners: [(0, 0), (1, 1), (1, 0), (0, 1)])",
+            format!("hole.corners is 4 corners of no convex polygon; allowed: {order}"),
+        ),
+        (
+            "Polygon(corners: [(0, 0), (1, 0), (2, 0)])",
+            format!("hole.corners is 3 corners of no convex polygon; allowed: {order}"),
+        ),
+    ] {
+        let error = with_hole(hole).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!("blockers[0].{told}")) && error.lines().count() == 1,
+            "{hole}: {error}"
+        );
+    }
+}
+
 /// Returns the scene with bars as its only blockers, of which some fields are given.
 fn with_bars(center: &str, axis: &str, fields: &str) -> Result<Scene, SceneError> {
     let bars = format!(r#"Bars(name: "star", center: {center}, axis: {axis}, {fields})"#);

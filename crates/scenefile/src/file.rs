@@ -6,7 +6,7 @@ mod format;
 mod light;
 mod surface;
 
-pub use blockers::{BlockersFile, HalfName, ShapeFile};
+pub use blockers::{BlockersFile, HalfName, HoleFile, ShapeFile};
 pub use format::SceneFormat;
 pub use light::{
     BulbFile, EnvironmentFile, GratingFile, ImageFile, LightFile, SphericalGaussianFile,

@@ -21,6 +21,7 @@ fn told(path: &str, node: &'static Value) -> [&'static str; 2] {
         ],
         None if node["type"] == "integer" => ["a whole number", "20"],
         None if node["type"] == "string" => ["the name of a surface in quotes", "\"floor\""],
+        None if node["type"] == "array" => ["a list of numbers", "(0.1, 0.2)"],
         None => ["a number", "0.1"],
     }
 }

@@ -24,9 +24,9 @@ pub use display::{is_printable, number, shown};
 pub use fault::{Fault, SceneError, fault};
 pub use file::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
-    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
-    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, SceneFormat,
-    ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, HoleFile, ImageFile, LightFile,
+    LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile,
+    SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
 pub use hints::unit;
 pub use page::page;

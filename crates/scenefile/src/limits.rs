@@ -33,6 +33,10 @@ pub const LOBES: usize = 10_000;
 /// are visible, predictions take many minutes.
 pub const SHAPES: usize = 100_000;
 
+/// Maximum number of corners of the hole of an aperture. Each photon is tested against each edge of
+/// the hole.
+pub const HOLE_CORNERS: usize = 32;
+
 /// Maximum of a product: the number of shapes of the light times the numbers of shapes of several
 /// layers. A prediction may have to evaluate all combinations of these shapes.
 pub const PRODUCTS: f64 = 1e6;

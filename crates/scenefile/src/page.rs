@@ -136,7 +136,8 @@ fn table(node: &Value) -> String {
         };
         let range = field["x-range"]
             .as_str()
-            .or(field["items"]["x-range"].as_str());
+            .or(field["items"]["x-range"].as_str())
+            .or(field["items"]["items"]["x-range"].as_str());
         let range = range.map_or(String::new(), |range| format!(", {range}"));
         let default = match is_required(node, name) {
             true => "required".to_owned(),

@@ -1,7 +1,7 @@
 //! Masks that are prepared for many queries. A query asks what fraction of a ray's radiance passes,
 //! or which shapes are near a ray.
 
-use etendue_field::{HalfPlane, Mask, Shape};
+use etendue_field::{HalfPlane, Hole, Mask, Shape};
 
 /// The lowest and highest coordinate of a rectangle along each of two axes.
 pub(crate) type Bounds = [[f64; 2]; 2];
@@ -12,7 +12,7 @@ pub(crate) struct Barrier<'a> {
     /// The distance of the mask in metres. The caller chooses whether it is the distance from the
     /// light or the distance before a receiver.
     pub(crate) distance: f64,
-    /// The region that the mask's half-planes do not block.
+    /// The region that the mask's half-planes do not block. For an aperture, the bounds of its hole.
     pub(crate) open: Bounds,
     pub(crate) shapes: Bins<'a>,
     pub(crate) mask: &'a Mask,
@@ -27,7 +27,10 @@ impl<'a> Barrier<'a> {
             } => (shapes, half_planes),
             _ => (&[], &[]),
         };
-        let mut open = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        let mut open = match mask {
+            Mask::Aperture(hole) => [0, 1].map(|axis| hole.bounds().extent(axis)),
+            _ => [[f64::NEG_INFINITY, f64::INFINITY]; 2],
+        };
         for half in half_planes {
             let [low, high] = &mut open[half.axis];
             if half.above {
@@ -41,6 +44,26 @@ impl<'a> Barrier<'a> {
             open,
             shapes: Bins::new(shapes),
             mask,
+        }
+    }
+
+    /// Returns the disc outside which the mask is opaque, if the mask is an aperture with a disc as
+    /// its hole.
+    pub(crate) fn disc_hole(&self) -> Option<&Shape> {
+        match self.mask {
+            Mask::Aperture(Hole::Shape(disc @ Shape::Disc(_))) => Some(disc),
+            _ => None,
+        }
+    }
+
+    /// Returns the smallest width among the shapes or of the hole, or `None` if there is neither.
+    pub(crate) fn narrowest(&self) -> Option<f64> {
+        match self.mask {
+            Mask::Aperture(hole) => {
+                let [w, h] = hole.bounds().size;
+                Some(w.min(h))
+            }
+            _ => self.shapes.narrowest(),
         }
     }
 
@@ -96,7 +119,7 @@ impl<'a> Bins<'a> {
     }
 
     /// Returns the smallest width among all shapes, or `None` if there are no shapes.
-    pub(crate) fn narrowest(&self) -> Option<f64> {
+    fn narrowest(&self) -> Option<f64> {
         let widths = self.shapes.iter().map(|shape| {
             let [w, h] = shape.bounds().size;
             w.min(h)

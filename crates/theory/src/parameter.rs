@@ -1,6 +1,6 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{Light, Patch, Shape};
+use etendue_field::{Hole, Light, Patch, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// an element of a system.
@@ -17,9 +17,10 @@ pub enum Parameter {
     /// ray. The leg starts at an element, or at the light (0), and ends at the next element or at
     /// the plane. If the length changes, all elements after the leg and the plane move along D.
     Travel(usize),
-    /// The size of the first shape of an opaque mask. For a rectangle, it is the side along X; for
-    /// a disc, it is the radius. All shapes of the mask scale by the same factor about their
-    /// centres.
+    /// The size of the first shape of an opaque mask, or of the hole of an aperture. For a
+    /// rectangle, it is the side along X; for a disc, it is the radius; for a polygon, it is the
+    /// extent along X. All shapes of the mask scale by the same factor about their centres, and a
+    /// polygon scales about its centroid.
     BlockerSide(usize),
     /// The edge of the first half-plane of an opaque mask; the mask's other edges do not move.
     HalfPlaneEdge(usize),
@@ -162,6 +163,27 @@ pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
         match shape {
             Shape::Rectangle(rectangle) => rectangle.size = rectangle.size.map(|s| s * factor),
             Shape::Disc(disc) => disc.radius *= factor,
+        }
+    }
+}
+
+/// Returns the word for the size of a hole in parameter names.
+pub(crate) fn hole_word(hole: &Hole) -> &'static str {
+    match hole {
+        Hole::Shape(shape) => size_word(shape),
+        Hole::Polygon(_) => "width",
+    }
+}
+
+/// Sets the size of a hole.
+pub(crate) fn resize_hole(hole: &mut Hole, new: New<'_>) {
+    match hole {
+        Hole::Shape(shape) => resize(std::slice::from_mut(shape), new),
+        Hole::Polygon(_) => {
+            let width = hole.bounds().size[0];
+            let factor = new(width) / width;
+            let fixed = hole.moments().centroid;
+            *hole = hole.mapped(factor, fixed.map(|c| c - factor * c));
         }
     }
 }

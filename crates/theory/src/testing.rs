@@ -1,7 +1,9 @@
 //! Chains and windows for the tests of this crate.
 
 use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
+use etendue_field::{
+    ConvexPolygon, Disc, Grating, HalfPlane, Hole, Light, Mask, Profile, Rectangle, Shape, Window,
+};
 
 /// Builds a square light of unit radiance on the central ray, followed by alternating travel and
 /// blockers; the planes are named a, b, c, …
@@ -68,6 +70,17 @@ pub(crate) fn half_plane(axis: usize, edge: f64, above: bool) -> Mask {
         shapes: vec![],
         half_planes: vec![HalfPlane { axis, edge, above }],
     }
+}
+
+/// Builds an opaque screen with one hole.
+pub(crate) fn aperture(shape: Shape) -> Mask {
+    Mask::Aperture(Hole::Shape(shape))
+}
+
+/// Builds an opaque screen with a convex polygon as its hole.
+pub(crate) fn polygon_aperture(corners: &[[f64; 2]]) -> Mask {
+    let polygon = ConvexPolygon::new(corners.to_vec()).unwrap();
+    Mask::Aperture(Hole::Polygon(polygon))
 }
 
 pub(crate) fn grating(axis: usize, frequency: f64, phase: f64) -> Mask {

@@ -2,7 +2,7 @@
 
 use crate::geometry::Matrix;
 use crate::obstacle::{Obstacle, ObstacleForm};
-use etendue_field::{Grating, Mask, Shape, tidy};
+use etendue_field::{Grating, Hole, Mask, Shape, tidy};
 
 /// Formats a number to six decimals, without trailing zeros.
 pub(crate) fn number(x: f64) -> String {
@@ -47,6 +47,16 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
         } => {
             let opaque = opaque(shapes, half_planes.len());
             format!("multiply  by the visibility of {named}{opaque}")
+        }
+        Mask::Aperture(hole) => {
+            let hole = match hole {
+                Hole::Shape(Shape::Rectangle(_)) => "a rectangle".to_owned(),
+                Hole::Shape(Shape::Disc(_)) => "a disc".to_owned(),
+                Hole::Polygon(polygon) => {
+                    format!("a polygon of {} corners", polygon.corners().len())
+                }
+            };
+            format!("multiply  by the hole of {named}{hole}, opaque elsewhere")
         }
         Mask::Grating(grating) => {
             let formula = formula(grating, ["x", "y"]);

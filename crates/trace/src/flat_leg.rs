@@ -2,12 +2,13 @@
 //! photons at a time.
 
 use crate::grid::Grid;
-use crate::lanes::{inside, lanes};
+use crate::lanes::{inside, inside_polygon, lanes};
 use crate::mesh::BlockerMesh;
 use crate::mesh_order::meet_mesh;
 use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
-use etendue_field::{Crossing, HalfPlane, Ledger, Shape, Side, TwoPlane};
+use crate::unbounded::Unbounded;
+use etendue_field::{Crossing, Hole, Ledger, Shape, Side, TwoPlane};
 use fearless_simd::{Level, dispatch};
 
 /// A first leg on which all planes lie across the leg and all obstacles lie across the leg or are
@@ -38,7 +39,7 @@ pub(crate) struct FlatObstacle {
 pub(crate) enum Outline {
     Shape(Shape),
     Grid(Box<Grid>),
-    HalfPlane(HalfPlane),
+    Unbounded(Unbounded),
     Mesh(Box<BlockerMesh>),
 }
 
@@ -189,7 +190,7 @@ impl FlatLeg {
             let is_inside = match &obstacle.outline {
                 Outline::Shape(shape) => inside(shape, [&x, &y]),
                 Outline::Grid(grid) => grid.contains_each([&x, &y]),
-                Outline::HalfPlane(half_plane) => lanes(|i| half_plane.contains(x[i], y[i])),
+                Outline::Unbounded(unbounded) => covered(unbounded, [&x, &y]),
                 Outline::Mesh(_) => continue,
             };
             hits = lanes(|i| {
@@ -217,6 +218,17 @@ impl FlatObstacle {
     fn is_beyond(&self, other: &Self) -> bool {
         self.nearest > other.distance
     }
+}
+
+/// Checks which points lie in an unbounded blocker.
+#[inline(always)]
+fn covered<const N: usize>(unbounded: &Unbounded, [x, y]: [&[f64; N]; 2]) -> [bool; N] {
+    let is_open = match unbounded {
+        Unbounded::HalfPlane(half_plane) => return lanes(|i| half_plane.contains(x[i], y[i])),
+        Unbounded::Aperture(Hole::Shape(shape)) => inside(shape, [x, y]),
+        Unbounded::Aperture(Hole::Polygon(polygon)) => inside_polygon(polygon, [x, y]),
+    };
+    lanes(|i| !is_open[i])
 }
 
 impl FlatPlane {

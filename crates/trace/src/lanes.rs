@@ -1,6 +1,6 @@
 //! Computations for several photons at once, in loops that the compiler can vectorise.
 
-use etendue_field::Shape;
+use etendue_field::{ConvexPolygon, Shape};
 
 /// Returns an array whose element at each index is the value that `f` returns for the index.
 /// `std::array::from_fn` would call its function separately for each index.
@@ -20,4 +20,13 @@ pub(crate) fn inside<const N: usize>(shape: &Shape, [x, y]: [&[f64; N]; 2]) -> [
         Shape::Rectangle(rectangle) => lanes(|i| rectangle.contains(x[i], y[i])),
         Shape::Disc(disc) => lanes(|i| disc.contains(x[i], y[i])),
     }
+}
+
+/// Checks which points lie in a polygon.
+#[inline(always)]
+pub(crate) fn inside_polygon<const N: usize>(
+    polygon: &ConvexPolygon,
+    [x, y]: [&[f64; N]; 2],
+) -> [bool; N] {
+    lanes(|i| polygon.contains(x[i], y[i]))
 }

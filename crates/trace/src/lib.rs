@@ -40,6 +40,7 @@ mod sampling;
 mod scatter;
 mod sky;
 mod tracer;
+mod unbounded;
 mod world;
 
 pub use backward::{Backward, LightNotFound, finds};

@@ -6,7 +6,8 @@ use crate::line::{direction, start};
 use crate::mesh::BlockerMesh;
 use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveHit, PrimitiveSet, TaggedPrimitive};
-use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
+use crate::unbounded::Unbounded;
+use etendue_field::{Frame, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -54,13 +55,12 @@ impl HitKind {
 #[derive(Debug)]
 pub(crate) struct Obstacles {
     primitives: PrimitiveSet<HitKind>,
-    /// Unbounded blockers.
-    half_planes: Vec<Layer<HalfPlane>>,
+    unbounded: Vec<Layer<Unbounded>>,
     semi_transparent: Vec<Layer<Mask>>,
 }
 
-/// A blocker that extends without bound in its plane: a half-plane or a semi-transparent mask.
-#[derive(Clone, Copy, Debug)]
+/// A blocker that extends without bound in its plane: an opaque blocker or a semi-transparent mask.
+#[derive(Clone, Debug)]
 struct Layer<T> {
     distance: f64,
     /// The frame of the leg; `None` for the first leg.
@@ -95,7 +95,7 @@ impl Obstacles {
     )]
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut primitives = Vec::new();
-        let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
+        let (mut unbounded, mut semi_transparent) = (Vec::new(), Vec::new());
         let around = Around(leg.frame);
         let later = leg.leaves.map(|_| leg.frame);
         for layer in &scene.blockers {
@@ -103,7 +103,7 @@ impl Obstacles {
             match &layer.mask {
                 Mask::Opaque {
                     shapes,
-                    half_planes: halves,
+                    half_planes,
                 } => {
                     primitives.extend(around.layer(distance, shapes).into_iter().map(
                         |primitive| {
@@ -111,12 +111,17 @@ impl Obstacles {
                             TaggedPrimitive { primitive, tag }
                         },
                     ));
-                    half_planes.extend(halves.iter().map(|half| Layer {
+                    unbounded.extend(half_planes.iter().map(|half| Layer {
                         distance,
                         leg: later,
-                        what: *half,
+                        what: Unbounded::HalfPlane(*half),
                     }));
                 }
+                Mask::Aperture(hole) => unbounded.push(Layer {
+                    distance,
+                    leg: later,
+                    what: Unbounded::Aperture(hole.clone()),
+                }),
                 mask => semi_transparent.push(Layer {
                     distance,
                     leg: later,
@@ -166,7 +171,7 @@ impl Obstacles {
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),
-            half_planes,
+            unbounded,
             semi_transparent,
         }
     }
@@ -175,11 +180,11 @@ impl Obstacles {
     /// are meshes at which light ends. `end` is the object that ends the leg. Returns `None` for any
     /// other obstacles, and for surfaces that do not scatter light by Lambert's law.
     pub(crate) fn flat(&self, end: Option<Object>) -> Option<Vec<FlatObstacle>> {
-        let half_planes = self.half_planes.iter().map(|layer| {
+        let unbounded = self.unbounded.iter().map(|layer| {
             layer.leg.is_none().then_some(FlatObstacle {
                 distance: layer.distance,
                 nearest: layer.distance,
-                outline: Outline::HalfPlane(layer.what),
+                outline: Outline::Unbounded(layer.what.clone()),
                 end: PhotonEnd::ABSORBED,
             })
         });
@@ -214,7 +219,7 @@ impl Obstacles {
                 end,
             })
         });
-        let all: Option<Vec<FlatObstacle>> = half_planes.chain(primitives).collect();
+        let all: Option<Vec<FlatObstacle>> = unbounded.chain(primitives).collect();
         let all = all.filter(|_| self.semi_transparent.is_empty());
         all.map(|all| all.into_iter().filter(|one| one.distance > 0.0).collect())
     }
@@ -230,16 +235,16 @@ impl Obstacles {
         let first = self.primitives.closest_hit(ray, from);
         let mut nearest = first.map_or(f64::INFINITY, |(distance, _)| distance);
         let mut blocked = false;
-        for half_plane in &self.half_planes {
-            let (distance, [x, y]) = half_plane.crossing(ray);
-            let meets = distance > from && distance < nearest && half_plane.what.contains(x, y);
+        for layer in &self.unbounded {
+            let (distance, [x, y]) = layer.crossing(ray);
+            let meets = distance > from && distance < nearest && layer.what.contains(x, y);
             if meets {
                 nearest = distance;
                 blocked = true;
             }
         }
         if blocked {
-            Some((nearest, HALF_PLANE.met(0)))
+            Some((nearest, UNBOUNDED.met(0)))
         } else {
             first
         }
@@ -298,17 +303,17 @@ impl Obstacles {
         side: Side,
         ignored: impl Fn(&HitKind) -> bool,
     ) -> f64 {
-        let halves = || {
-            self.half_planes.iter().any(|half_plane| {
-                let (at, [x, y]) = half_plane.crossing(ray);
-                at > from && is_passed(at, distance, side) && half_plane.what.contains(x, y)
+        let beyond_bounds = || {
+            self.unbounded.iter().any(|layer| {
+                let (at, [x, y]) = layer.crossing(ray);
+                at > from && is_passed(at, distance, side) && layer.what.contains(x, y)
             })
         };
         let inclusive = side == Side::After;
         if self
             .primitives
             .is_occluded(ray, from, distance, inclusive, ignored)
-            || halves()
+            || beyond_bounds()
         {
             return 0.0;
         }
@@ -319,8 +324,8 @@ impl Obstacles {
 /// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
-/// If a ray hits a half-plane, this primitive takes the place of the half-plane.
-static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
+/// If a ray hits an unbounded blocker, this primitive takes the place of the blocker.
+static UNBOUNDED: TaggedPrimitive<HitKind> = TaggedPrimitive {
     primitive: Primitive::Flat {
         distance: 0.0,
         shape: Shape::Rectangle(Rectangle {

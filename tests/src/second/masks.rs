@@ -33,6 +33,12 @@ const BARS: &[&str] = &[
     "as wide as a pitch",
     "from the central ray",
 ];
+const HOLE: &[&str] = &[
+    "x and y swapped",
+    "opaque inside",
+    "from the central ray",
+    "size off by a tenth",
+];
 const SLIDE: &[&str] = &["widths swapped", "axes swapped", "no π"];
 const WINDOW: &[&str] = &[
     "cosine not squared",
@@ -55,6 +61,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
         check("mask of shapes", SHAPES, exact, shapes),
         check("mask of squares", SQUARES, exact, squares),
         check("mask of bars", BARS, exact, bars),
+        check("mask of an aperture", HOLE, exact, aperture),
         check("mask of a grating", GRATING, angle, masked_by_grating),
         check("slide of a projector", SLIDE, slide, slide_of_projector),
         check("window", WINDOW, slide, window),
@@ -198,6 +205,72 @@ fn bars(dice: &mut Dice, fault: &str) -> f64 {
         let first = -0.5 * (count as f64 - 1.0) * pitch;
         let is_in = |i: usize| (at - first - i as f64 * pitch).abs() <= 0.5 * width;
         if (0..count).any(is_in) { 0.0 } else { 1.0 }
+    })
+}
+
+/// Checks apertures. A point is in a polygon if a line from the point to the right crosses its
+/// edges an odd number of times.
+fn aperture(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let middle = [between(dice, -0.3, 0.3), between(dice, -0.3, 0.3)];
+    let size = [between(dice, 0.4, 1.6), between(dice, 0.4, 1.6)];
+    let count = 3 + dice.below(6);
+    let corners: Vec<[f64; 2]> = (0..count)
+        .map(|i| {
+            let angle = 2.0 * PI * (i as f64 + between(dice, 0.0, 0.6)) / count as f64;
+            let (sin, cos) = angle.sin_cos();
+            [
+                middle[0] + 0.5 * size[0] * cos,
+                middle[1] + 0.5 * size[1] * sin,
+            ]
+        })
+        .collect();
+    let kind = dice.below(3);
+    let hole = match kind {
+        0 => format!(
+            "Disc(center: {}, radius: {:?})",
+            pair(middle),
+            0.5 * size[0]
+        ),
+        1 => format!("Rectangle(center: {}, size: {})", pair(middle), pair(size)),
+        _ => {
+            let corners: Vec<String> = corners.iter().map(|corner| pair(*corner)).collect();
+            format!("Polygon(corners: [{}])", corners.join(", "))
+        }
+    };
+    world.blockers = format!(
+        "Aperture(name: \"b\", center: {}, hole: {hole})",
+        triple(origin)
+    );
+    let scene = world.scene(Path::new("."));
+    against(dice, &scene, center, |at| {
+        let [x, y] = match fault {
+            "x and y swapped" => [at[1], at[0]],
+            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
+            _ => at,
+        };
+        let factor = if fault == "size off by a tenth" {
+            1.1
+        } else {
+            1.0
+        };
+        let [x, y] = [(x - middle[0]) / factor, (y - middle[1]) / factor];
+        let is_inside = match kind {
+            0 => x.hypot(y) <= 0.5 * size[0],
+            1 => x.abs() <= 0.5 * size[0] && y.abs() <= 0.5 * size[1],
+            _ => {
+                let crossed = (0..count).filter(|i| {
+                    let [a, b] = [corners[*i], corners[(i + 1) % count]]
+                        .map(|p| [p[0] - middle[0], p[1] - middle[1]]);
+                    (a[1] > y) != (b[1] > y)
+                        && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x
+                });
+                crossed.count() % 2 == 1
+            }
+        };
+        let is_open = is_inside != (fault == "opaque inside");
+        if is_open { 1.0 } else { 0.0 }
     })
 }
 

@@ -3,7 +3,7 @@
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
 use super::pictures::{mask, sheet};
-use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, ShapeFile};
+use etendue_scene::{AxisName, BlockersFile, HalfName, HoleFile, LightFile, MeshSource, ShapeFile};
 use glam::DVec3;
 use std::io;
 
@@ -59,6 +59,11 @@ fn terms(layer: &BlockersFile) -> f64 {
             };
             shapes.iter().map(strips).sum()
         }
+        BlockersFile::Aperture {
+            hole: HoleFile::Disc { .. },
+            ..
+        } => STRIPS,
+        BlockersFile::Aperture { .. } => 1.0,
         BlockersFile::Grating { .. } => 3.0,
         BlockersFile::Mesh { .. } => 1.0,
     }
@@ -71,7 +76,7 @@ fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<Blocke
         [0.0; 2]
     };
     let center = draw.place(DVec3::new(aside[0], aside[1], distance));
-    Ok(match draw.below(14) {
+    Ok(match draw.below(16) {
         0..=2 => squares(draw, name, center),
         3 | 4 => BlockersFile::Shapes {
             name,
@@ -104,6 +109,11 @@ fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<Blocke
             center,
             file: mask(draw)?,
             size: [(); 2].map(|()| draw.length([0.2, 1.0], [1e-4, 50.0])),
+        },
+        13 | 14 => BlockersFile::Aperture {
+            name,
+            center,
+            hole: hole(draw),
         },
         _ => mesh(draw, name, center, distance)?,
     })
@@ -143,6 +153,34 @@ fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
         }
     };
     (0..count).map(|i| shape(draw, i)).collect()
+}
+
+/// Draws the hole of an aperture. A polygon has its corners on an ellipse around the central ray or
+/// beside it.
+fn hole(draw: &mut SceneDraw) -> HoleFile {
+    let center = [(); 2].map(|()| draw.unit * draw.between(-0.1, 0.1));
+    let size = [(); 2].map(|()| draw.length([0.1, 0.6], [1e-4, 20.0]));
+    match draw.below(4) {
+        0 => HoleFile::Disc {
+            center,
+            radius: 0.5 * size[0],
+        },
+        1 => HoleFile::Rectangle { center, size },
+        _ => {
+            let count = draw.whole(3, 12);
+            let corner = |i: u32| {
+                // Corners keep apart, so no three of them lie on a line up to rounding.
+                let part = f64::from(i) + draw.between(0.0, 0.7);
+                let (sin, cos) = libm::sincos(std::f64::consts::TAU * part / f64::from(count));
+                [
+                    center[0] + 0.5 * size[0] * cos,
+                    center[1] + 0.5 * size[1] * sin,
+                ]
+            };
+            let corners = (0..count).map(corner).collect();
+            HoleFile::Polygon { corners }
+        }
+    }
 }
 
 /// Draws one half-plane, or two half-planes with a slit between them, which is occasionally very

@@ -35,6 +35,8 @@ pub(super) enum What {
     Shape { layer: usize, shape: usize },
     /// A half-plane of a layer.
     HalfPlane { layer: usize, half: usize },
+    /// The opaque part of an aperture.
+    Aperture { layer: usize },
     /// A grating, which has no edge.
     Grating { layer: usize },
     /// A surface of the path, by its index among the objects of the surroundings.
@@ -66,6 +68,7 @@ impl Suspect {
         match self.what {
             What::Shape { layer: index, .. }
             | What::HalfPlane { layer: index, .. }
+            | What::Aperture { layer: index }
             | What::Grating { layer: index } => Meets::Layer {
                 index,
                 leg: self.leg,
@@ -94,6 +97,12 @@ impl Suspect {
                 };
                 let shape = &shapes[shape];
                 (layer, &|at| outside_shape(shape, at))
+            }
+            What::Aperture { layer } => {
+                let Mask::Aperture(hole) = &around.scene.blockers[layer].mask else {
+                    return f64::INFINITY;
+                };
+                (layer, &|at| hole.clearance(at.x, at.y))
             }
             What::HalfPlane { layer, half } => {
                 let Mask::Opaque { half_planes, .. } = &around.scene.blockers[layer].mask else {
@@ -133,12 +142,13 @@ fn of_layer(
     paths: &[&[PathPiece]],
     leg: usize,
 ) -> Vec<What> {
-    let Mask::Opaque {
-        shapes,
-        half_planes,
-    } = &around.scene.blockers[layer].mask
-    else {
-        return vec![What::Grating { layer }];
+    let (shapes, half_planes) = match &around.scene.blockers[layer].mask {
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => (shapes, half_planes),
+        Mask::Grating(_) => return vec![What::Grating { layer }],
+        Mask::Aperture(_) => return vec![What::Aperture { layer }],
     };
     let mut nearest: Vec<usize> = (0..shapes.len()).collect();
     if shapes.len() > MAX_SHAPES {

@@ -128,6 +128,10 @@ impl CuttingPlane<'_> {
             shapes.chain(halves.map(|half| half.edge))
         });
         let black = scene.meshes.iter().filter(|mesh| mesh.is_black());
+        let holes = scene.blockers.iter().filter_map(|layer| match &layer.mask {
+            Mask::Aperture(hole) => Some(hole.bounds().extent(axis)),
+            _ => None,
+        });
         let corners = black.flat_map(|mesh| mesh.triangles.as_flattened());
         let windows = planes.iter().map(|plane| {
             let profile = [&plane.window.x, &plane.window.y][axis];
@@ -136,6 +140,7 @@ impl CuttingPlane<'_> {
         let reach = ends
             .chain(corners.map(|p| p[axis]))
             .chain(windows)
+            .chain(holes.flatten())
             .chain([light.start[1], light.end[1]]);
         1.12 * reach.map(f64::abs).fold(0.0, f64::max)
     }
@@ -253,6 +258,10 @@ impl CuttingPlane<'_> {
                 dashes
             }
             Mask::Grating(_) => vec![ENDLESS],
+            Mask::Aperture(hole) => match hole.chord(axis, 0.0) {
+                Some([low, high]) => vec![[f64::NEG_INFINITY, low], [high, f64::INFINITY]],
+                None => vec![ENDLESS],
+            },
         }
     }
 

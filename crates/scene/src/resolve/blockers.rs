@@ -5,7 +5,7 @@ use super::dark_rectangles::dark_rectangles;
 use super::jitter::jittered_squares;
 use super::overlap::{Thing, overlap};
 use crate::scene::BlockerLayer;
-use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
+use etendue_field::{Disc, Frame, Grating, HalfPlane, Hole, Mask, Rectangle, Shape, tidy};
 use etendue_scenefile::limits;
 use etendue_scenefile::number;
 use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
@@ -46,6 +46,7 @@ impl Resolver<'_> {
         | BlockersFile::Bars { name, center, .. }
         | BlockersFile::Picture { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
+        | BlockersFile::Aperture { name, center, .. }
         | BlockersFile::Grating { name, center, .. }) = blockers
         else {
             return None;
@@ -89,6 +90,10 @@ impl Resolver<'_> {
                 Some((opaque(shapes, Vec::new()), None))
             }
             BlockersFile::Shapes { shapes, .. } => Some((self.shapes(of, shapes, center), None)),
+            BlockersFile::Aperture { hole, .. } => {
+                let hole = self.hole(&format!("{of}.hole"), hole)?;
+                Some((Mask::Aperture(hole.mapped(1.0, center)), None))
+            }
             BlockersFile::Grating {
                 axis,
                 frequency,
@@ -270,10 +275,12 @@ impl Resolver<'_> {
                 half_planes,
             } => shapes.iter().map(of_shape).sum::<f64>() + half_planes.len() as f64,
             Mask::Grating(_) => 3.0,
+            Mask::Aperture(Hole::Shape(shape)) => of_shape(shape),
+            Mask::Aperture(Hole::Polygon(_)) => 1.0,
         };
         let shapes = layers.iter().map(|layer| match &layer.mask {
             Mask::Opaque { shapes, .. } => shapes.len(),
-            Mask::Grating(_) => 0,
+            Mask::Grating(_) | Mask::Aperture(_) => 0,
         });
         let (shapes, most) = (shapes.sum::<usize>(), limits::SHAPES);
         self.at_most(

@@ -90,14 +90,13 @@ fn bound(node: &mut Value, least: f64, most: f64) {
     node["maximum"] = most.into();
 }
 
-/// Adds an attribute to a number, or to each number in a list.
+/// Adds an attribute to a number, or to each number in a list or in a list of lists.
 fn numbers(schema: &mut Schema, tell: impl FnOnce(&mut Value)) {
-    let each = if schema.get("items").is_some() {
-        "/items"
-    } else {
-        ""
-    };
-    if let Some(node) = schema.pointer_mut(each) {
+    let mut each = String::new();
+    while schema.pointer(&format!("{each}/items")).is_some() {
+        each += "/items";
+    }
+    if let Some(node) = schema.pointer_mut(&each) {
         tell(node);
     }
 }

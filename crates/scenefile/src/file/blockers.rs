@@ -91,6 +91,17 @@ pub enum BlockersFile {
         #[schemars(transform = told("a list of shapes", "[Disc(center: (0, 0), radius: 0.1)]"))]
         shapes: Vec<ShapeFile>,
     },
+    /// An opaque screen over the whole plane, with one hole.
+    Aperture {
+        /// Name.
+        #[schemars(transform = name_of_blockers)]
+        name: String,
+        /// Origin of the hole's X and Y coordinates, in world coordinates.
+        #[schemars(transform = place)]
+        center: [f64; 3],
+        /// The hole; light passes only through it.
+        hole: HoleFile,
+    },
     /// A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), where t is x or y.
     Grating {
         /// Name.
@@ -139,6 +150,7 @@ impl BlockersFile {
             | Self::Bars { name, .. }
             | Self::Picture { name, .. }
             | Self::Shapes { name, .. }
+            | Self::Aperture { name, .. }
             | Self::Grating { name, .. }
             | Self::Mesh { name, .. } => name,
         }
@@ -177,6 +189,37 @@ pub enum ShapeFile {
         edge: f64,
         /// The side that is opaque.
         opaque: HalfName,
+    },
+}
+
+/// The hole of an aperture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename = "Hole", deny_unknown_fields)]
+#[schemars(transform = told("a hole", "Disc(center: (0, 0), radius: 0.1)"))]
+pub enum HoleFile {
+    /// A disc.
+    Disc {
+        /// Centre along X and Y.
+        #[schemars(transform = told("a place along X and Y, in metres", "(0.1, 0.2)"), transform = any)]
+        center: [f64; 2],
+        /// Radius.
+        #[schemars(transform = length)]
+        radius: f64,
+    },
+    /// A rectangle with edges along X and Y.
+    Rectangle {
+        /// Centre along X and Y.
+        #[schemars(transform = told("a place along X and Y, in metres", "(0.1, 0.2)"), transform = any)]
+        center: [f64; 2],
+        /// Side lengths along X and Y.
+        #[schemars(transform = sides)]
+        size: [f64; 2],
+    },
+    /// A convex polygon.
+    Polygon {
+        /// The 3 to 32 corners along X and Y, in order around the polygon.
+        #[schemars(transform = told("places along X and Y, in metres", "[(0.1, 0), (-0.1, 0.1), (-0.1, -0.1)]"), transform = any)]
+        corners: Vec<[f64; 2]>,
     },
 }
 

@@ -52,13 +52,23 @@ pub fn grating(grating: &Grating) -> f64 {
 /// Returns the covariance of a mask, in the coordinates of its own plane. An opaque mask is
 /// treated as an opening about the central ray. The opening is the largest disc about the central
 /// ray that contains no shape; half-planes narrow the opening along their axis. (The course notes
-/// of Belcour 2016 use the largest unoccluded disc.) Returns `None` if the mask blocks the central
+/// of Belcour 2016 use the largest unoccluded disc.) The hole of an aperture is treated as a
+/// Gaussian with the covariance of the hole's area. Returns `None` if the mask blocks the central
 /// ray or has an edge on the central ray.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
     match mask {
         Mask::Grating(lines) => factor[lines.axis][lines.axis] = grating(lines),
+        Mask::Aperture(hole) => {
+            if hole.clearance(0.0, 0.0) <= 0.0 {
+                return None;
+            }
+            let [[a, b], [_, d]] = hole.moments().covariance;
+            let scale = 8.0 * PI * PI * (a * d - b * b);
+            (factor[0][0], factor[1][1]) = (d / scale, a / scale);
+            (factor[0][1], factor[1][0]) = (-b / scale, -b / scale);
+        }
         Mask::Opaque {
             shapes,
             half_planes,

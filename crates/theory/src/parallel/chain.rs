@@ -1,6 +1,6 @@
 //! Chains: a light and the operators on its light field along the path.
 
-use etendue_field::{Light, Mask, Shape};
+use etendue_field::{Hole, Light, Mask, Shape};
 
 /// The light, which is in a plane perpendicular to the central ray.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,8 @@ pub enum Operator {
     },
     /// A mask in the plane that the light has reached (Durand et al. 2005, Eq. 4). An opaque mask
     /// multiplies radiance by 1 minus the sum of its shapes and half-planes, which must not overlap
-    /// each other. A grating multiplies radiance by a cosine pattern.
+    /// each other. An aperture multiplies radiance by 1 in its hole and by 0 elsewhere. A grating
+    /// multiplies radiance by a cosine pattern.
     Visibility {
         /// Name of the mask.
         name: String,
@@ -182,15 +183,24 @@ impl ChainSegment<'_> {
     }
 
     /// Returns the shapes in each plane that has edges: first the shapes of the light, then the
-    /// shapes of each opaque mask.
+    /// shapes of each opaque mask, or the hole of each aperture.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),
-            _ => None,
+            Mask::Aperture(Hole::Shape(shape)) => Some(std::slice::from_ref(shape)),
+            Mask::Aperture(Hole::Polygon(_)) => Some(&[]),
+            Mask::Grating(_) => None,
         });
         std::iter::once(self.light_shapes())
             .chain(of_masks)
             .collect()
+    }
+
+    /// Checks whether any mask is an aperture whose hole is a polygon. Such a chain has no closed
+    /// form.
+    pub(crate) fn has_polygons(&self) -> bool {
+        let mut layers = self.layers.iter();
+        layers.any(|layer| matches!(layer.mask, Mask::Aperture(Hole::Polygon(_))))
     }
 
     /// Checks whether the light or any mask contains a disc.

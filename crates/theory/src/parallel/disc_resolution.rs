@@ -25,7 +25,7 @@ const MOST_TERMS: f64 = 3e5;
 const MOST_STRIPS: f64 = 64.0;
 
 /// The methods by which the discs of a chain are split. The first method is for the discs of the
-/// light, and the others are for the discs of each opaque mask.
+/// light, and the others are for the discs of each opaque mask or aperture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
@@ -149,7 +149,7 @@ struct EdgeBandwidth {
     /// The half-width of the window's spectrum. The window blurs |Ωx| and |Ωu| by this half-width.
     blur: [f64; 2],
     /// Distances of the planes that have edges: first of the light's plane, then of each opaque
-    /// mask.
+    /// mask or aperture.
     planes: Vec<f64>,
 }
 
@@ -168,7 +168,7 @@ impl EdgeBandwidth {
                 rates.frequency[0] += grating.frequency.abs();
                 rates.frequency[1] += (grating.frequency * layer.distance).abs();
             }
-            if matches!(layer.mask, Mask::Opaque { .. }) {
+            if !matches!(layer.mask, Mask::Grating(_)) {
                 rates.planes.push(layer.distance);
             }
         }

@@ -6,7 +6,7 @@ use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::SectionWave;
 use crate::parallel::weighted_rectangle::WeightedRectangle;
-use etendue_field::{Complex, Mask, Profile, Window};
+use etendue_field::{Complex, HalfPlane, Hole, Mask, Profile, Shape, Window};
 use std::collections::HashMap;
 
 /// Polygons with an area below this threshold, in units of the window's half-widths, are dropped,
@@ -68,7 +68,7 @@ pub(crate) struct SectionColumns {
 /// (docs/theory.md (4) and (5d)).
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v).
-/// The product source · Π_layers (1 − Σ blockers) is therefore a signed sum of products of convex
+/// The product source · Π_layers (1 − Σ blockers), with the hole as the factor of an aperture, is therefore a signed sum of products of convex
 /// polygons. All other factors are sums of products of a wave of (x, u) and a wave of (y, v).
 #[derive(Debug)]
 pub(crate) struct Expansion {
@@ -215,15 +215,19 @@ impl Expansion {
         }
         self.shine(path, fineness[0]);
         let layers = path.layers.iter();
-        let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
-        for (layer, &discs) in opaque.zip(&fineness[1..]) {
+        let with_edges = layers.filter(|layer| !matches!(layer.mask, Mask::Grating(_)));
+        for (layer, &discs) in with_edges.zip(&fineness[1..]) {
             let patches = patches(layer.mask, discs);
             // Every pair of a term and a rectangle is tested, although only few pairs may overlap.
             if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
             {
                 return false;
             }
-            self.block(&patches, layer.distance);
+            if let Mask::Aperture(_) = layer.mask {
+                self.terms = self.inside(&patches, layer.distance);
+            } else {
+                self.block(&patches, layer.distance);
+            }
             let polygons = self.sections.each_ref().map(|s| s.polygons.len());
             if self.terms.len() > most || polygons.iter().any(|n| *n > most) {
                 return false;
@@ -363,14 +367,20 @@ fn products(
     slope.parts.iter().map(product).collect()
 }
 
-/// Returns the rectangles of an opaque mask. The discs of the mask are split by the given method.
+/// Returns the rectangles of an opaque mask, or the rectangles of the hole of an aperture. Discs are
+/// split by the given method.
+///
+/// # Panics
+/// Panics if the hole is a polygon; nets of rays predict light behind such an aperture.
 fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
-    let Mask::Opaque {
-        shapes,
-        half_planes,
-    } = mask
-    else {
-        return Vec::new();
+    let (shapes, half_planes): (&[Shape], &[HalfPlane]) = match mask {
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => (shapes, half_planes),
+        Mask::Aperture(Hole::Shape(shape)) => (std::slice::from_ref(shape), &[]),
+        Mask::Aperture(Hole::Polygon(_)) => panic!("a polygon has no closed form here"),
+        Mask::Grating(_) => return Vec::new(),
     };
     let shapes = shapes.iter().flat_map(|s| patches_of(s, discs));
     shapes

@@ -79,7 +79,7 @@ impl Harmonics {
         folded: Option<Assignment>,
     ) -> Option<Self> {
         let path: ChainSegment<'_> = chain.path();
-        if path.receiver().is_some() {
+        if path.receiver().is_some() || path.has_polygons() {
             return None;
         }
         // A spline of order 3 multiplies an alias by less than 1/27 if the alias comes from beyond

@@ -111,6 +111,7 @@ impl PlaneImage {
                     .map(|half| self.of_half_plane(half))
                     .collect(),
             },
+            Mask::Aperture(hole) => Mask::Aperture(hole.mapped(self.scale, [0.0; 2])),
             Mask::Grating(grating) => Mask::Grating(Grating {
                 frequency: grating.frequency / self.scale,
                 ..*grating

@@ -4,7 +4,7 @@ use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
-use crate::parameter::{New, Parameter, resize, size_word};
+use crate::parameter::{New, Parameter, hole_word, resize, resize_hole, size_word};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
@@ -48,6 +48,9 @@ impl Model for Chain {
                     let shape = shapes.first();
                     shape.map(|shape| format!("{} of {name}", size_word(shape)))
                 }
+                (Parameter::BlockerSide(_), Mask::Aperture(hole)) => {
+                    Some(format!("{} of {name}", hole_word(hole)))
+                }
                 (Parameter::HalfPlaneEdge(_), _) => Some(format!("edge of {name}")),
                 (Parameter::GratingFrequency(_), _) => Some(format!("frequency of {name}")),
                 (Parameter::GratingPhase(_), _) => Some(format!("phase of {name}")),
@@ -68,6 +71,7 @@ impl Model for Chain {
                 (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) if !shapes.is_empty() => {
                     resize(shapes, new);
                 }
+                (Parameter::BlockerSide(_), Mask::Aperture(hole)) => resize_hole(hole, new),
                 (Parameter::HalfPlaneEdge(_), Mask::Opaque { half_planes, .. }) => {
                     let first = half_planes.first_mut()?;
                     first.edge = new(first.edge);
@@ -147,13 +151,16 @@ const MAX_BYTES: f64 = 1e9;
 impl Chain {
     /// Checks whether nets of rays replace the chain's closed form or quadrature. Nets are used if
     /// the closed form or quadrature takes longer than tracing the photons, or does not resolve a
-    /// pattern.
+    /// pattern, and behind apertures whose hole is a polygon.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {
         if self.given().is_some() {
             return false;
         }
         let path = self.path();
+        if path.has_polygons() {
+            return true;
+        }
         let work = work(self, window, grid, picture);
         let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
         let max_steps = if fits(&work_of_nets(grid, budget)) {
@@ -207,6 +214,7 @@ fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
             let edge = (!half_planes.is_empty()).then_some(Parameter::HalfPlaneEdge(index));
             side.into_iter().chain(edge).collect()
         }
+        Mask::Aperture(_) => vec![Parameter::BlockerSide(index)],
         Mask::Grating(_) => vec![
             Parameter::GratingFrequency(index),
             Parameter::GratingPhase(index),

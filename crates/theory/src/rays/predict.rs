@@ -296,9 +296,9 @@ fn summed(
         draw: &draw,
         window,
     };
-    let opaque = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Opaque { .. });
+    let has_edges = |(_, mask): &(f64, Mask)| !matches!(mask, Mask::Grating(_));
     let emission = system.emission();
-    let is_cut = system.layers.iter().any(opaque) || !system.obstacles.is_empty();
+    let is_cut = system.layers.iter().any(has_edges) || !system.obstacles.is_empty();
     let is_smooth = !system.light.has_extent() && !is_cut;
     let finder = Finder {
         field,

@@ -48,9 +48,18 @@ fn scene(seed: u64) -> Scene {
     }
     if seed.is_multiple_of(3) {
         blockers += r#"Mesh(
-            name: "star", center: (0.1, 0, 2.5),
+            name: "star", center: (0.1, 0, 3.5),
             mesh: Star(radius: 0.3, relief: 0.3, lobes: 3, rings: 12),
         ),"#;
+    }
+    let hole = [
+        "Disc(center: (0.25, 0), radius: 1.25)",
+        "Rectangle(center: (0.25, 0), size: (2, 1.5))",
+        "Polygon(corners: [(1.5, 0), (0.5, 1.25), (-1, 0.75), (-0.75, -1)])",
+    ];
+    if let Some(hole) = hole.get((seed % 4) as usize) {
+        blockers += &format!(r#"Aperture(name: "hole", center: (0, 0.5, 2.5), hole: {hole}),"#);
+        planes += r#"(name: "hole", at: After("hole")),"#;
     }
     let leaving = [r#"(name: "leaving", at: After("floor")),"#, ""][(seed % 2) as usize];
     let text = format!(

@@ -1,7 +1,9 @@
 //! Tests of the covariance of single factors, against finite differences.
 
 use crate::covariance::{cosine, grating, lobe, mask, profile, slope_cosine};
-use etendue_field::{Disc, Grating, HalfPlane, Lobe, Mask, Profile, Rectangle, Shape};
+use etendue_field::{
+    ConvexPolygon, Disc, Grating, HalfPlane, Hole, Lobe, Mask, Profile, Rectangle, Shape,
+};
 use std::f64::consts::PI;
 
 /// Returns ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
@@ -107,6 +109,42 @@ fn a_grating_has_the_variance_of_its_lines() {
     let factor = mask(&Mask::Grating(lines)).unwrap();
     is(factor[0][0], grating(&lines));
     assert!(factor[1][1].abs() < f64::MIN_POSITIVE);
+}
+
+#[test]
+fn a_hole_is_a_gaussian_of_its_covariance() {
+    let center = [0.1, -0.05];
+    let hole = |shape| mask(&Mask::Aperture(Hole::Shape(shape)));
+    let slit = Rectangle {
+        center,
+        size: [0.4, 0.6],
+    };
+    let slit = hole(Shape::Rectangle(slit)).unwrap();
+    // The variance of a coordinate in a slit of half-width h is h²/3.
+    is(slit[0][0], 3.0 / (8.0 * PI * PI * 0.04));
+    is(slit[1][1], 3.0 / (8.0 * PI * PI * 0.09));
+    // The variance of a coordinate in a disc of radius r is r²/4.
+    let round = hole(Shape::Disc(Disc {
+        center,
+        radius: 0.2,
+    }));
+    is(round.unwrap()[0][0], 1.0 / (2.0 * PI * PI * 0.04));
+    // A square of side √2 s stands on its corner after a turn by 45 degrees. Stretched along one
+    // diagonal by 2, it has the variances s²/3 · 4/2 and s²/3 · 1/2 along its diagonals.
+    let corners = [[0.4, 0.4], [-0.2, 0.2], [-0.4, -0.4], [0.2, -0.2]];
+    let polygon = ConvexPolygon::new(corners.to_vec()).unwrap();
+    let rhombus = mask(&Mask::Aperture(Hole::Polygon(polygon))).unwrap();
+    let along = |variance: f64| 1.0 / (8.0 * PI * PI * variance);
+    let (long, short) = (along(0.32 / 6.0), along(0.08 / 6.0));
+    is(rhombus[0][0] + rhombus[0][1], long);
+    is(rhombus[0][0] - rhombus[0][1], short);
+    is(rhombus[1][0] + rhombus[1][1], long);
+    // The central ray meets the screen.
+    let beside = Shape::Disc(Disc {
+        center: [0.3, 0.0],
+        radius: 0.2,
+    });
+    assert!(hole(beside).is_none());
 }
 
 #[test]

@@ -2,9 +2,13 @@
 //! are non-zero.
 
 use super::{FREQUENCIES, hann, zero};
+use crate::model::Over;
+use crate::nets::RayBudget;
 use crate::testing::*;
-use crate::{Chain, Model, Parameter, at};
-use etendue_field::{HalfPlane, Light, Mask};
+use crate::{Chain, Model, Operator, Parameter, at};
+use etendue_field::{
+    FrequencyAxis, HalfPlane, Light, Mask, ProjectionGrid, Rectangle, Shape, SliceGrid,
+};
 
 fn open() -> Chain {
     chain(0.2, &[(2.0, vec![])])
@@ -160,5 +164,80 @@ fn a_phase_is_a_place() {
         let sum = value(&half_turn) + value(&none);
         let open = value(&chain(0.3, &[(1.0, vec![])]));
         assert!((sum - open).norm() < 1e-14 * scale); // rounding
+    }
+}
+
+/// Tests that light through a hole and light past a blocker of the same shape add up to all light.
+#[test]
+fn a_hole_passes_what_its_shape_would_block() {
+    let wide = Shape::Rectangle(Rectangle {
+        center: [-0.05, 0.1],
+        size: [0.3, 0.2],
+    });
+    for shape in [wide, disc([0.03, -0.02], 0.12)] {
+        for light in [
+            lambertian(square([0.0, 0.0], 0.2)),
+            spot(disc([0.0, 0.1], 0.15), 3.0),
+        ] {
+            let behind = |mask| chain_of(light.clone(), [(1.3, mask), (0.7, None)]);
+            let open = behind(None);
+            let [hole, blocker] =
+                [aperture(shape), opaque(vec![shape])].map(|mask| behind(Some(mask)));
+            for k in FREQUENCIES {
+                let value = |chain: &Chain| at(chain, &hann(), k);
+                let difference = value(&hole) + value(&blocker) - value(&open);
+                // For the blocker and for the hole, discs are split into the same rectangles.
+                assert!(difference.norm() < 1e-12 * zero(&open), "{shape:?} {k:?}");
+            }
+            assert!(zero(&hole) > 0.05 * zero(&open) && zero(&blocker) > 0.05 * zero(&open));
+        }
+    }
+}
+
+/// Tests that nets of rays, which predict light behind a polygon, agree with the closed form of a
+/// rectangle, with and without a diffuse surface.
+#[test]
+fn polygons_are_predicted_by_nets() {
+    let rectangle = Rectangle {
+        center: [0.02, 0.01],
+        size: [0.2, 0.12],
+    };
+    let corners = [[0.12, 0.07], [0.12, -0.05], [-0.08, -0.05], [-0.08, 0.07]];
+    let axis = |half, spacing| FrequencyAxis { half, spacing };
+    let grid = SliceGrid {
+        azimuths: 3,
+        rho: axis(4, 1.0),
+        nu: axis(4, 1.0),
+    };
+    let window = hann();
+    let picture = ProjectionGrid::new(&window, 8);
+    let over: Over<'_> = (&window, &grid, &picture);
+    let budget = RayBudget {
+        nodes: 1e6,
+        error: 1e-3,
+    };
+    let light = lambertian(square([0.0, 0.0], 0.2));
+    let diffuse = |mut chain: Chain| {
+        let name = "floor".to_owned();
+        chain
+            .operators
+            .extend([cosine(), Operator::Diffuse { name, albedo: 0.5 }]);
+        chain
+    };
+    for ends in [false, true] {
+        let behind = |mask| {
+            let chain = chain_of(light.clone(), [(1.0, Some(mask)), (1.0, None)]);
+            if ends { diffuse(chain) } else { chain }
+        };
+        let exact = behind(aperture(Shape::Rectangle(rectangle)));
+        let polygon = behind(polygon_aperture(&corners));
+        assert!(!exact.is_sampled(over, budget) && polygon.is_sampled(over, budget));
+        let [exact, nets] = [exact, polygon].map(|chain| chain.predict(&[], over, budget));
+        let difference = nets.slices.relative_difference(&exact.slices);
+        // Three standard errors of nets, plus the error of the quadrature over the receiver.
+        assert!(
+            difference < 3e-3 + exact.error.unwrap_or(0.0),
+            "{difference}"
+        );
     }
 }

@@ -119,9 +119,7 @@ impl Receiver<'_> {
             let penumbra = self.width() * barrier.distance / beyond;
             match barrier.mask.grating() {
                 Some(grating) => is_told(1.0 / grating.frequency.abs()),
-                None => {
-                    penumbra > MIN_NODES * cell || barrier.shapes.narrowest().is_none_or(is_told)
-                }
+                None => penumbra > MIN_NODES * cell || barrier.narrowest().is_none_or(is_told),
             }
         })
     }

@@ -212,7 +212,7 @@ impl<'a> Receiver<'a> {
             return region.integral(density);
         };
         let before = barrier.distance;
-        let Some(open) = region.within(bundle.slopes(barrier.open, before)) else {
+        let Some(open) = region.open(bundle, barrier) else {
             return 0.0;
         };
         let mut stopped = 0.0;

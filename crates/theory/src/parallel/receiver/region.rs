@@ -1,7 +1,8 @@
 //! Sets of slopes: intersections of a rectangle and discs.
 
+use super::SlopeProjection;
 use super::density::ReceiverDensity;
-use crate::barrier::Bounds;
+use crate::barrier::{Barrier, Bounds};
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -67,6 +68,16 @@ impl ReceiverRegion {
                 region.discs.push(disc);
                 region.simplified()
             }
+        }
+    }
+
+    /// Returns the part of the region that the half-planes of a barrier, or the screen around its
+    /// hole, leave open. Returns `None` if this part is empty.
+    pub(super) fn open(&self, bundle: &SlopeProjection, barrier: &Barrier<'_>) -> Option<Self> {
+        let before = barrier.distance;
+        match barrier.disc_hole() {
+            Some(disc) => self.cut(&bundle.seen(disc, before)),
+            None => self.within(bundle.slopes(barrier.open, before)),
         }
     }
 

@@ -106,7 +106,7 @@ impl Receiver<'_> {
             return;
         };
         let before = barrier.distance;
-        let Some(open) = region.within(bundle.slopes(barrier.open, before)) else {
+        let Some(open) = region.open(bundle, barrier) else {
             return;
         };
         let place = bundle.positions(open.bounds(), before);

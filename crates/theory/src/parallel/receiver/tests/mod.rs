@@ -5,7 +5,7 @@ mod spectra;
 
 use super::Receiver;
 use crate::parallel::chain::{MaskLayer, ParallelEmitter};
-use crate::testing::{disc, opaque, square};
+use crate::testing::{aperture, disc, opaque, square};
 use etendue_field::{Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
 fn area(shape: Shape, exponent: f64) -> Light {

@@ -228,3 +228,27 @@ fn point_light() {
     let mean = receiver.cell([0.2, 0.0], [1e-3; 2]);
     assert!((mean / lit(0.2, 0.0) - 0.5).abs() < 1e-4); // the light varies this much over a cell
 }
+
+#[test]
+fn a_hole_passes_what_its_shape_would_block() {
+    let light = area(disc([0.05, 0.0], 0.5), 2.0);
+    let wide = rectangle([-0.1, 0.1], [0.5, 0.3]);
+    for shape in [wide, disc([0.1, -0.05], 0.3)] {
+        for light in [light.clone(), Light::Point { intensity: 1.7 }] {
+            let open = alone(light.clone(), 2.0);
+            let [hole, blocker] = [aperture(shape), opaque(vec![shape])].map(|mask| {
+                let bench = TestReceiver::new(light.clone(), vec![(1.0, mask)]);
+                assert!((bench.distance - open.distance).abs() < f64::EPSILON);
+                bench
+            });
+            for [x, y] in [[0.0, 0.0], [0.3, -0.4], [-0.9, 0.1]] {
+                let [hole, blocker, open] =
+                    [&hole, &blocker, &open].map(|bench| bench.receiver().irradiance(x, y));
+                assert!(
+                    (hole + blocker - open).abs() < CLOSE * open,
+                    "{hole} {blocker} {open}"
+                );
+            }
+        }
+    }
+}
