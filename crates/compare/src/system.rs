@@ -103,7 +103,8 @@ pub fn scattered(
 
 /// Returns the light, all masks and all surfaces of the path, and a plane behind some of these
 /// surfaces. Returns `None` if light comes from a ray file or has met a mesh. Also returns `None`
-/// if no surface has scattered the light, or if too many surfaces have.
+/// if no surface has scattered the light, if too many surfaces have, or if a mesh that light meets
+/// later has too many triangles.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -129,10 +130,19 @@ pub(crate) fn reflected(
     }
     let mut obstacles = beside_the_path(scene);
     obstacles.extend(scene.blockers.iter().map(|layer| in_the_way(layer, 0)));
-    let later = hits.iter().skip(surfaces.len());
-    let later =
-        later.filter(|hit| scene.path.ends_at(visited).map(|end| end.object) != Some(hit.object));
-    obstacles.extend(later.map(|hit| as_obstacle(scene, hit.object)));
+    let ends = scene.path.ends_at(visited).map(|end| end.object);
+    let later = hits.iter().skip(surfaces.len()).map(|hit| hit.object);
+    if later
+        .clone()
+        .any(|object| is_finer(scene, object, MAX_VISITED_TRIANGLES))
+    {
+        return None;
+    }
+    obstacles.extend(later.map(|object| Obstacle {
+        // The object that ends the last leg stops light only on the legs before.
+        until: (Some(object) == ends).then_some(visited),
+        ..as_obstacle(scene, object)
+    }));
     let system = reflections::ReflectionSystem {
         light: scene.light.clone(),
         obstacles,
@@ -230,6 +240,9 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
 /// this many triangles. With more triangles, the prediction would take too long.
 const MAX_TRIANGLES: usize = 500;
 
+/// The same limit for a mesh of the path, which rays rarely pass before they reach it.
+const MAX_VISITED_TRIANGLES: usize = 5000;
+
 /// Returns the objects that the path does not visit. They stop light.
 pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
@@ -240,7 +253,12 @@ pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
 }
 
 fn is_too_fine(scene: &Scene, object: Object) -> bool {
-    matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
+    is_finer(scene, object, MAX_TRIANGLES)
+}
+
+/// Checks whether an object is a mesh of more than `most` triangles.
+fn is_finer(scene: &Scene, object: Object, most: usize) -> bool {
+    matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > most)
 }
 
 /// Returns the obstacles beside the path. Rays are tested against these obstacles.
@@ -262,6 +280,7 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
                 ObstacleForm::Mesh(scene.meshes[i].triangles.iter().copied().collect())
             }
         },
+        until: None,
     }
 }
 
@@ -275,6 +294,7 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
             distance: layer.distance,
             mask: layer.mask.clone(),
         },
+        until: None,
     }
 }
 

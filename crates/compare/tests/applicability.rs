@@ -115,6 +115,34 @@ fn a_bowl_that_shadows_itself() {
     }
 }
 
+/// The mesh at the end of the path also stands before the glossy surface and stops light of the sky.
+#[test]
+fn a_mesh_that_ends_the_path_and_stops_light_before() {
+    let sky = "Environment(center: (0, 0, 0), map: Lobes([(from: (0.45, 0, -1), width: 0.5)]))";
+    let surfaces = r#"
+        Smooth(name: "gloss", center: (0, 0, 1.3), facing: (0, 0, -1), form: Plane,
+            aperture: 0.3, event: Reflects(brdf: (lobe: Beckmann(0.4), albedo: 1))),
+        Mesh(name: "end", center: (0.5, 0, 0.3),
+            mesh: Paraboloid(curvatures: (0.2, 0.2), half: 0.25, cells: 4), albedo: 0.5)"#;
+    let visits = r#""gloss", "end""#;
+    let scene = scene(sky, "", surfaces, visits, r#"Before("end")"#, 0.1);
+    let applies = of(&scene);
+    let steps = applies.steps(&scene, &scene.planes[0]);
+    let step = "multiply  by the visibility of end on the legs before it";
+    assert!(steps.iter().any(|found| found == step), "{steps:#?}");
+    let predicted = |applies: &Applicability| {
+        let prediction = Prediction::new(&scene, &scene.planes[0], applies);
+        prediction.slices.at_zero()
+    };
+    let mut open = applies.clone();
+    let Theory::Reflections(view) = &mut open.theory else {
+        panic!("{:?}", applies.theory)
+    };
+    view.system.obstacles.clear();
+    let [open, stopped] = [&open, &applies].map(predicted);
+    assert!(stopped < 0.98 * open, "{stopped} {open}"); // errors of nets are below 1 %
+}
+
 /// The second of two mirrors stands beside the first leg.
 #[test]
 fn a_mirror_that_is_met_out_of_turn() {

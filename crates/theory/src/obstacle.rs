@@ -12,6 +12,8 @@ pub struct Obstacle {
     pub name: String,
     /// The shape of the obstacle and its position.
     pub form: ObstacleForm,
+    /// The obstacle stops light only before the leg with this index; `None` stands for all legs.
+    pub until: Option<usize>,
 }
 
 /// The shape and position of an obstacle.
@@ -44,7 +46,7 @@ pub enum ObstacleForm {
 
 /// Obstacles prepared for many rays.
 #[derive(Debug)]
-pub(crate) struct PreparedObstacles<'a>(Vec<Ready<'a>>);
+pub(crate) struct PreparedObstacles<'a>(Vec<(Option<usize>, Ready<'a>)>);
 
 #[derive(Debug)]
 enum Ready<'a> {
@@ -64,7 +66,7 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
-        let ready = obstacles.iter().map(|obstacle| match &obstacle.form {
+        let ready = |form: &'a ObstacleForm| match form {
             ObstacleForm::Mask {
                 from,
                 distance,
@@ -73,8 +75,11 @@ impl<'a> PreparedObstacles<'a> {
             ObstacleForm::Rectangle { frame, size } => Ready::Rectangle(frame, *size),
             ObstacleForm::Patch(patch) => Ready::Patch(patch),
             ObstacleForm::Mesh(triangles) => around(triangles),
-        });
-        Self(ready.collect())
+        };
+        let each = obstacles
+            .iter()
+            .map(|obstacle| (obstacle.until, ready(&obstacle.form)));
+        Self(each.collect())
     }
 
     /// Returns the fraction of a ray's radiance that passes the obstacles over the first `length`
@@ -83,7 +88,8 @@ impl<'a> PreparedObstacles<'a> {
         let start = ROUNDING * ray.point.length();
         let is_between = |t: f64| start < t && t < length;
         let mut passes = 1.0;
-        for ready in &self.0 {
+        let is_there = |until: &Option<usize>| until.is_none_or(|until| leg < until);
+        for (_, ready) in self.0.iter().filter(|(until, _)| is_there(until)) {
             passes *= match ready {
                 Ready::Mask(from, barrier) if leg >= *from => {
                     let t = (barrier.distance - ray.point.z) / ray.direction.z;
@@ -190,12 +196,13 @@ mod tests {
         let obstacle = Obstacle {
             name: String::new(),
             form: form.clone(),
+            until: Some(3),
         };
         PreparedObstacles::new(&[obstacle]).passes(leg, ray, length) < 0.5
     }
 
     #[test]
-    fn a_mask_counts_on_later_legs() {
+    fn a_mask_counts_on_its_legs() {
         let shapes = vec![Shape::Rectangle(Rectangle {
             center: [0.1, 0.2],
             size: [0.1, 0.1],
@@ -211,6 +218,7 @@ mod tests {
         };
         assert!(stops(&from(1), 1, &RAY, 0.6) && !stops(&from(1), 0, &RAY, 0.6));
         assert!(stops(&from(0), 0, &RAY, 0.6) && !stops(&from(1), 1, &RAY, 0.4));
+        assert!(stops(&from(0), 2, &RAY, 0.6) && !stops(&from(0), 3, &RAY, 0.6));
     }
 
     /// Tests which rays are stopped by a square, by a bowl with its vertex on the square, and by

@@ -67,6 +67,9 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
 
 pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
     let name = &obstacle.name;
+    if obstacle.until.is_some() {
+        return format!("multiply  by the visibility of {name} on the legs before it");
+    }
     match obstacle.form {
         ObstacleForm::Mask { from: 1.., .. } => {
             format!("multiply  by the visibility of {name} on later legs")

@@ -173,6 +173,7 @@ fn one_surface_is_that_of_scattering() {
                 distance: 0.5,
                 mask,
             },
+            until: None,
         });
         let [one, other] = [
             predicted(&scattering, &plane, &window),
@@ -378,6 +379,7 @@ fn surfaces_and_masks_hide_later_legs() {
     open.obstacles.push(Obstacle {
         name: "card".into(),
         form: ObstacleForm::Patch(card),
+        until: None,
     });
     let stopped = predicted(&open, &plane, &window).slices.at_zero();
     // The card is 0.4 m wide and half-way to the wall, which is lit over more than a metre.
