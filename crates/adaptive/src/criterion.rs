@@ -215,7 +215,8 @@ mod tests {
             each: 1,
             seed: 0,
         };
-        let (visible, _) = Visible::new(&shader, &|_| {}, |_, _, _| ());
+        let look = |_, at| (shader.place(at), ());
+        let (visible, _) = Visible::new(camera.size, look, &|_| {});
         let slope = 0.4 / 801.0;
         let mut farthest: f64 = 0.0;
         for column in [400, 500, 600, 680] {

@@ -2,7 +2,7 @@
 //! picture.
 
 use crate::blockers::nearness;
-use crate::blue_noise::{PicturePoint, blue_noise};
+use crate::blue_noise::{PicturePoint, PixelPosition, blue_noise};
 use crate::criterion::{criterion, curvature, printed, shaded};
 use crate::cross::{WIDER, cross_errors, squared};
 use crate::cutoffs::Cutoffs;
@@ -13,8 +13,8 @@ use crate::metric::Metric;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct, reconstruct_pixels};
 use crate::shading::Shader;
 use crate::smooth::PlaceValues;
-use crate::visible::{FOUR, SeenPlace, Visible, at};
-use etendue_paths::{Paths, View};
+use crate::visible::{FOUR, Visible, at};
+use etendue_paths::Paths;
 use etendue_world::Camera;
 
 /// The distribution of shading samples.
@@ -140,12 +140,14 @@ pub fn render(
         seed: plan.seed,
     };
     let (visible, direct) = if plan.method == SampleMethod::Auto {
-        let of =
-            |index: usize, view: &View, place: &SeenPlace| direct(&shader, w, index, view, place);
-        Visible::new(&shader, progress, of)
+        let look = |index: usize, at: PixelPosition| {
+            let (place, view) = shader.look(at);
+            (place, direct(&shader, w, index, &view, &place))
+        };
+        Visible::new(camera.size, look, progress)
     } else {
-        let (visible, _) = Visible::new(&shader, progress, |_, _, _| ());
-        (visible, Vec::new())
+        let look = |_, at: PixelPosition| (shader.place(at), ());
+        (Visible::new(camera.size, look, progress).0, Vec::new())
     };
     let mut work = AdaptiveRun {
         visible: &visible,

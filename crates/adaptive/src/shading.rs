@@ -61,7 +61,13 @@ impl Shader<'_> {
 
     /// Finds what is visible at a position of the picture.
     pub(crate) fn place(&self, at: PixelPosition) -> SeenPlace {
-        SeenPlace::new(self.paths, self.cutoffs, &self.view(at))
+        self.look(at).0
+    }
+
+    /// Finds what is visible at a position of the picture, and returns it with the traced ray.
+    pub(crate) fn look(&self, at: PixelPosition) -> (SeenPlace, View) {
+        let view = self.view(at);
+        (SeenPlace::new(self.paths, self.cutoffs, &view), view)
     }
 
     /// Computes the direct light of base and lobe by one path, without the given texture factors.

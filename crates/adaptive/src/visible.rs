@@ -1,7 +1,6 @@
 //! The points visible in the pixels of a picture.
 
 use crate::cutoffs::Cutoffs;
-use crate::shading::Shader;
 use etendue_paths::{Paths, Reflects, SurfaceHit, View};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -103,21 +102,17 @@ impl SeenSurface {
 }
 
 impl Visible {
-    /// Finds the visible points; `progress` receives the number of finished pixels. Also returns
-    /// `of` each point, computed from the index of the point and from what is visible there.
+    /// Finds the visible points of a picture. `look` receives the index and the position of each
+    /// point, and returns what is visible there and another value; these values are also returned.
+    /// `progress` receives the number of finished pixels.
     pub(crate) fn new<T: Send>(
-        shader: &Shader<'_>,
+        size: [usize; 2],
+        look: impl Fn(usize, [f64; 2]) -> (SeenPlace, T) + Sync,
         progress: &(dyn Fn(u64) + Sync),
-        of: impl Fn(usize, &View, &SeenPlace) -> T + Sync,
     ) -> (Self, Vec<T>) {
-        let size @ [w, h] = shader.camera.size;
+        let [w, h] = size;
         let row = |row: usize| {
-            let point = |i: usize| {
-                let view = shader.view(at([i / FOUR, row], i % FOUR));
-                let place = SeenPlace::new(shader.paths, shader.cutoffs, &view);
-                let found = of(FOUR * row * w + i, &view, &place);
-                (place, found)
-            };
+            let point = |i: usize| look(FOUR * row * w + i, at([i / FOUR, row], i % FOUR));
             let points: Vec<(SeenPlace, T)> = (0..FOUR * w).map(point).collect();
             progress(w as u64);
             points

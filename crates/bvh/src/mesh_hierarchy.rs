@@ -50,7 +50,7 @@ impl MeshHierarchy {
         let begin = self.space.begin(start, direction, from);
         let limit = |at: f64| self.space.limit(at, begin);
         let ray = self.ray(start, direction, begin, until);
-        let visit = Boxes(|i| limit(meet(i)));
+        let visit = MeshBoxes(|i| limit(meet(i)));
         dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
     }
 
@@ -80,9 +80,9 @@ impl MeshHierarchy {
 }
 
 /// The leaves, each of which is passed to the caller.
-struct Boxes<M>(M);
+struct MeshBoxes<M>(M);
 
-impl<M: FnMut(usize) -> f32> Visit for Boxes<M> {
+impl<M: FnMut(usize) -> f32> Visit for MeshBoxes<M> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
         (self.0)(leaf)

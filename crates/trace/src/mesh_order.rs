@@ -11,7 +11,7 @@ const CELLS: u16 = 128;
 
 /// A photon to be tested, and its place among the hits.
 #[derive(Clone, Copy)]
-struct Test {
+struct PhotonTest {
     ray: TwoPlane,
     group: u32,
     lane: u32,
@@ -25,7 +25,7 @@ pub(crate) fn meet_mesh(
     groups: &[PhotonGroup],
     hits: &mut [Hits],
 ) {
-    let grid = Cells::new(mesh);
+    let grid = OrderCells::new(mesh);
     let mut tests = Vec::new();
     let mut starts = vec![0_u32; usize::from(CELLS) * usize::from(CELLS) + 1];
     let mut cells = Vec::new();
@@ -40,7 +40,7 @@ pub(crate) fn meet_mesh(
             let cell = grid.cell([x[i], y[i]]);
             starts[cell as usize + 1] += 1;
             cells.push(cell);
-            tests.push(Test {
+            tests.push(PhotonTest {
                 ray: photons.ray(i),
                 group,
                 lane,
@@ -62,7 +62,7 @@ pub(crate) fn meet_mesh(
         *place += 1;
     }
     let mut memory = SearchMemory::default();
-    for Test { ray, group, lane } in sorted {
+    for PhotonTest { ray, group, lane } in sorted {
         if mesh.is_met(&mut memory, &ray) {
             hits[group as usize][lane as usize] = number;
         }
@@ -70,14 +70,14 @@ pub(crate) fn meet_mesh(
 }
 
 /// A grid of cells in the plane halfway through a mesh.
-struct Cells {
+struct OrderCells {
     distance: f64,
     low: [f64; 2],
     /// Cells per metre.
     density: [f64; 2],
 }
 
-impl Cells {
+impl OrderCells {
     fn new(mesh: &BlockerMesh) -> Self {
         let [low, high] = mesh.bounds();
         Self {

@@ -16,6 +16,24 @@ const STRIPS: f64 = 64.0;
 /// The largest number of rectangles in a random picture of 9 × 9 pixels.
 const PIXELS: f64 = 41.0;
 
+/// A kind of blockers that a search selects.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum SoughtBlockers {
+    Bars,
+    Picture,
+    Aperture,
+}
+
+impl SoughtBlockers {
+    pub(super) fn is_of(self, blockers: &BlockersFile) -> bool {
+        match self {
+            Self::Bars => matches!(blockers, BlockersFile::Bars { .. }),
+            Self::Picture => matches!(blockers, BlockersFile::Picture { .. }),
+            Self::Aperture => matches!(blockers, BlockersFile::Aperture { .. }),
+        }
+    }
+}
+
 /// Draws up to three layers before the first surface. The distance of this surface from the light
 /// is given.
 pub(super) fn blockers(

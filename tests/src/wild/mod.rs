@@ -30,6 +30,7 @@ pub(crate) use small::{SmallOptions, small};
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;
 use crate::report::ReportSection;
+use blockers::SoughtBlockers;
 use judge::{JudgedScene, judge};
 use run::Runner;
 use std::fs;
@@ -67,6 +68,9 @@ pub(crate) struct WildOptions {
     /// Folder for scenes with a fault.
     #[arg(long, default_value = "target/wild")]
     out: PathBuf,
+    /// Run only scenes with blockers of this kind, and pass over all others.
+    #[arg(long, value_name = "KIND")]
+    with: Option<SoughtBlockers>,
     /// Only draw the scenes and save all of them, without running any.
     #[arg(long)]
     draw: bool,
@@ -94,7 +98,8 @@ pub(crate) fn wild(options: &WildOptions) -> io::Result<ReportSection> {
             if let Ok(mut tally) = tally.lock() {
                 match &judged {
                     Some(judged) => tally.add(number, judged),
-                    None => tally.undrawn(number),
+                    None if options.with.is_none() => tally.undrawn(number),
+                    None => {}
                 }
             }
             fs::remove_dir_all(&at)?;
@@ -113,7 +118,7 @@ fn told(seed: u64, number: u64, says: &str) {
 }
 
 /// Draws, runs and judges a scene; if the run shows a fault, saves the scene and reports the
-/// fault. Returns `None` if no scene could be drawn.
+/// fault. Returns `None` if no scene could be drawn, or if the scene lacks the selected blockers.
 fn one(
     options: &WildOptions,
     program: &Path,
@@ -132,6 +137,11 @@ fn one(
     let Ok(file) = scene(options.seed, number, options.photons, &runner.folder) else {
         return Ok(None);
     };
+    if let Some(kind) = options.with
+        && !file.blockers.iter().any(|blockers| kind.is_of(blockers))
+    {
+        return Ok(None);
+    }
     if options.draw {
         keep(options, number, "drawn", &text(&file)?, &runner.folder)?;
         return Ok(Some(JudgedScene::default()));

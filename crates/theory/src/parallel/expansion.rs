@@ -68,8 +68,9 @@ pub(crate) struct SectionColumns {
 /// (docs/theory.md (4) and (5d)).
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v).
-/// The product source · Π_layers (1 − Σ blockers), with the hole as the factor of an aperture, is therefore a signed sum of products of convex
-/// polygons. All other factors are sums of products of a wave of (x, u) and a wave of (y, v).
+/// The product source · Π_layers (1 − Σ blockers), in which an aperture has its hole as a factor, is
+/// therefore a signed sum of products of convex polygons. All other factors are sums of products of
+/// a wave of (x, u) and a wave of (y, v).
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
