@@ -19,7 +19,7 @@ pub struct Memory {
     pub threads: f64,
     /// Predictions with their derivatives, and the working memory of computing a prediction.
     pub predictions: f64,
-    /// The comparison, which handles one plane at a time.
+    /// The comparison, which handles one plane on each thread.
     pub comparison: f64,
     /// Triangles and the hierarchies over them.
     pub meshes: f64,
@@ -78,7 +78,7 @@ impl Memory {
             }),
             // The comparison holds residuals of all batches, means, variances, powers, and the sums
             // for p-values.
-            comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
+            comparison: largest_of(threads, each(&|plane, _| (batches + 8.0) * spectra(plane)))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene),
         }
@@ -96,6 +96,12 @@ impl Memory {
         } = self;
         PROGRAM + batches + threads + predictions + comparison + meshes
     }
+}
+
+/// Returns the sum of the largest `count` numbers.
+fn largest_of(count: usize, mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(|a, b| b.total_cmp(a));
+    numbers.iter().take(count).sum()
 }
 
 fn is_reference(applicability: &Applicability) -> bool {

@@ -7,6 +7,7 @@ use crate::summary::Summary;
 use crate::{aim_check, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
+use rayon::prelude::*;
 
 /// The results of a scene: the comparison of each plane, and the verdict.
 #[derive(Debug)]
@@ -39,7 +40,7 @@ impl Judged {
 
 /// Returns the comparison of each plane, with its verdict.
 pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
-    let each = case.predictions.iter().enumerate();
+    let each = case.predictions.par_iter().enumerate();
     let compared = each.map(|(i, prediction)| {
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
     });
