@@ -4,6 +4,7 @@
 use crate::batch_ranges::BLOCK;
 use crate::emit::Emitter;
 use crate::flat_leg::FlatLeg;
+use crate::mesh_order::OrderMemory;
 use crate::numbers::Numbers;
 use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use fearless_simd::Level;
@@ -16,6 +17,7 @@ pub(crate) struct Ahead {
     first: u64,
     groups: Vec<PhotonGroup>,
     hits: Vec<Hits>,
+    order: OrderMemory,
 }
 
 /// The number of photons that are emitted together if they may meet meshes. It is a multiple of
@@ -31,30 +33,30 @@ impl Ahead {
         self.groups.get(i).zip(self.hits.get(i))
     }
 
-    /// Emits the photons of several blocks and finds what they meet, if there are meshes on a flat
-    /// first leg. `numbers` returns the random numbers of the block that begins with a photon.
-    pub(crate) fn new(
+    /// Replaces the photons by those of several blocks, and finds what they meet, if there are
+    /// meshes on a flat first leg. Otherwise, no photons remain. `numbers` returns the random
+    /// numbers of the block that begins with a photon.
+    pub(crate) fn refill(
+        &mut self,
         emitter: &Emitter,
         flat: Option<&FlatLeg>,
         range: Range<u64>,
         numbers: impl Fn(u64) -> Numbers,
-    ) -> Self {
+    ) {
+        self.groups.clear();
         let Some(flat) = flat.filter(|flat| flat.has_meshes()) else {
-            return Self::default();
+            return;
         };
         let level = Level::new();
-        let mut groups = Vec::with_capacity(AHEAD / ABREAST);
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let numbers = numbers(start);
             let firsts = (start..end).step_by(ABREAST);
-            groups.extend(firsts.map(|first| emit_group(emitter, level, first..end, &numbers)));
+            let group = |first| emit_group(emitter, level, first..end, &numbers);
+            self.groups.extend(firsts.map(group));
         }
-        Self {
-            first: range.start,
-            hits: flat.hits_of_all(&groups),
-            groups,
-        }
+        self.first = range.start;
+        flat.hits_of_all(&self.groups, &mut self.hits, &mut self.order);
     }
 }
 

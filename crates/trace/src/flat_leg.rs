@@ -4,7 +4,7 @@
 use crate::grid::Grid;
 use crate::lanes::{inside, inside_polygon, lanes};
 use crate::mesh::BlockerMesh;
-use crate::mesh_order::meet_mesh;
+use crate::mesh_order::{OrderMemory, meet_mesh};
 use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::unbounded::Unbounded;
@@ -134,17 +134,21 @@ impl FlatLeg {
         outlines.any(|outline| matches!(outline, Outline::Mesh(_)))
     }
 
-    /// Returns the obstacles that photons meet.
-    pub(crate) fn hits_of_all(&self, groups: &[PhotonGroup]) -> Vec<Hits> {
-        let each = groups.iter().map(|photons| self.hits(photons));
-        let mut hits = each.collect::<Vec<Hits>>();
+    /// Replaces `hits` by the obstacles that photons meet.
+    pub(crate) fn hits_of_all(
+        &self,
+        groups: &[PhotonGroup],
+        hits: &mut Vec<Hits>,
+        order: &mut OrderMemory,
+    ) {
+        hits.clear();
+        hits.extend(groups.iter().map(|photons| self.hits(photons)));
         for (number, obstacle) in (1..).zip(&self.obstacles) {
             if let Outline::Mesh(mesh) = &obstacle.outline {
                 // Photons that meet a nearer obstacle are not tested.
-                meet_mesh(mesh, number, groups, &mut hits);
+                meet_mesh(mesh, number, (groups, hits), order);
             }
         }
-        hits
     }
 
     /// Returns the obstacles that photons meet, if there are no meshes.

@@ -10,11 +10,23 @@ use etendue_field::TwoPlane;
 const CELLS: u16 = 128;
 
 /// A photon to be tested, and its place among the hits.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct PhotonTest {
     ray: TwoPlane,
     group: u32,
     lane: u32,
+}
+
+/// Memory for the tests of many photons, which later tests use again.
+#[derive(Debug, Default)]
+pub(crate) struct OrderMemory {
+    tests: Vec<PhotonTest>,
+    /// The cell of each test.
+    cells: Vec<u32>,
+    /// The number of tests in earlier cells, for each cell.
+    starts: Vec<u32>,
+    sorted: Vec<PhotonTest>,
+    search: SearchMemory,
 }
 
 /// Sets the hits of photons that meet a mesh to its number, unless they meet a nearer obstacle,
@@ -22,13 +34,21 @@ struct PhotonTest {
 pub(crate) fn meet_mesh(
     mesh: &BlockerMesh,
     number: usize,
-    groups: &[PhotonGroup],
-    hits: &mut [Hits],
+    (groups, hits): (&[PhotonGroup], &mut [Hits]),
+    memory: &mut OrderMemory,
 ) {
+    let OrderMemory {
+        tests,
+        cells,
+        starts,
+        sorted,
+        search,
+    } = memory;
     let grid = OrderCells::new(mesh);
-    let mut tests = Vec::new();
-    let mut starts = vec![0_u32; usize::from(CELLS) * usize::from(CELLS) + 1];
-    let mut cells = Vec::new();
+    tests.clear();
+    cells.clear();
+    starts.clear();
+    starts.resize(usize::from(CELLS) * usize::from(CELLS) + 1, 0);
     for (group, (photons, hits)) in (0..).zip(groups.iter().zip(hits.iter())) {
         let [x, y] = photons.positions(grid.distance);
         for lane in (0..)
@@ -51,20 +71,20 @@ pub(crate) fn meet_mesh(
         return;
     };
     let mut total = 0;
-    for start in &mut starts {
+    for start in &mut *starts {
         total += *start;
         *start = total;
     }
-    let mut sorted = vec![any; tests.len()];
-    for (test, cell) in tests.iter().zip(&cells) {
+    sorted.clear();
+    sorted.resize(tests.len(), any);
+    for (test, cell) in tests.iter().zip(&*cells) {
         let place = &mut starts[*cell as usize];
         sorted[*place as usize] = *test;
         *place += 1;
     }
-    let mut memory = SearchMemory::default();
     for PhotonTest { ray, group, lane } in sorted {
-        if mesh.is_met(&mut memory, &ray) {
-            hits[group as usize][lane as usize] = number;
+        if mesh.is_met(search, ray) {
+            hits[*group as usize][*lane as usize] = number;
         }
     }
 }

@@ -18,6 +18,7 @@ use etendue_scene::{Object, Sampling, Scene};
 use etendue_transform::random::Stream;
 use fearless_simd::Level;
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The forward tracer of a scene.
 ///
@@ -43,6 +44,8 @@ pub struct Tracer {
     numbers: PhotonNumbers,
     is_precise: bool,
     level: Level,
+    /// The memory of finished parts, which later parts use again.
+    ahead: Mutex<Vec<Ahead>>,
 }
 
 /// The largest number of photons with which spectra have reduced precision. Random photons then
@@ -136,7 +139,13 @@ impl Tracer {
             numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
             level: Level::new(),
             legs,
+            ahead: Mutex::default(),
         }
+    }
+
+    /// Returns the memory of finished parts.
+    fn kept_memory(&self) -> MutexGuard<'_, Vec<Ahead>> {
+        self.ahead.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Builds a second tracer of photons. It serves as a check where backward rays do not find a
@@ -446,7 +455,7 @@ impl PhotonSource for Tracer {
         let mut total = Ledger::default();
         let first = self.shares.of(batch).start;
         let range = self.shares.part(batch, part);
-        let mut ahead = Ahead::default();
+        let mut ahead = self.kept_memory().pop().unwrap_or_default();
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
@@ -454,7 +463,7 @@ impl PhotonSource for Tracer {
                 let until = range.end.min(start + AHEAD as u64);
                 let flat = self.flat.as_ref();
                 let numbers = |at| self.numbers.of(batch, first, at);
-                ahead = Ahead::new(&self.emitter, flat, start..until, numbers);
+                ahead.refill(&self.emitter, flat, start..until, numbers);
             }
             let numbers = self.numbers.of(batch, first, start);
             self.emit_block(
@@ -483,6 +492,7 @@ impl PhotonSource for Tracer {
             total.add(&block);
             progress(end - start);
         }
+        self.kept_memory().push(ahead);
         total
     }
 }
