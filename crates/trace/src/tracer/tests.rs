@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::lanes::lanes;
+use crate::mesh_order::OrderMemory;
 use etendue_scene::{SceneFile, resolve};
 use etendue_transform::random::words;
 
@@ -135,7 +136,9 @@ fn photons_that_touch_edges_end_at_the_same_obstacles() {
         let none = (vec![Vec::new(); tracer.planes], Ledger::default());
         let [mut together, mut one_by_one] = [none.clone(), none];
         for group in (0..500).map(|number| group(seed, number)) {
-            let hits = flat.hits_of_all(&[group])[0];
+            let mut hits = Vec::new();
+            flat.hits_of_all(&[group], &mut hits, &mut OrderMemory::default());
+            let hits = hits[0];
             let arrivals = flat.trace(&group, &hits, &mut together.0, &mut together.1);
             let arrivals: Vec<_> = arrivals.map(|(i, _)| i).collect();
             for i in (0..ABREAST).filter(|i| group.weights[*i] > 0.0) {
