@@ -112,11 +112,11 @@ def mitsuba(rays, sampler, photons, seed, bins, grid):
 
 
 def line(x, y, weights):
-    """y = a + b x by weighted least squares, with a and b ≥ 0."""
+    """y = a + b x by weighted least squares, with a and b ≥ 0; b is NaN where y does not grow with x."""
     a, b = np.linalg.lstsq(np.stack([weights, weights * x], 1), weights * y, rcond=None)[0]
     if a < 0:
         return 0.0, np.sum(weights**2 * x * y) / np.sum((weights * x) ** 2)
-    return a, b
+    return a, b if b > 0 else np.nan
 
 
 def seconds_to(results, target):
@@ -152,5 +152,5 @@ print(f"\n| rays | sampler | cells along an axis |{heads}\n|---|---|---|{'---|' 
 ours = [seconds_to(medians["Étendue", "net", 0], target) for target in ERRORS]
 for (who, sampler, bins), results in medians.items():
     ratios = [seconds_to(results, target) / our for target, our in zip(ERRORS, ours)]
-    text = [f"{our:.3g} s" for our in ours] if who == "Étendue" else ["never" if np.isinf(r) else f"{r:.2g} ×" for r in ratios]
+    text = [f"{our:.3g} s" for our in ours] if who == "Étendue" else ["never" if np.isinf(r) else "–" if np.isnan(r) else f"{r:.2g} ×" for r in ratios]
     print(f"| {who} | {sampler} | {bins or ''} | {' | '.join(text)} |")
