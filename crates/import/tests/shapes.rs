@@ -358,7 +358,7 @@ fn meshes_without_area_are_left_out() {
         "<shape type=\"shapegroup\" id=\"g\">{flat}{bend}</shape>\
         <shape type=\"instance\"><ref id=\"g\"/></shape>"
     );
-    for inside in [flat.clone() + &bend, group] {
+    for inside in [flat + &bend, group] {
         let imported = read_in(&inside, files.path(), Color::Luminance).unwrap();
         assert_eq!(imported.world.shapes.len(), 1);
         let notes = imported.notes.iter().map(ToString::to_string);

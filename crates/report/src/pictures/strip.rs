@@ -67,12 +67,8 @@ pub fn strip_of(
         both.show(column);
     }
     // Figures are not interpolated, because they were run at finer frequencies.
-    let drawn = if is_figure || both.is_some() {
-        &[][..]
-    } else {
-        &along
-    };
-    let drawn: Vec<_> = drawn.par_iter().map(PlaneOnPath::finer_power).collect();
+    let drawn = along.par_iter().filter(|_| !is_figure && both.is_none());
+    let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
     for (column, values) in columns.iter_mut().zip(&drawn) {
         column.finer = values.as_ref().map(|values| Picture {
             values: values.view(),
