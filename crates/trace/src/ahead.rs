@@ -9,6 +9,7 @@ use crate::numbers::Numbers;
 use crate::photon_group::{ABREAST, Hits, PhotonGroup};
 use fearless_simd::Level;
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Photons of several blocks that were emitted together, and the obstacles that they meet.
 #[derive(Debug, Default)]
@@ -18,6 +19,26 @@ pub(crate) struct Ahead {
     groups: Vec<PhotonGroup>,
     hits: Vec<Hits>,
     order: OrderMemory,
+}
+
+/// Memory that finished parts leave for later parts.
+#[derive(Debug, Default)]
+pub(crate) struct AheadPool(Mutex<Vec<Ahead>>);
+
+impl AheadPool {
+    fn memory(&self) -> MutexGuard<'_, Vec<Ahead>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes memory out of the pool, or makes new memory.
+    pub(crate) fn take(&self) -> Ahead {
+        self.memory().pop().unwrap_or_default()
+    }
+
+    /// Puts memory into the pool.
+    pub(crate) fn keep(&self, ahead: Ahead) {
+        self.memory().push(ahead);
+    }
 }
 
 /// The number of photons that are emitted together if they may meet meshes. It is a multiple of

@@ -1,6 +1,6 @@
 //! The forward tracer: traces photons from the light, leg by leg.
 
-use crate::ahead::{AHEAD, Ahead, emit_group};
+use crate::ahead::{AHEAD, Ahead, AheadPool, emit_group};
 use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
@@ -18,7 +18,6 @@ use etendue_scene::{Object, Sampling, Scene};
 use etendue_transform::random::Stream;
 use fearless_simd::Level;
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The forward tracer of a scene.
 ///
@@ -45,7 +44,7 @@ pub struct Tracer {
     is_precise: bool,
     level: Level,
     /// The memory of finished parts, which later parts use again.
-    ahead: Mutex<Vec<Ahead>>,
+    ahead: AheadPool,
 }
 
 /// The largest number of photons with which spectra have reduced precision. Random photons then
@@ -139,13 +138,8 @@ impl Tracer {
             numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
             level: Level::new(),
             legs,
-            ahead: Mutex::default(),
+            ahead: AheadPool::default(),
         }
-    }
-
-    /// Returns the memory of finished parts.
-    fn kept_memory(&self) -> MutexGuard<'_, Vec<Ahead>> {
-        self.ahead.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Builds a second tracer of photons. It serves as a check where backward rays do not find a
@@ -455,7 +449,7 @@ impl PhotonSource for Tracer {
         let mut total = Ledger::default();
         let first = self.shares.of(batch).start;
         let range = self.shares.part(batch, part);
-        let mut ahead = self.kept_memory().pop().unwrap_or_default();
+        let mut ahead = self.ahead.take();
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
@@ -492,7 +486,7 @@ impl PhotonSource for Tracer {
             total.add(&block);
             progress(end - start);
         }
-        self.kept_memory().push(ahead);
+        self.ahead.keep(ahead);
         total
     }
 }
