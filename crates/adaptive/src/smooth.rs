@@ -296,7 +296,8 @@ mod tests {
                     let mean =
                         [1, 2].map(|k: usize| if is_shaded { sums[k] / sums[0] } else { 0.0 });
                     for k in 0..2 {
-                        assert!((found[k] - mean[k]).abs() < 1e-13, "{found:?} {mean:?}"); // rounding
+                        let off = (found[k] - mean[k]).abs();
+                        assert!(off < 1e-13, "{found:?} {mean:?}"); // rounding
                     }
                 }
             }

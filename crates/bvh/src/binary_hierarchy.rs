@@ -30,22 +30,22 @@ impl BinaryHierarchy {
         &self.bvh.primitive_indices
     }
 
-    /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
-    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the distance
-    /// beyond which boxes can be skipped. Before the first hit, this distance is `until`.
+    /// Visits the boxes that a ray may meet in a range of distances, approximately front to back.
+    /// Distances are multiples of the length of `direction`, which is at least 1. `meet` returns
+    /// the distance beyond which boxes can be skipped. Before the first hit, this distance is the
+    /// end of the range.
     #[inline]
     pub fn along(
         &self,
         start: DVec3,
         direction: DVec3,
-        [from, until]: [f64; 2],
+        range: [f64; 2],
         mut meet: impl FnMut(usize) -> f64,
     ) {
-        let begin = self.space.begin(start, direction, from);
-        let origin = start + begin * direction - self.space.center;
-        let limit = |at: f64| self.space.limit(at, begin);
-        let ray = Ray::new(vector(origin), vector(direction), 0.0, limit(until));
-        let meet = |_: &Ray, i| limit(meet(i));
+        let stretch = self.space.stretch(start, direction, range);
+        let origin = vector(stretch.origin);
+        let ray = Ray::new(origin, vector(direction), 0.0, stretch.until);
+        let meet = |_: &Ray, i| self.space.limit(meet(i), stretch.begin);
         self.bvh.ray_traverse(ray, &mut RayHit::none(), meet);
     }
 }

@@ -27,7 +27,7 @@ pub(crate) enum TreeKind {
 /// The maximum number of boxes that one thread builds; larger sets of boxes are built in parts of
 /// this size. The builder needs about 150 bytes for each box, but only for the parts that are
 /// being built.
-pub(crate) const PART: usize = 1 << 15;
+const PART: usize = 1 << 15;
 
 /// The largest number of boxes for which the tree is optimised by reinsertion. For this number of
 /// boxes or fewer, reinsertion takes a tenth of a second and makes rays up to twice as fast. For

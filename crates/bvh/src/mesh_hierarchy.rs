@@ -4,7 +4,7 @@
 //! every hit.
 
 use crate::parts;
-use crate::space::{Space, vector};
+use crate::space::Space;
 use crate::wide::{AnyVisit, NodeRay, Visit, Wide};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
@@ -35,22 +35,21 @@ impl MeshHierarchy {
         }
     }
 
-    /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
-    /// are multiples of the length of `direction`, which is at least 1. `meet` receives the number
-    /// of a box, and returns the distance beyond which boxes can be skipped. Before the first hit,
-    /// this distance is `until`.
+    /// Visits the boxes that a ray may meet in a range of distances, approximately front to back.
+    /// Distances are multiples of the length of `direction`, which is at least 1. `meet` receives
+    /// the number of a box, and returns the distance beyond which boxes can be skipped. Before the
+    /// first hit, this distance is the end of the range.
     #[inline]
     pub fn along(
         &self,
         start: DVec3,
         direction: DVec3,
-        [from, until]: [f64; 2],
+        range: [f64; 2],
         mut meet: impl FnMut(usize) -> f64,
     ) {
-        let begin = self.space.begin(start, direction, from);
-        let limit = |at: f64| self.space.limit(at, begin);
-        let ray = self.ray(start, direction, begin, until);
-        let visit = MeshBoxes(|i| limit(meet(i)));
+        let stretch = self.space.stretch(start, direction, range);
+        let ray = NodeRay::new(stretch, direction);
+        let visit = MeshBoxes(|i| self.space.limit(meet(i), stretch.begin));
         dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
     }
 
@@ -64,18 +63,11 @@ impl MeshHierarchy {
         from: f64,
         meets: impl FnMut(usize) -> bool,
     ) -> bool {
-        let begin = self.space.begin(start, direction, from);
-        let ray = self.ray(start, direction, begin, f64::INFINITY);
+        let range = [from, f64::INFINITY];
+        let ray = NodeRay::new(self.space.stretch(start, direction, range), direction);
         let visit = AnyBox(meets);
         let memory = &mut memory.0;
         dispatch!(self.level, simd => self.tree.any(simd, &ray, memory, visit))
-    }
-
-    #[inline]
-    fn ray(&self, start: DVec3, direction: DVec3, begin: f64, until: f64) -> NodeRay {
-        let origin = start + begin * direction - self.space.center;
-        let until = self.space.limit(until, begin);
-        NodeRay::new(vector(origin), vector(direction), until)
     }
 }
 

@@ -1,5 +1,5 @@
-//! Builds a tree with eight boxes in a node from parts of a set of boxes, so that the binary tree of
-//! all boxes is never in memory.
+//! Builds a tree with eight boxes in a node from parts of a set of boxes, so that the binary tree
+//! of all boxes is never in memory.
 
 use crate::build::{TreeKind, built, number};
 use crate::collapse::{Collapsed, collapsed_parts};

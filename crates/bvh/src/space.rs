@@ -8,13 +8,24 @@ use obvhs::ploc::morton::morton_encode_u64_unorm;
 /// The coordinates of boxes in f32, relative to the centre of all boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Space {
-    pub(crate) center: DVec3,
+    center: DVec3,
     /// The largest coordinate relative to the centre.
     size: f64,
     /// The padding of boxes.
     pub(crate) padding: f64,
     /// The factor that scales coordinates to at most about 1, as `leaf` needs them.
     pub(crate) unit: f64,
+}
+
+/// The part of a ray over which boxes are traversed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    /// The distance along the ray at which the traversal begins.
+    pub(crate) begin: f64,
+    /// The point at this distance, relative to the centre of all boxes.
+    pub(crate) origin: DVec3,
+    /// The distance from this point beyond which boxes can be skipped.
+    pub(crate) until: f32,
 }
 
 /// Padding relative to `Space::size`. A rounding error in f32 is 6e-8 of the size, and each ray
@@ -77,7 +88,7 @@ impl Space {
     /// `from`. If the point at `from` is far from all boxes, the traversal begins where the ray
     /// comes near the boxes, because f32 would lose precision over a longer distance.
     #[inline]
-    pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
+    fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
         let at = start + from * direction;
         if at.abs().max_element() < 4.0 * self.size {
@@ -89,6 +100,23 @@ impl Space {
         // to the boxes along these axes.
         let near = near.into_iter().filter(|t| t.is_finite());
         near.fold(from, f64::max)
+    }
+
+    /// Returns where the traversal of a ray begins and ends. The ray begins at `from`, and before
+    /// the first hit it ends at `until`.
+    #[inline]
+    pub(crate) fn stretch(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        [from, until]: [f64; 2],
+    ) -> Stretch {
+        let begin = self.begin(start, direction, from);
+        Stretch {
+            begin,
+            origin: start + begin * direction - self.center,
+            until: self.limit(until, begin),
+        }
     }
 
     /// Returns a distance in f32, counted from `begin`. If all boxes up to this distance are

@@ -1,7 +1,8 @@
 //! A tree with eight boxes in a node, all tested against a ray at once.
 
+use crate::space::{Stretch, vector};
 use fearless_simd::{Simd, f32x8, prelude::*};
-use glam::Vec3A;
+use glam::DVec3;
 
 /// A tree; its root is the first node.
 #[derive(Clone)]
@@ -65,8 +66,8 @@ pub(crate) trait AnyVisit {
 
 impl NodeRay {
     #[inline]
-    pub(crate) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
-        let turned = direction.to_array().map(|d| {
+    pub(crate) fn new(stretch: Stretch, direction: DVec3) -> Self {
+        let turned = vector(direction).to_array().map(|d| {
             if d.abs() < MIN_COMPONENT {
                 MIN_COMPONENT.copysign(d).recip()
             } else {
@@ -74,10 +75,10 @@ impl NodeRay {
             }
         });
         Self {
-            origin: origin.to_array(),
+            origin: vector(stretch.origin).to_array(),
             turned,
             first: [0, 1, 2].map(|axis| 2 * axis + usize::from(turned[axis] < 0.0)),
-            until,
+            until: stretch.until,
         }
     }
 }
@@ -209,7 +210,8 @@ impl Node {
         Self::inner(place) | LEAF
     }
 
-    /// Replaces the children of this node; `new` receives whether a child is a leaf, and its number.
+    /// Replaces the children of this node. `new` receives whether a child is a leaf, and its
+    /// number.
     pub(crate) fn map_children(&mut self, new: impl Fn(bool, usize) -> u32) {
         for (i, child) in self.children.iter_mut().enumerate() {
             let is_filled = self.planes[0][i] <= self.planes[1][i];

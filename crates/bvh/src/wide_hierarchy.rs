@@ -76,23 +76,21 @@ impl WideHierarchy {
         &self.order
     }
 
-    /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
-    /// back. Distances are multiples of the length of `direction`, which is at least 1. `meet`
-    /// returns the distance beyond which boxes or triangles can be skipped. Before the first hit,
-    /// this distance is `until`.
+    /// Visits the boxes or triangles that a ray may meet in a range of distances, approximately
+    /// front to back. Distances are multiples of the length of `direction`, which is at least 1.
+    /// `meet` returns the distance beyond which boxes or triangles can be skipped. Before the first
+    /// hit, this distance is the end of the range.
     #[inline]
     pub fn along(
         &self,
         start: DVec3,
         direction: DVec3,
-        [from, until]: [f64; 2],
+        range: [f64; 2],
         mut meet: impl FnMut(usize) -> f64,
     ) {
-        let begin = self.space.begin(start, direction, from);
-        let origin = start + begin * direction - self.space.center;
-        let limit = |at: f64| self.space.limit(at, begin);
-        let ray = NodeRay::new(vector(origin), vector(direction), limit(until));
-        let meet = |i: usize| limit(meet(i));
+        let stretch = self.space.stretch(start, direction, range);
+        let ray = NodeRay::new(stretch, direction);
+        let meet = |i: usize| self.space.limit(meet(i), stretch.begin);
         match &self.leaves {
             TreeLeaves::Boxes(leaves) => {
                 let visit = Boxes { leaves, meet };
@@ -100,7 +98,7 @@ impl WideHierarchy {
             }
             TreeLeaves::Triangles(leaves) => {
                 let tolerance = single(self.space.unit * self.space.padding);
-                let origin = vector(self.space.unit * origin);
+                let origin = vector(self.space.unit * stretch.origin);
                 let visit = leaf::TriangleLeaves {
                     leaves,
                     sight: LeafRay::new(origin, direction, tolerance),

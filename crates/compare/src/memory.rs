@@ -55,9 +55,6 @@ impl Memory {
         };
         let sum =
             |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| each(of).into_iter().sum::<f64>();
-        let largest = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| {
-            each(of).into_iter().fold(0.0, f64::max)
-        };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
         // For a reference, the program keeps the measurement, and the prediction holds copies of
@@ -72,13 +69,16 @@ impl Memory {
                     + of.theory.parameters().len() as f64
                     + replicates(scene, plane, &of.theory);
                 held * spectra(plane)
-            }) + largest(&|plane, of| {
-                let work = work::of(scene, plane, of);
-                work.bytes + threads as f64 * work.bytes_each
-            }),
+            }) + largest(
+                1,
+                each(&|plane, of| {
+                    let work = work::of(scene, plane, of);
+                    work.bytes + threads as f64 * work.bytes_each
+                }),
+            ),
             // The comparison holds residuals of all batches, means, variances, powers, and the sums
             // for p-values.
-            comparison: largest_of(threads, each(&|plane, _| (batches + 8.0) * spectra(plane)))
+            comparison: largest(threads, each(&|plane, _| (batches + 8.0) * spectra(plane)))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene),
         }
@@ -99,7 +99,7 @@ impl Memory {
 }
 
 /// Returns the sum of the largest `count` numbers.
-fn largest_of(count: usize, mut numbers: Vec<f64>) -> f64 {
+fn largest(count: usize, mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(|a, b| b.total_cmp(a));
     numbers.iter().take(count).sum()
 }

@@ -21,9 +21,9 @@ const MOST_PARTS: usize = 4096;
 /// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
 /// plane.
 ///
-/// The rays of a section are points (position at the light, slope). Half-planes and holes cut the set of
-/// these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a layer
-/// covers every place where rays cross its plane.
+/// The rays of a section are points (position at the light, slope). Half-planes and holes cut the
+/// set of these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a
+/// layer covers every place where rays cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {

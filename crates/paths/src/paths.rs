@@ -190,9 +190,9 @@ impl Paths {
 }
 
 /// Returns the weight of a direction with density `own` in multiple importance sampling, where the
-/// other sampling strategy has density `other`. This is the power heuristic with exponent 2. A small
-/// light has almost no light left for the rare directions of the BSDF that find it, so a picture
-/// without such directions is not too dark.
+/// other sampling strategy has density `other`. This is the power heuristic with exponent 2. Rare
+/// directions of a BSDF that find a small light get almost no weight, so a pixel without such
+/// directions is not too dark.
 fn mis_weight(own: f64, other: f64) -> f64 {
     let ratio = other / own;
     1.0 / (1.0 + ratio * ratio)

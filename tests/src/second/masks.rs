@@ -75,6 +75,15 @@ pub(super) fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
+/// Returns a point relative to the center of a layer, wrong if `fault` is a fault of points.
+fn misplaced(at: [f64; 2], center: [f64; 2], fault: &str) -> [f64; 2] {
+    match fault {
+        "x and y swapped" => [at[1], at[0]],
+        "from the central ray" => [at[0] + center[0], at[1] + center[1]],
+        _ => at,
+    }
+}
+
 /// Compares the transmittance of the resolved mask, at points around its center, with the
 /// definition of the mask.
 pub(super) fn against(
@@ -116,11 +125,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     );
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let [x, y] = match fault {
-            "x and y swapped" => [at[1], at[0]],
-            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
-            _ => at,
-        };
+        let [x, y] = misplaced(at, center, fault);
         let part = if fault == "sizes taken as half-widths" {
             1.0
         } else {
@@ -245,11 +250,7 @@ fn aperture(dice: &mut Dice, fault: &str) -> f64 {
     );
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let [x, y] = match fault {
-            "x and y swapped" => [at[1], at[0]],
-            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
-            _ => at,
-        };
+        let [x, y] = misplaced(at, center, fault);
         let factor = if fault == "size off by a tenth" {
             1.1
         } else {
