@@ -68,8 +68,9 @@ fn a_run_goes_on_where_its_time_was_up() {
     let path = folder.path();
     let mut held = 0;
     let mut ended = 0;
-    for _ in 0..100 {
-        let output = call(path, &format!("{RUN} --out parts --resume --time 300ms"));
+    // The time grows, so that it is up on a fast machine, and the run ends on a slow one.
+    for time in (20..4000).step_by(20) {
+        let output = call(path, &format!("{RUN} --out parts --resume --time {time}ms"));
         if output.status.code() == Some(0) {
             break;
         }
@@ -95,17 +96,19 @@ fn a_run_goes_on_where_its_time_was_up() {
 fn a_run_goes_on_where_it_was_killed_or_damaged() {
     let folder = folder();
     let path = folder.path();
-    for moment in [30, 70, 110, 150] {
+    for moment in [10, 20, 30, 40] {
         let mut child = started(path, "parts");
         std::thread::sleep(Duration::from_millis(moment));
         child.kill().unwrap();
         child.wait().unwrap();
     }
+    // On a slow machine, the runs may be killed before they finish a batch.
     let mut left = batches(path, "parts");
-    if left.is_empty() {
-        // On a slow machine, the runs may be killed before they finish a batch. Then another run
-        // measures some batches.
-        call(path, &format!("{RUN} --out parts --resume --time 300ms"));
+    for time in (20..4000).step_by(20) {
+        if !left.is_empty() {
+            break;
+        }
+        call(path, &format!("{RUN} --out parts --resume --time {time}ms"));
         left = batches(path, "parts");
     }
     let cut = fs::read(&left[0]).unwrap();
