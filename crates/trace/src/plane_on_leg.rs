@@ -20,6 +20,8 @@ pub(crate) struct PlaneOnLeg {
     pub(crate) side: Side,
     /// The coordinates of a plane on a surface; `None` for a plane across the leg.
     surface: Option<SurfaceCoordinates>,
+    /// Whether the surface to which the virtual plane belongs has points off the plane.
+    is_off_surface: bool,
 }
 
 /// The coordinates of rays at a virtual plane that lies on a surface.
@@ -45,6 +47,15 @@ const MARGIN: f64 = 1.1;
 /// The largest angle to the central ray, in radians. At larger angles, light is not aimed by its
 /// slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
+
+/// Checks whether a straight line may meet an object twice.
+pub(crate) fn bends(scene: &Scene, object: Object) -> bool {
+    match object {
+        Object::Surface(_) => false,
+        Object::Patch(i) => scene.patches[i].patch.curvature[..2] != [0.0; 2],
+        Object::Mesh(_) => true,
+    }
+}
 
 /// Returns the points at which a line meets a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
@@ -140,6 +151,8 @@ impl PlaneOnLeg {
             heading,
             side: plane.side,
             surface,
+            is_off_surface: plane.orientation == Orientation::Tangent
+                && hit.is_some_and(|hit| bends(scene, hit.object)),
         }
     }
 
@@ -162,7 +175,8 @@ impl PlaneOnLeg {
     /// Returns the distance as [`Self::crossing`] does, for a photon that starts at the distance
     /// `from`. `arrival` is the distance at which the photon arrives at the surface at the end of
     /// the leg, or `None` if the photon meets another obstacle first. If a photon starts or ends
-    /// on the surface of the virtual plane, the photon crosses the plane at its start or end.
+    /// on the surface of the virtual plane, the photon crosses the plane at its start or end. On a
+    /// tangent plane of a curved surface, light counts as if the surface were absent.
     #[inline]
     pub(crate) fn crossing_of_photon(
         &self,
@@ -172,7 +186,7 @@ impl PlaneOnLeg {
     ) -> Option<f64> {
         let known = match self.side {
             Side::After => Some(from),
-            Side::Before => arrival,
+            Side::Before => arrival.filter(|_| !self.is_off_surface),
         };
         let known = known.filter(|_| self.surface.is_some());
         known.or_else(|| self.crossing(ray, from))

@@ -11,7 +11,7 @@ use crate::heading::Heading;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
 use crate::photon_group::{ABREAST, PhotonGroup};
-use crate::plane_on_leg::PlaneOnLeg;
+use crate::plane_on_leg::{PlaneOnLeg, bends};
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Sampling, Scene};
@@ -400,15 +400,6 @@ fn is_precise(scene: &Scene) -> bool {
     };
     let has_quiet_nets = scene.run.sampling == Sampling::Net && scene.planes.iter().any(is_narrow);
     scene.run.photons > MAX_REDUCED_PHOTONS || has_quiet_nets
-}
-
-/// Checks whether a straight line may meet an object twice.
-fn bends(scene: &Scene, object: Object) -> bool {
-    match object {
-        Object::Surface(_) => false,
-        Object::Patch(i) => scene.patches[i].patch.curvature[..2] != [0.0; 2],
-        Object::Mesh(_) => true,
-    }
 }
 
 impl PhotonSource for Tracer {

@@ -89,6 +89,24 @@ fn arriving_behind_the_light() {
     }
 }
 
+/// A curved surface may extend before or behind blockers that stand near its tangent plane. Blockers
+/// before the tangent plane shade it, and all others do not.
+#[test]
+fn arriving_at_blockers_beside_a_curved_surface() {
+    for (facing, form) in [("-1", "Sphere(0.2)"), ("1", "Sphere(0.2)"), ("1", "Plane")] {
+        let surface = format!(
+            r#"Smooth(name: "s", center: (0, 0, 1), facing: (0.1, 0, {facing}), form: {form}, aperture: 0.3, event: Mirror)"#
+        );
+        for place in [0.98, 0.999] {
+            let bars = format!(
+                r#"Bars(name: "bars", center: (0.02, 0, {place}), axis: X, count: 7, pitch: 0.07, fill: 0.5)"#
+            );
+            let both = format!("{surface}], blockers: [{bars}");
+            agree(&both, &[r#"at: Before("s"), orientation: Tangent"#]);
+        }
+    }
+}
+
 /// If a tangent plane extends beyond its surface, it also records light that passes beside the
 /// surface.
 #[test]
