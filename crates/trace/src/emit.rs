@@ -73,7 +73,16 @@ impl Emitter {
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
                 if is_window {
-                    let (space, slope) = (ProfileDensity::new(space), ProfileDensity::new(slope));
+                    let [low, high] = extent[axis];
+                    let half = slope.half_width();
+                    // If a position in the window sees the light under few of the window's slopes,
+                    // points on the light are drawn uniformly.
+                    let slope = if high - low <= plane.distance * half {
+                        ProfileDensity::constant(half)
+                    } else {
+                        ProfileDensity::new(slope)
+                    };
+                    let space = ProfileDensity::new(space);
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);

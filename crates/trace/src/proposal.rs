@@ -181,20 +181,23 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
-/// light and cross the window. The position x is drawn second. Light with the drawn slope reaches a
-/// range of positions in the window, and the position is drawn from this range by the window's
-/// profile. All samples start on the light and cross the window. For a point light, x is fixed, and
-/// the density is the density of u alone.
+/// The position x in the window is drawn first, by the window's profile, from the positions that
+/// light reaches. The slope u is drawn second. The rays from the light to the drawn position have a
+/// range of slopes, and the slope is drawn from this range by the density `slope`. All samples start
+/// on the light and cross the window. For a point light, the slope follows from the position: it is
+/// drawn alone, from the slopes of rays that cross the window, and the density is that of u.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
     distance: f64,
+    /// 1 / `distance`, or 0 at the light.
+    nearness: f64,
     /// Extent of the light along this axis.
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// The cumulative densities at the two ends of the range of slopes.
+    /// The cumulative densities at the two ends of the range of positions, or of slopes for a point
+    /// light.
     range: [f64; 2],
 }
 
@@ -209,20 +212,21 @@ impl Proposal {
         space: ProfileDensity,
         slope: ProfileDensity,
     ) -> Option<Self> {
+        let [low, high] = extent;
         // A ray from x in the light is in the window when |x + distance·u| < half-width.
-        let reachable = [
-            (-space.half - extent[1]) / distance,
-            (space.half - extent[0]) / distance,
-        ];
-        let range = if distance > 0.0 {
-            reachable.map(|u| slope.cumulative(u))
-        } else if extent[0] < space.half && extent[1] > -space.half {
+        let range = if high > low {
+            let reach = if distance > 0.0 { distance * slope.half } else { 0.0 };
+            [low - reach, high + reach].map(|x| space.cumulative(x))
+        } else if distance > 0.0 {
+            [-space.half - high, space.half - low].map(|x| slope.cumulative(x / distance))
+        } else if low.abs() < space.half {
             [0.0, 1.0]
         } else {
             return None;
         };
         (range[0] < range[1]).then_some(Self {
             distance,
+            nearness: if distance > 0.0 { 1.0 / distance } else { 0.0 },
             light: extent,
             space,
             slope,
@@ -235,22 +239,25 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// Rays with the slopes `u` from the two ends of the light cross the window at two points.
-    /// Returns the cumulative densities of the window's position at these points.
+    /// Returns the cumulative densities of the slopes at which rays from the two ends of the light
+    /// reach the positions `x`. At the light, rays of all slopes have the same position.
     #[inline(always)]
-    fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
-        let at = |x: f64| {
-            let positions: [f64; N] = lanes(|i| x + self.distance * u[i]);
-            self.space.each(positions, ProfileDensity::cumulative)
-        };
-        [at(self.light[0]), at(self.light[1])]
+    fn ranges<const N: usize>(&self, x: &[f64; N]) -> [[f64; N]; 2] {
+        if self.nearness == 0.0 {
+            return [[0.0; N], [1.0; N]];
+        }
+        let [low, high] = self.light;
+        [high, low].map(|end| {
+            let slopes: [f64; N] = lanes(|i| (x[i] - end) * self.nearness);
+            self.slope.each(slopes, ProfileDensity::cumulative)
+        })
     }
 
     /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
     /// 1).
     #[inline(always)]
     pub(crate) fn samples<const N: usize>(&self, numbers: [[f64; N]; 2]) -> [[f64; N]; 2] {
-        self.samples_and_images(numbers).0
+        self.samples_and_ranges(numbers).0
     }
 
     /// Returns [`Self::samples`], and the density of each pair with respect to dx du.
@@ -259,34 +266,38 @@ impl Proposal {
         &self,
         numbers: [[f64; N]; 2],
     ) -> ([[f64; N]; 2], [f64; N]) {
-        let ([x, u], images) = self.samples_and_images(numbers);
-        ([x, u], self.densities_of([&x, &u], images))
+        let ([x, u], ranges) = self.samples_and_ranges(numbers);
+        ([x, u], self.densities_of([&x, &u], ranges))
     }
 
     /// Returns the density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
-        let images = (!self.is_point()).then(|| self.images(u));
-        self.densities_of([x, u], images)
+        let ranges = (!self.is_point()).then(|| {
+            let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
+            self.ranges(&seen)
+        });
+        self.densities_of([x, u], ranges)
     }
 
-    /// Returns [`Self::samples`], and [`Self::images`] for light of some extent.
+    /// Returns [`Self::samples`], and [`Self::ranges`] for light of some extent.
     #[inline(always)]
-    fn samples_and_images<const N: usize>(
+    fn samples_and_ranges<const N: usize>(
         &self,
         [a, b]: [[f64; N]; 2],
     ) -> ([[f64; N]; 2], Option<[[f64; N]; 2]>) {
         let between = |low: f64, high: f64, r: f64| low + r * (high - low);
         let [low, high] = self.range;
         let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
-        let u = self.slope.each(shares, ProfileDensity::quantile);
         if self.is_point() {
+            let u = self.slope.each(shares, ProfileDensity::quantile);
             return ([[self.light[0]; N], u], None);
         }
-        let [low, high] = self.images(&u);
+        let seen = self.space.each(shares, ProfileDensity::quantile);
+        let [low, high] = self.ranges(&seen);
         let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
-        let x = self.space.each(shares, ProfileDensity::quantile);
-        let x = lanes(|i| x[i] - self.distance * u[i]);
+        let u = self.slope.each(shares, ProfileDensity::quantile);
+        let x = lanes(|i| seen[i] - self.distance * u[i]);
         ([x, u], Some([low, high]))
     }
 
@@ -294,13 +305,13 @@ impl Proposal {
     fn densities_of<const N: usize>(
         &self,
         [x, u]: [&[f64; N]; 2],
-        images: Option<[[f64; N]; 2]>,
+        ranges: Option<[[f64; N]; 2]>,
     ) -> [f64; N] {
         let [left, right] = self.light;
         let share = self.range[1] - self.range[0];
         let slope = self.slope.each(*u, ProfileDensity::density);
         let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
-        let Some([low, high]) = images else {
+        let Some([low, high]) = ranges else {
             return lanes(|i| {
                 let is_seen = x[i] >= left && x[i] <= right && seen[i].abs() < self.space.half;
                 if is_seen { slope[i] / share } else { 0.0 }
