@@ -876,7 +876,7 @@ Profile = Union["ProfileHann", "ProfileBox", "ProfileGaussian"]
 Quantity = Union[Literal["Radiance"], Literal["DifferentialIrradiance"]]
 """The quantity that a plane records."""
 
-Sampling = Union[Literal["Net"], Literal["Random"]]
+Sampling = Union[Literal["Lattice"], Literal["Net"], Literal["Random"]]
 """The random numbers from which photons are drawn."""
 
 Shape = Union["ShapeRectangle", "ShapeDisc", "ShapeHalfPlane"]

@@ -408,10 +408,10 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Returns the sections on calibration, one for photons from nets and one for photons from
-/// independent random numbers.
+/// Returns the sections on calibration, for photons from lattices, from nets and from independent
+/// random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
-    let kinds = [Sampling::Net, Sampling::Random].into_iter();
+    let kinds = [Sampling::Lattice, Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));
     sections.collect()
 }
@@ -424,8 +424,9 @@ fn noise(most: u64) -> Vec<ReportSection> {
         noise::planes(planes, SEED),
         noise::parameters(planes, SEED),
         noise::floor(&decades, SEED),
-        noise::gain(planes, 64),
-        noise::gain(planes, 1024),
+        noise::gain(Sampling::Lattice, planes, 64),
+        noise::gain(Sampling::Net, planes, 64),
+        noise::gain(Sampling::Net, planes, 1024),
     ]
 }
 

@@ -76,9 +76,10 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Returns the noise of photons from nets divided by the noise of photons from random numbers, over
-/// all frequencies of a plane.
-pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
+/// Returns the noise of photons from nets or lattices divided by the noise of photons from random
+/// numbers, over all frequencies of a plane.
+pub(crate) fn gain(sampling: Sampling, photons: u64, batches: u32) -> ReportSection {
+    let kind = words(sampling);
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);
         scene.run.batches = batches;
@@ -93,17 +94,17 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
         named.collect::<Vec<_>>()
     };
     let decibels = |ratio: f64| 10.0 * ratio.log10();
-    let [net, random] = [Sampling::Net, Sampling::Random].map(variances);
+    let [found, random] = [sampling, Sampling::Random].map(variances);
     type Plane = (String, Array3<f64>);
-    let row = |((name, net), (_, random)): (&Plane, &Plane)| {
-        let mut cells: Vec<f64> = net
+    let row = |((name, found), (_, random)): (&Plane, &Plane)| {
+        let mut cells: Vec<f64> = found
             .iter()
             .zip(random)
             .map(|(n, r)| decibels(n / r))
             .collect();
         cells.sort_by(f64::total_cmp);
         let at = |part: usize, of: usize| cells[part * (cells.len() - 1) / of];
-        let total = decibels(net.sum() / random.sum());
+        let total = decibels(found.sum() / random.sum());
         let worse = cells.iter().filter(|cell| **cell > 0.5).count() as f64 / cells.len() as f64;
         let mut row: Vec<String> = [total, at(1, 2), at(0, 1), at(99, 100), at(1, 1)]
             .map(|value| format!("{value:.2}"))
@@ -121,15 +122,15 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
         Row::new(row, vec![check])
     };
     ReportSection {
-        title: format!("Noise of nets, {photons} photons in {batches} batches"),
+        title: format!("Noise of {kind}, {photons} photons in {batches} batches"),
         text: format!(
-            "The variance σ² of the slices with photons from nets is compared with the variance \
+            "The variance σ² of the slices with photons from {kind} is compared with the variance \
             with photons from random numbers. All numbers except the last are ratios of the two \
-            in dB, and a negative ratio means that nets have less noise. *Total* compares the \
+            in dB, and a negative ratio means that {kind} have less noise. *Total* compares the \
             sums over all frequencies of a plane. The next four columns describe the ratios at \
             the single frequencies, and the last column is the share of frequencies with a ratio \
             above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so the \
-            largest ratio says little with few batches. Required: the total with nets is smaller \
+            largest ratio says little with few batches. Required: the total with {kind} is smaller \
             by more than 0.1 dB.",
             10.0 / 10f64.ln() * (2.0 / f64::from(batches - 1)).sqrt()
         ),
@@ -142,7 +143,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             "largest",
             "share above 0.5 dB",
         ],
-        rows: net.iter().zip(&random).map(row).collect(),
+        rows: found.iter().zip(&random).map(row).collect(),
         checks: Vec::new(),
     }
 }
@@ -153,7 +154,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut before = None;
     for n in photons {
         let mut floors = [f64::NAN; 2];
-        for (floor, sampling) in floors.iter_mut().zip([Sampling::Random, Sampling::Net]) {
+        for (floor, sampling) in floors.iter_mut().zip([Sampling::Random, Sampling::Lattice]) {
             let scene = sampled(receiver(*n, seed), sampling);
             let report = &reports(&scene)[0];
             let mut row = row(&scene, report);
@@ -161,15 +162,15 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
             *floor = report.noise_floor_db.unwrap_or(f64::NAN);
             rows.push(row);
         }
-        let [random, net] = floors;
+        let [random, lattice] = floors;
         let last = rows.len() - 1;
         // With 64 batches and about 1000 uncorrelated frequencies, a mean σ² is accurate to 0.4 %,
         // or 0.017 dB.
         let reason = "four errors of a difference, in dB";
-        let off = net - random;
+        let off = lattice - random;
         rows[last]
             .checks
-            .push(Check::new("net", off, Below(0.1), reason));
+            .push(Check::new("lattice", off, Below(0.1), reason));
         if let Some((fewer, higher)) = before.replace((*n, random)) {
             let expected = 10.0 * (*n as f64 / fewer as f64).log10();
             let off = (higher - random - expected).abs();
@@ -182,7 +183,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         text: "Photons at the receiver plane are drawn from random numbers or from nets, in \
             increasing numbers, and their spectrum is compared with the prediction. Required: p \
             is at least α = 1 %. The noise floor of random numbers falls by 10 dB per decade of \
-            photons, within 0.1 dB. The noise floor of nets is at most 0.1 dB above the floor of \
+            photons, within 0.1 dB. The noise floor of lattices is at most 0.1 dB above the floor of \
             random numbers."
             .to_owned(),
         header: HEADER.to_vec(),

@@ -76,6 +76,7 @@ pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
 /// Returns a description of the photons' random numbers.
 pub(crate) fn words(sampling: Sampling) -> &'static str {
     match sampling {
+        Sampling::Lattice => "lattices",
         Sampling::Net => "nets",
         Sampling::Random => "random numbers",
     }

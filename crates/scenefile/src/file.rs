@@ -241,7 +241,7 @@ impl Default for RunFile {
             alpha: 0.01,
             resolution: 0.1,
             emission: Emission::Aimed,
-            sampling: Sampling::Net,
+            sampling: Sampling::Lattice,
         }
     }
 }
@@ -296,8 +296,11 @@ pub enum Emission {
 
 /// The random numbers from which photons are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[schemars(transform = told("Net or Random", "Net"))]
+#[schemars(transform = told("Lattice, Net or Random", "Lattice"))]
 pub enum Sampling {
+    /// Rank-1 lattices for the rays that leave the light, chosen for the frequencies of the planes.
+    /// Light that is not aimed, and lights without area, use nets.
+    Lattice,
     /// Scrambled Sobol' nets, one for each batch. They reduce noise, and most for batches of 2ᵐ
     /// photons.
     Net,

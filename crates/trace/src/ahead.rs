@@ -89,8 +89,12 @@ pub(crate) fn emit_group(
     range: Range<u64>,
     numbers: &Numbers,
 ) -> PhotonGroup {
-    let words = |block| numbers.columns(level, range.start, block);
-    let mut group = emitter.emit(words);
+    let mut group = match numbers {
+        Numbers::Lattice(points, ..) => {
+            emitter.emit_aimed(points.group(range.start), points.shares())
+        }
+        _ => emitter.emit(|block| numbers.columns(level, range.start, block)),
+    };
     group.end_at(range.end - range.start);
     group
 }

@@ -5,13 +5,14 @@ mod plain;
 use crate::aim::{FromSky, looks_across};
 use crate::arrival::radiance_per_flux;
 use crate::lanes::lanes;
+use crate::lattice::{LatticeGroup, Lattices};
 use crate::photon_group::{ABREAST, PhotonColumn, PhotonGroup, ray};
 use crate::plane_on_leg::PlaneOnLeg;
-use crate::proposal::{ProfileDensity, Proposal};
+use crate::proposal::{Order, ProfileDensity, Proposal};
 use crate::radiance::radiances;
 use crate::reach::{looks_at_surface, outline, reach};
 use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window};
-use etendue_scene::{Emission, Scene};
+use etendue_scene::{Emission, Sampling, Scene};
 use etendue_transform::random;
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
@@ -24,6 +25,8 @@ use plain::Plain;
 pub struct Emitter {
     light: Light,
     strategy: EmissionStrategy,
+    /// The lattices of aimed emission; `None` if nets or random numbers are used.
+    lattices: Option<Lattices>,
     level: Level,
 }
 
@@ -83,7 +86,13 @@ impl Emitter {
                         ProfileDensity::new(slope)
                     };
                     let space = ProfileDensity::new(space);
-                    return Proposal::new(plane.distance, extent[axis], space, slope);
+                    return Proposal::new(
+                        Order::Position,
+                        plane.distance,
+                        extent[axis],
+                        space,
+                        slope,
+                    );
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
                 // The bounds contain the slopes of all rays from the light to the region that the
@@ -93,7 +102,7 @@ impl Emitter {
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
                 let slope = ProfileDensity::cosine(steepest.min(seen));
                 let space = ProfileDensity::new(&Profile::Box(half));
-                Proposal::new(length, extent[axis], space, slope)
+                Proposal::new(Order::Slope, length, extent[axis], space, slope)
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
@@ -123,9 +132,17 @@ impl Emitter {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
             }
         };
+        let lattices = match &strategy {
+            EmissionStrategy::Aimed(proposals) if scene.run.sampling == Sampling::Lattice => {
+                let batch = scene.run.photons / u64::from(scene.run.batches);
+                Lattices::new(scene, proposals, batch)
+            }
+            _ => None,
+        };
         Self {
             light,
             strategy,
+            lattices,
             level: Level::new(),
         }
     }
@@ -143,6 +160,7 @@ impl Emitter {
             even if even.is_empty() => plain,
             even => Self {
                 strategy: EmissionStrategy::Even(even),
+                lattices: None,
                 ..plain
             },
         }
@@ -157,6 +175,23 @@ impl Emitter {
         } else {
             1
         }
+    }
+
+    /// Returns the lattices from which photons are drawn, if any.
+    pub(crate) fn lattices(&self) -> Option<&Lattices> {
+        self.lattices.as_ref()
+    }
+
+    /// Emits photons of a lattice together. `shares` are the shares of the photons that each proposal
+    /// has.
+    pub(crate) fn emit_aimed(&self, group: LatticeGroup, shares: &[f64]) -> PhotonGroup {
+        let EmissionStrategy::Aimed(proposals) = &self.strategy else {
+            return self.weighted([[0.0; ABREAST]; 4], [0.0; ABREAST]);
+        };
+        dispatch!(self.level, _simd => {
+            let (rays, densities) = aimed(proposals, group.words, group.proposals, shares);
+            self.weighted(rays, densities)
+        })
     }
 
     /// Emits several photons together. `words` returns a block of four random words of each photon,
@@ -187,12 +222,14 @@ impl Emitter {
             }),
             EmissionStrategy::Aimed(proposals) => {
                 let numbers = words(0);
-                let choices = match proposals[..] {
-                    [_] => [0; ABREAST],
-                    _ => words(1)[3],
+                let count = proposals.len();
+                let chosen: [usize; ABREAST] = match count {
+                    1 => [0; ABREAST],
+                    _ => words(1)[3].map(|word| random::index(word, count)),
                 };
+                let shares = vec![1.0 / count as f64; count];
                 dispatch!(self.level, _simd => {
-                    let (rays, densities) = aimed(proposals, numbers, choices);
+                    let (rays, densities) = aimed(proposals, numbers, chosen, &shares);
                     self.weighted(rays, densities)
                 })
             }
@@ -241,12 +278,13 @@ impl Emitter {
 }
 
 /// Returns rays aimed at virtual planes, as columns of x, y, u and v, and their densities. The
-/// plane at which each ray is aimed is drawn at random.
+/// plane at which each ray is aimed is `chosen`; `shares` are the shares of all rays.
 #[inline(always)]
 fn aimed(
     proposals: &[[Proposal; 2]],
     words: [[u32; ABREAST]; 4],
-    choices: [u32; ABREAST],
+    chosen: [usize; ABREAST],
+    shares: &[f64],
 ) -> ([PhotonColumn; 4], PhotonColumn) {
     let [a, b, c, d] = words.map(|words| lanes(|i| random::unit(words[i])));
     if let [[along_x, along_y]] = proposals {
@@ -255,8 +293,10 @@ fn aimed(
         return ([x, y, u, v], lanes(|i| in_x[i] * in_y[i]));
     }
     let mut rays = [[0.0; ABREAST]; 4];
-    let chosen: [usize; ABREAST] = lanes(|i| random::index(choices[i], proposals.len()));
     for (number, [along_x, along_y]) in proposals.iter().enumerate() {
+        if !chosen.contains(&number) {
+            continue;
+        }
         let [x, u] = along_x.samples([a, b]);
         let [y, v] = along_y.samples([c, d]);
         for (ray, aimed) in rays.iter_mut().zip([x, y, u, v]) {
@@ -269,21 +309,25 @@ fn aimed(
             });
         }
     }
-    (rays, densities(proposals, &rays))
+    (rays, densities(proposals, shares, &rays))
 }
 
 /// Returns the density of rays that several proposals aim. The density is per du dv for a point
 /// light, and per dx dy du dv for any other light.
 #[inline(always)]
-fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &[PhotonColumn; 4]) -> PhotonColumn {
+fn densities(
+    proposals: &[[Proposal; 2]],
+    shares: &[f64],
+    [x, y, u, v]: &[PhotonColumn; 4],
+) -> PhotonColumn {
     let mut sums = [0.0; ABREAST];
-    for [along_x, along_y] in proposals {
+    for ([along_x, along_y], share) in proposals.iter().zip(shares) {
         let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));
         for (i, sum) in sums.iter_mut().enumerate() {
-            *sum += in_x[i] * in_y[i];
+            *sum += share * in_x[i] * in_y[i];
         }
     }
-    lanes(|i| sums[i] / proposals.len() as f64)
+    sums
 }
 
 /// Lowest and highest coordinate along two axes.

@@ -24,6 +24,7 @@ mod footprint_sampler;
 mod grid;
 mod heading;
 mod lanes;
+mod lattice;
 mod line;
 mod mesh;
 mod mesh_order;

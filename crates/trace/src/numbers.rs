@@ -1,17 +1,19 @@
 //! Provides the random numbers with which photons are drawn.
 
+use crate::lattice::{LatticePoints, Lattices};
 use etendue_scene::{Run, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
 use fearless_simd::{Level, dispatch};
+use std::ops::Range;
 
 /// The source of the random numbers of photons, with their division into blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonNumbers {
     sampling: Sampling,
     seed: u64,
-    /// The two streams: one of random numbers and one of nets.
-    streams: [Stream; 2],
+    /// The streams of random numbers, nets and lattices.
+    streams: [Stream; 3],
     /// The maximum number of blocks, of four random numbers each, that a photon uses.
     blocks: u32,
 }
@@ -25,13 +27,15 @@ pub(crate) enum Numbers {
     },
     /// A net, and the number of the photon that uses the net's first point.
     Net(Net, u64),
+    /// A lattice for the emission, and a net for everything else.
+    Lattice(LatticePoints, Net, u64),
 }
 
 /// The number of points of a net, which equals the number of values of a 32-bit word.
 const POINTS: u64 = 1 << 32;
 
 impl PhotonNumbers {
-    pub(crate) fn new(run: &Run, streams: [Stream; 2], legs: usize) -> Self {
+    pub(crate) fn new(run: &Run, streams: [Stream; 3], legs: usize) -> Self {
         Self {
             sampling: run.sampling,
             seed: run.seed,
@@ -41,22 +45,35 @@ impl PhotonNumbers {
         }
     }
 
-    /// Returns the random numbers for the photons with the numbers `start` and above. The first
-    /// photon of their batch has the number `first`. Each batch has its own net, or several nets if
-    /// it has more than 2³² photons.
-    pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
+    /// Returns the random numbers for the photons with the numbers `start` and above. The photons of
+    /// their batch have the numbers `range`. Each batch has its own net, or several nets if it has
+    /// more than 2³² photons.
+    pub(crate) fn of(
+        &self,
+        batch: u32,
+        range: &Range<u64>,
+        start: u64,
+        lattices: Option<&Lattices>,
+    ) -> Numbers {
         let Self { seed, blocks, .. } = *self;
-        let [random, net] = self.streams;
-        match self.sampling {
-            Sampling::Random => Numbers::Random {
+        let [random, net, lattice] = self.streams;
+        if self.sampling == Sampling::Random {
+            return Numbers::Random {
                 seed,
                 stream: random,
-            },
-            Sampling::Net => {
-                let number = (start - first) / POINTS;
-                let index = u64::from(batch) | number << 32;
-                Numbers::Net(Net::new(seed, net, index, blocks), first + number * POINTS)
+            };
+        }
+        let number = (start - range.start) / POINTS;
+        let index = u64::from(batch) | number << 32;
+        let (net, first) = (
+            Net::new(seed, net, index, blocks),
+            range.start + number * POINTS,
+        );
+        match lattices {
+            Some(lattices) => {
+                Numbers::Lattice(lattices.of(seed, lattice, batch, range), net, first)
             }
+            None => Numbers::Net(net, first),
         }
     }
 }
@@ -67,7 +84,9 @@ impl Numbers {
     pub(crate) fn words(&self, photon: u64, block: u32) -> [u32; 4] {
         match self {
             Self::Random { seed, stream } => random::words(*seed, *stream, photon, block),
-            Self::Net(net, first) => net.words(point(photon, *first), block),
+            Self::Net(net, first) | Self::Lattice(_, net, first) => {
+                net.words(point(photon, *first), block)
+            }
         }
     }
 
@@ -78,7 +97,7 @@ impl Numbers {
         photon: u64,
         block: u32,
     ) -> [[u32; N]; 4] {
-        if let Self::Net(net, first) = self {
+        if let Self::Net(net, first) | Self::Lattice(_, net, first) = self {
             let point = point(photon, *first);
             return dispatch!(level, _simd => net.columns(point, block));
         }

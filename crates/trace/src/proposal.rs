@@ -181,13 +181,13 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// The position x in the window is drawn first, by the window's profile, from the positions that
-/// light reaches. The slope u is drawn second. The rays from the light to the drawn position have a
-/// range of slopes, and the slope is drawn from this range by the density `slope`. All samples start
-/// on the light and cross the window. For a point light, the slope follows from the position: it is
-/// drawn alone, from the slopes of rays that cross the window, and the density is that of u.
+/// One of the position in the window and the slope is drawn first, by its density over the range
+/// that rays from the light to the window have. The other is drawn second, from the range that it
+/// has for the first. All samples start on the light and cross the window. For a point light, the
+/// slope alone is drawn, and the density is that of the slope.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
+    order: Order,
     /// Distance of the window from the light.
     distance: f64,
     /// 1 / `distance`, or 0 at the light.
@@ -196,35 +196,48 @@ pub(crate) struct Proposal {
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// The cumulative densities at the two ends of the range of positions, or of slopes for a point
-    /// light.
+    /// The cumulative densities at the two ends of the range of the first coordinate.
     range: [f64; 2],
+}
+
+/// The coordinate that is drawn first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// The position in the window. It has a smooth window, so numbers that are evenly distributed
+    /// have less noise than with the other order.
+    Position,
+    /// The slope. Light at small angles to a surface reaches a large part of it, and most of this
+    /// part receives little light.
+    Slope,
 }
 
 impl Proposal {
     /// Builds the proposal for light of extent `extent` and a window with the profiles `space` and
-    /// `slope` at `distance`.
+    /// `slope` at `distance`. For a point light, the order has no influence.
     ///
     /// Returns `None` if no ray from the light crosses the window.
     pub(crate) fn new(
+        order: Order,
         distance: f64,
         extent: [f64; 2],
         space: ProfileDensity,
         slope: ProfileDensity,
     ) -> Option<Self> {
         let [low, high] = extent;
-        // A ray from x in the light is in the window when |x + distance·u| < half-width.
-        let range = if high > low {
-            let reach = if distance > 0.0 { distance * slope.half } else { 0.0 };
+        let order = if high > low { order } else { Order::Slope };
+        let range = if order == Order::Position {
+            let reach = distance.max(0.0) * slope.half;
             [low - reach, high + reach].map(|x| space.cumulative(x))
         } else if distance > 0.0 {
+            // A ray from x in the light is in the window when |x + distance·u| < half-width.
             [-space.half - high, space.half - low].map(|x| slope.cumulative(x / distance))
-        } else if low.abs() < space.half {
+        } else if low < space.half && high > -space.half {
             [0.0, 1.0]
         } else {
             return None;
         };
         (range[0] < range[1]).then_some(Self {
+            order,
             distance,
             nearness: if distance > 0.0 { 1.0 / distance } else { 0.0 },
             light: extent,
@@ -234,23 +247,28 @@ impl Proposal {
         })
     }
 
+    /// Checks whether the light is a point along this axis.
     #[inline]
-    fn is_point(&self) -> bool {
+    pub(crate) fn is_point(&self) -> bool {
         self.light[1] <= self.light[0]
     }
 
-    /// Returns the cumulative densities of the slopes at which rays from the two ends of the light
-    /// reach the positions `x`. At the light, rays of all slopes have the same position.
+    /// Returns the cumulative densities at the two ends of the range of the second coordinate.
     #[inline(always)]
-    fn ranges<const N: usize>(&self, x: &[f64; N]) -> [[f64; N]; 2] {
-        if self.nearness == 0.0 {
-            return [[0.0; N], [1.0; N]];
-        }
+    fn ranges<const N: usize>(&self, first: &[f64; N]) -> [[f64; N]; 2] {
         let [low, high] = self.light;
-        [high, low].map(|end| {
-            let slopes: [f64; N] = lanes(|i| (x[i] - end) * self.nearness);
-            self.slope.each(slopes, ProfileDensity::cumulative)
-        })
+        match self.order {
+            // At the light, rays of all slopes have the same position.
+            Order::Position if self.nearness == 0.0 => [[0.0; N], [1.0; N]],
+            Order::Position => [high, low].map(|end| {
+                let slopes: [f64; N] = lanes(|i| (first[i] - end) * self.nearness);
+                self.slope.each(slopes, ProfileDensity::cumulative)
+            }),
+            Order::Slope => [low, high].map(|end| {
+                let positions: [f64; N] = lanes(|i| end + self.distance * first[i]);
+                self.space.each(positions, ProfileDensity::cumulative)
+            }),
+        }
     }
 
     /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
@@ -273,9 +291,9 @@ impl Proposal {
     /// Returns the density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
-        let ranges = (!self.is_point()).then(|| {
-            let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
-            self.ranges(&seen)
+        let ranges = (!self.is_point()).then(|| match self.order {
+            Order::Position => self.ranges(&lanes(|i| x[i] + self.distance * u[i])),
+            Order::Slope => self.ranges(u),
         });
         self.densities_of([x, u], ranges)
     }
@@ -287,18 +305,36 @@ impl Proposal {
         [a, b]: [[f64; N]; 2],
     ) -> ([[f64; N]; 2], Option<[[f64; N]; 2]>) {
         let between = |low: f64, high: f64, r: f64| low + r * (high - low);
+        let [first, second] = match self.order {
+            Order::Position => [&self.space, &self.slope],
+            Order::Slope => [&self.slope, &self.space],
+        };
         let [low, high] = self.range;
         let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
+        let first = first.each(shares, ProfileDensity::quantile);
         if self.is_point() {
-            let u = self.slope.each(shares, ProfileDensity::quantile);
-            return ([[self.light[0]; N], u], None);
+            return ([[self.light[0]; N], first], None);
         }
-        let seen = self.space.each(shares, ProfileDensity::quantile);
-        let [low, high] = self.ranges(&seen);
+        let [low, high] = self.ranges(&first);
         let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
-        let u = self.slope.each(shares, ProfileDensity::quantile);
+        let second = second.each(shares, ProfileDensity::quantile);
+        let [seen, u] = match self.order {
+            Order::Position => [first, second],
+            Order::Slope => [second, first],
+        };
         let x = lanes(|i| seen[i] - self.distance * u[i]);
         ([x, u], Some([low, high]))
+    }
+
+    /// Returns the matrix that takes frequencies over the two random numbers of [`Self::samples`] to
+    /// frequencies over (x, u), where samples are a linear function of the random numbers. The
+    /// linear function has the mean derivatives of samples in the middle half of each number.
+    pub(crate) fn frequencies(&self) -> [[f64; 2]; 2] {
+        let [x, u] = self.samples([[0.25, 0.75, 0.5, 0.5], [0.5, 0.5, 0.25, 0.75]]);
+        let derivatives = |of: [f64; 4]| [2.0 * (of[1] - of[0]), 2.0 * (of[3] - of[2])];
+        let ([xa, xb], [ua, ub]) = (derivatives(x), derivatives(u));
+        let determinant = xa * ub - ua * xb;
+        [[ub, -ua], [-xb, xa]].map(|row| row.map(|value| value / determinant))
     }
 
     #[inline(always)]
@@ -354,24 +390,32 @@ mod tests {
                 ProfileDensity::cosine(3.0),
             ),
         ] {
-            let proposal =
-                Proposal::new(distance, light, ProfileDensity::new(&space), slope).unwrap();
-            let cells = RectangleCells::new([light, [-slope.half, slope.half]], [24, 24]);
-            let samples = (0..100_000).map(|index| {
-                let [a, b, ..] = random::words(9, Stream::Photon, index, 0).map(random::unit);
-                let [[x], [u]] = proposal.samples([[a], [b]]);
-                Some([x, u])
+            let [by_position, by_slope] = [Order::Position, Order::Slope].map(|order| {
+                let space = ProfileDensity::new(&space);
+                Proposal::new(order, distance, light, space, slope).unwrap()
             });
-            let found = cells.compare(samples, |[x, u]| proposal.densities([&[x], &[u]])[0]);
-            assert!(found.agrees(), "{found:?} at {distance}");
+            let cells = RectangleCells::new([light, [-slope.half, slope.half]], [24, 24]);
+            for proposal in [by_position, by_slope] {
+                let samples = (0..100_000).map(|index| {
+                    let [a, b, ..] = random::words(9, Stream::Photon, index, 0).map(random::unit);
+                    let [[x], [u]] = proposal.samples([[a], [b]]);
+                    Some([x, u])
+                });
+                let found = cells.compare(samples, |[x, u]| proposal.densities([&[x], &[u]])[0]);
+                assert!(found.agrees(), "{found:?} of {proposal:?}");
+            }
         }
     }
 
     #[test]
     fn out_of_reach_is_none() {
         let hann = ProfileDensity::new(&Profile::Hann(0.1));
-        assert!(Proposal::new(0.0, [0.2, 0.3], hann, hann).is_none());
-        assert!(Proposal::new(1.0, [0.3, 0.4], hann, hann).is_none());
-        assert!(Proposal::new(1.0, [0.15, 0.4], hann, hann).is_some());
+        for order in [Order::Position, Order::Slope] {
+            let is_reached =
+                |distance, light| Proposal::new(order, distance, light, hann, hann).is_some();
+            assert!(!is_reached(0.0, [0.2, 0.3]));
+            assert!(!is_reached(1.0, [0.3, 0.4]));
+            assert!(is_reached(1.0, [0.15, 0.4]));
+        }
     }
 }

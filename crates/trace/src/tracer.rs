@@ -48,9 +48,9 @@ pub struct Tracer {
 }
 
 /// The largest number of photons with which spectra have reduced precision. Random photons then
-/// have noise of 1.3·10⁻⁴ of the value at zero, ten times the largest error of the transform. Nets
-/// may have less noise at some frequencies: with 4·10⁶ photons the error is at most 0.005 standard
-/// errors (results/performance.md), and noise falls at most as 1/photons.
+/// have noise of 1.3·10⁻⁴ of the value at zero, ten times the largest error of the transform.
+/// Lattices have less noise at most frequencies: with 8·10⁶ photons the error is at most 0.012
+/// standard errors, with 5·10⁷ photons 0.005 (results/performance.md).
 const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 
 /// The smallest number of cycles of the largest frequency across the width of a light with which
@@ -135,7 +135,11 @@ impl Tracer {
             planes: scene.planes.len(),
             is_precise: is_precise(scene),
             shares: BatchRanges::new(&scene.run),
-            numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
+            numbers: PhotonNumbers::new(
+                &scene.run,
+                [Stream::Photon, Stream::Net, Stream::Lattice],
+                legs.len(),
+            ),
             level: Level::new(),
             legs,
             ahead: AheadPool::default(),
@@ -156,7 +160,7 @@ impl Tracer {
             emitter: Emitter::evenly(scene),
             numbers: PhotonNumbers::new(
                 &scene.run,
-                [Stream::Even, Stream::EvenNet],
+                [Stream::Even, Stream::EvenNet, Stream::EvenLattice],
                 plain.legs.len(),
             ),
             ..plain
@@ -398,7 +402,8 @@ fn is_precise(scene: &Scene) -> bool {
             (high - low) * plane.grid.rho.max() < MIN_LIGHT_CYCLES
         })
     };
-    let has_quiet_nets = scene.run.sampling == Sampling::Net && scene.planes.iter().any(is_narrow);
+    let has_quiet_nets =
+        scene.run.sampling != Sampling::Random && scene.planes.iter().any(is_narrow);
     scene.run.photons > MAX_REDUCED_PHOTONS || has_quiet_nets
 }
 
@@ -438,7 +443,9 @@ impl PhotonSource for Tracer {
         let mut photons = Vec::with_capacity(BLOCK);
         let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes];
         let mut total = Ledger::default();
-        let first = self.shares.of(batch).start;
+        let all = self.shares.of(batch);
+        let lattices = self.emitter.lattices();
+        let numbers = |at| self.numbers.of(batch, &all, at, lattices);
         let range = self.shares.part(batch, part);
         let mut ahead = self.ahead.take();
         for start in range.clone().step_by(BLOCK) {
@@ -447,10 +454,9 @@ impl PhotonSource for Tracer {
             if (start - range.start).is_multiple_of(AHEAD as u64) {
                 let until = range.end.min(start + AHEAD as u64);
                 let flat = self.flat.as_ref();
-                let numbers = |at| self.numbers.of(batch, first, at);
-                ahead.refill(&self.emitter, flat, start..until, numbers);
+                ahead.refill(&self.emitter, flat, start..until, &numbers);
             }
-            let numbers = self.numbers.of(batch, first, start);
+            let numbers = numbers(start);
             self.emit_block(
                 start..end,
                 &numbers,

@@ -5,6 +5,7 @@
 mod brdfs;
 mod common;
 mod environment;
+mod lattices;
 mod legs;
 mod memory;
 mod meshes;

@@ -25,6 +25,10 @@ pub enum Stream {
     Points,
     /// The shift of set `index` of points.
     Shift,
+    /// The shifts of the lattices of batch `index` of photons.
+    Lattice,
+    /// The shifts of the lattices of a batch of photons whose emission is not aimed.
+    EvenLattice,
 }
 
 /// Returns four random words for `block` of item `index` in a stream of `seed`.

@@ -83,7 +83,7 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
 /// the section on the smallest rejected size. At this size and at all larger tried sizes, the fault
 /// is rejected.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
-    let kinds = [Sampling::Net, Sampling::Random];
+    let kinds = [Sampling::Lattice, Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
     let sound: Vec<Measurement> = scenes.iter().map(traced).collect();
     let bar = progress((FAULTS.len() * kinds.len()) as u64, "faults");
@@ -116,10 +116,10 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
         text: format!(
             "Each fault is planted with a size of 1 %, and then {HALVES} times with half of the \
             size before. The table shows the smallest size that is rejected together with all \
-            larger sizes, for photons from nets and from random numbers. Required: this size is \
+            larger sizes, for photons from lattices, from nets and from random numbers. Required: this size is \
             smaller than 1 %."
         ),
-        header: vec!["fault", "nets", "random numbers"],
+        header: vec!["fault", "lattices", "nets", "random numbers"],
         rows,
         checks: Vec::new(),
     }

@@ -84,7 +84,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
             alpha: 0.01,
             resolution: 0.1,
             emission,
-            sampling: Sampling::Net,
+            sampling: Sampling::Lattice,
         },
     })
 }

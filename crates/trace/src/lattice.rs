@@ -1,0 +1,352 @@
+//! Rank-1 lattices of random numbers, chosen for the frequencies of virtual planes.
+//!
+//! Point i of a lattice of N points is the fractional part of i·g/N + shift, with a vector g of whole
+//! numbers. Shifted at random, a lattice estimates a Fourier coefficient of a function with an error
+//! that is the sum of the function's coefficients at all other points of the dual lattice around
+//! it, {h: h·g = 0 mod N} (Sloan and Joe 1994, *Lattice Methods for Multiple Integration*, section
+//! 2.7). Light has most of its power at low frequencies. So a lattice has little noise at the
+//! frequencies of slices if no point of the dual lattice is near the difference of these
+//! frequencies and zero.
+
+use crate::lanes::lanes;
+use crate::photon_group::ABREAST;
+use crate::proposal::Proposal;
+use etendue_field::VirtualPlane;
+use etendue_scene::Scene;
+use etendue_transform::random::{self, Stream};
+use std::ops::Range;
+
+/// One lattice for each proposal of an emission.
+#[derive(Debug)]
+pub(crate) struct Lattices {
+    /// The vectors g / N, in units of 2⁻⁶⁴.
+    steps: Vec<[u64; 4]>,
+}
+
+/// The points of the lattices of a batch. The photons of the batch are divided evenly among the
+/// proposals, in the order of their numbers.
+#[derive(Debug)]
+pub(crate) struct LatticePoints {
+    /// The steps and the shift of each lattice.
+    lattices: Vec<[[u64; 4]; 2]>,
+    /// The number of the first photon of the batch, and the number of photons.
+    first: u64,
+    count: u64,
+    /// The share of the photons that each proposal has.
+    shares: Vec<f64>,
+}
+
+/// Random numbers of a group of photons.
+pub(crate) struct LatticeGroup {
+    pub(crate) words: [[u32; ABREAST]; 4],
+    /// The proposal of each photon.
+    pub(crate) proposals: [usize; ABREAST],
+}
+
+/// The least and largest number of lattices that are tried for each proposal.
+const TRIALS: [u64; 2] = [8, 256];
+
+/// The number of photons for each lattice that is tried, and the largest number of azimuths of all
+/// planes for which all lattices are tried. So the choice takes a small part of the time of a run.
+const PHOTONS_PER_TRIAL: u64 = 4096;
+const AZIMUTHS: usize = 32;
+
+/// The smallest number of points of a lattice.
+const MIN_POINTS: u64 = 64;
+
+/// The coefficients with which basis vectors of a dual lattice are added up run from −`COEFFICIENT`
+/// to `COEFFICIENT`.
+const COEFFICIENT: i32 = 3;
+
+/// The frequencies at which a virtual plane's slices are computed.
+#[derive(Debug, PartialEq)]
+struct Target {
+    /// Distance of the plane from the light.
+    distance: f64,
+    /// Sine and cosine of each azimuth.
+    azimuths: Vec<(f64, f64)>,
+    /// The largest frequencies (ρ, ν).
+    largest: [f64; 2],
+    /// The widths of the spectrum of the window over ρ and ν.
+    widths: [f64; 2],
+}
+
+impl Target {
+    /// Returns the frequencies of a virtual plane in coordinates of the first leg. Behind a surface,
+    /// the angle at which light arrives has little influence, so only positions count.
+    fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
+        let window = &plane.window;
+        let half = |a: f64, b: f64| (a * b).sqrt();
+        let grid = &plane.grid;
+        let (distance, nu) = match plane.leg {
+            0 => (plane.distance, grid.nu.max()),
+            _ => (scene.path.first_hit(), 0.0),
+        };
+        Self {
+            distance,
+            azimuths: (0..grid.azimuths)
+                .map(|k| libm::sincos(grid.azimuth(k)))
+                .collect(),
+            largest: [grid.rho.max(), nu],
+            widths: [
+                0.5 / half(window.x.half_width(), window.y.half_width()),
+                0.5 / half(window.u.half_width(), window.v.half_width()),
+            ],
+        }
+    }
+
+    /// Returns how near a frequency (ρ, ν) along x and y, of light at the light, is to a frequency
+    /// of the slices: between 0 and the number of azimuths.
+    fn nearness(&self, [along_x, along_y]: [[f64; 2]; 2]) -> f64 {
+        let at = |[rho, nu]: [f64; 2]| [rho, nu - rho * self.distance];
+        let ([rho_x, nu_x], [rho_y, nu_y]) = (at(along_x), at(along_y));
+        let squared = |axis: usize, along: f64, across: f64| {
+            let beyond = (along.abs() - self.largest[axis]).max(0.0);
+            (across * across + beyond * beyond) / (self.widths[axis] * self.widths[axis])
+        };
+        let near = |&(sin, cos): &(f64, f64)| {
+            let rho = squared(0, rho_x * cos + rho_y * sin, rho_y * cos - rho_x * sin);
+            let nu = squared(1, nu_x * cos + nu_y * sin, nu_y * cos - nu_x * sin);
+            1.0 / ((1.0 + rho) * (1.0 + nu))
+        };
+        self.azimuths.iter().map(near).sum()
+    }
+}
+
+impl Lattices {
+    /// Returns lattices for batches of `count` photons; `None` if there are too few photons for
+    /// lattices.
+    pub(crate) fn new(scene: &Scene, proposals: &[[Proposal; 2]], count: u64) -> Option<Self> {
+        let points = count / proposals.len() as u64;
+        let is_point = proposals.iter().flatten().any(Proposal::is_point);
+        if is_point || points < MIN_POINTS || points > u64::from(u32::MAX) {
+            return None;
+        }
+        let mut targets: Vec<Target> = Vec::new();
+        for target in scene.planes.iter().map(|plane| Target::new(scene, plane)) {
+            if !targets.contains(&target) {
+                targets.push(target);
+            }
+        }
+        let azimuths: usize = targets.iter().map(|target| target.azimuths.len()).sum();
+        let trials = (TRIALS[1] * AZIMUTHS as u64 / azimuths as u64)
+            .min(scene.run.photons / PHOTONS_PER_TRIAL)
+            .clamp(TRIALS[0], TRIALS[1]);
+        let steps = proposals.iter().map(|proposal| {
+            let mut best = (f64::INFINITY, None);
+            for g in (0..trials).filter_map(|i| generator(i, points)) {
+                let found = badness(proposal, &targets, points, g, best.0);
+                if found < best.0 {
+                    best = (found, Some(g));
+                }
+            }
+            best.1.map(|g| g.map(|g| fraction(g, points)))
+        });
+        let steps = steps.collect::<Option<_>>()?;
+        Some(Self { steps })
+    }
+
+    /// Returns the points for a batch whose photons have the numbers `range`.
+    pub(crate) fn of(
+        &self,
+        seed: u64,
+        stream: Stream,
+        batch: u32,
+        range: &Range<u64>,
+    ) -> LatticePoints {
+        let (first, count) = (range.start, range.end - range.start);
+        let number = self.steps.len() as u64;
+        let start = |p: u64| (count * p).div_ceil(number);
+        let shift = |p: u32| {
+            let [a, b] =
+                [0, 1].map(|half| random::words(seed, stream, u64::from(batch), 2 * p + half));
+            [0, 1, 2, 3].map(|i| u64::from(a[i]) << 32 | u64::from(b[i]))
+        };
+        LatticePoints {
+            lattices: (0..)
+                .zip(&self.steps)
+                .map(|(p, steps)| [*steps, shift(p)])
+                .collect(),
+            first,
+            count,
+            shares: (0..number)
+                .map(|p| (start(p + 1) - start(p)) as f64 / count as f64)
+                .collect(),
+        }
+    }
+}
+
+impl LatticePoints {
+    /// Returns the share of the photons that each proposal has.
+    pub(crate) fn shares(&self) -> &[f64] {
+        &self.shares
+    }
+
+    /// Returns the random numbers of a group of photons that begins with `photon`.
+    #[inline]
+    pub(crate) fn group(&self, photon: u64) -> LatticeGroup {
+        let number = self.lattices.len() as u64;
+        let index = |i: usize| (photon - self.first + i as u64).min(self.count - 1);
+        let proposal = |i: usize| (index(i) * number / self.count) as usize;
+        let (begin, end) = (proposal(0), proposal(ABREAST - 1));
+        let word = |i: usize, k: usize, [steps, shift]: &[[u64; 4]; 2]| {
+            (index(i).wrapping_mul(steps[k]).wrapping_add(shift[k]) >> 32) as u32
+        };
+        if begin == end {
+            let lattice = &self.lattices[begin];
+            return LatticeGroup {
+                words: [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, lattice))),
+                proposals: [begin; ABREAST],
+            };
+        }
+        LatticeGroup {
+            words: [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, &self.lattices[proposal(i)]))),
+            proposals: lanes(proposal),
+        }
+    }
+}
+
+/// Returns g/N in units of 2⁻⁶⁴.
+#[expect(clippy::cast_possible_truncation, reason = "g < N")]
+fn fraction(g: u64, points: u64) -> u64 {
+    ((u128::from(g) << 64) / u128::from(points)) as u64
+}
+
+/// Returns the vector (1, a, a², a³) modulo N, for a number a drawn at random (Korobov 1960); `None`
+/// if a and N have a common divisor.
+fn generator(candidate: u64, points: u64) -> Option<[u64; 4]> {
+    let [word, ..] = random::words(0, Stream::Lattice, candidate, 0);
+    let a = 1 + u64::from(word) % (points - 1);
+    let mut divisor = [a, points];
+    while divisor[0] > 0 {
+        divisor = [divisor[1] % divisor[0], divisor[0]];
+    }
+    let square = a * a % points;
+    (divisor[1] == 1).then_some([1, a, square, square * a % points])
+}
+
+/// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
+/// [`Target::nearness`] over the shortest vectors of the dual lattice. Returns a part of the sum if
+/// this part exceeds `limit`.
+fn badness(
+    proposal: &[Proposal; 2],
+    targets: &[Target],
+    points: u64,
+    g: [u64; 4],
+    limit: f64,
+) -> f64 {
+    let inverses = proposal.each_ref().map(Proposal::frequencies);
+    let basis = dual_basis(points, g).map(|vector| vector.map(|h| h as f64));
+    let coefficients = || -COEFFICIENT..=COEFFICIENT;
+    let mut sum = 0.0;
+    for (a, b) in coefficients().flat_map(|a| coefficients().map(move |b| (a, b))) {
+        for (c, d) in coefficients().flat_map(|c| coefficients().map(move |d| (c, d))) {
+            // Opposite vectors have the same value, so half of them is enough.
+            if [a, b, c, d] <= [0; 4] {
+                continue;
+            }
+            let factors = [a, b, c, d].map(f64::from);
+            let h: [f64; 4] = lanes(|axis| (0..4).map(|i| factors[i] * basis[i][axis]).sum());
+            let along = [0, 1].map(|i| {
+                let [[a, b], [c, d]] = inverses[i];
+                let (at, slope) = (h[2 * i], h[2 * i + 1]);
+                [a * at + b * slope, c * at + d * slope]
+            });
+            let all = targets.iter().map(|target| target.nearness(along));
+            sum += all.sum::<f64>();
+        }
+        if sum > limit {
+            break;
+        }
+    }
+    sum
+}
+
+/// Returns a basis of short vectors of the dual lattice: multiples of one vector
+/// are subtracted from another until no vector becomes shorter.
+fn dual_basis(points: u64, [_, a, b, c]: [u64; 4]) -> [[i64; 4]; 4] {
+    let [n, a, b, c] = [points, a, b, c].map(|number| i64::try_from(number).unwrap_or(i64::MAX));
+    let mut basis = [[n, 0, 0, 0], [-a, 1, 0, 0], [-b, 0, 1, 0], [-c, 0, 0, 1]];
+    let dot = |p: [i64; 4], q: [i64; 4]| -> i128 {
+        (0..4).map(|i| i128::from(p[i]) * i128::from(q[i])).sum()
+    };
+    loop {
+        let mut is_reduced = true;
+        for i in 0..4 {
+            for j in (0..4).filter(|j| *j != i) {
+                let length = dot(basis[j], basis[j]);
+                let times = (dot(basis[i], basis[j]) as f64 / length as f64).round() as i64;
+                if times == 0 {
+                    continue;
+                }
+                let reduced: [i64; 4] = std::array::from_fn(|k| basis[i][k] - times * basis[j][k]);
+                if dot(reduced, reduced) < dot(basis[i], basis[i]) {
+                    basis[i] = reduced;
+                    is_reduced = false;
+                }
+            }
+        }
+        if is_reduced {
+            return basis;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dual_basis_spans_the_dual_lattice() {
+        for points in [64, 1000, 26_214, 1 << 17, 1_000_003] {
+            let g = (0..).find_map(|i| generator(i, points)).unwrap();
+            let basis = dual_basis(points, g);
+            for h in basis {
+                let product: i128 = (0..4).map(|i| i128::from(h[i]) * i128::from(g[i])).sum();
+                assert_eq!(product.rem_euclid(i128::from(points)), 0, "{h:?}");
+            }
+            let rows = basis.map(|row| glam::DVec4::from(row.map(|h| h as f64)));
+            let volume = glam::DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).determinant();
+            assert!(
+                (volume.abs() / points as f64 - 1.0).abs() < 1e-9,
+                "{volume} of {points}"
+            );
+            // The shortest vector of a lattice of this volume has at most this length (Hermite).
+            let length = rows
+                .map(glam::DVec4::length)
+                .into_iter()
+                .fold(f64::INFINITY, f64::min);
+            assert!(
+                length <= 1.2 * libm::pow(points as f64, 0.25),
+                "{length} of {points}"
+            );
+        }
+    }
+
+    /// Every photon of a batch has one point of the lattice of its proposal.
+    #[test]
+    fn groups_are_the_points_of_their_lattices() {
+        let lattices = Lattices {
+            steps: [300_u64, 301, 302]
+                .map(|points| [1, 7, 49, 43].map(|g| fraction(g, points)))
+                .to_vec(),
+        };
+        let range = 5_000..5_903;
+        let points = lattices.of(1, Stream::Lattice, 3, &range);
+        assert_eq!(points.shares(), [1.0 / 3.0; 3]);
+        let mut counts = [0; 3];
+        for first in range.clone().step_by(ABREAST) {
+            let group = points.group(first);
+            for (i, photon) in (0..ABREAST).zip(first..range.end) {
+                let index = photon - range.start;
+                let proposal = group.proposals[i];
+                counts[proposal] += 1;
+                assert_eq!(proposal as u64, index / 301);
+                let [steps, shift] = points.lattices[proposal];
+                let word = index.wrapping_mul(steps[1]).wrapping_add(shift[1]) >> 32;
+                assert_eq!(u64::from(group.words[1][i]), word);
+            }
+        }
+        assert_eq!(counts, [301; 3]);
+    }
+}
