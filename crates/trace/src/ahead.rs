@@ -90,9 +90,10 @@ pub(crate) fn emit_group(
     numbers: &Numbers,
 ) -> PhotonGroup {
     let mut group = match numbers {
-        Numbers::Lattice(points, ..) => {
-            emitter.emit_aimed(points.group(range.start), points.shares())
-        }
+        Numbers::Lattice(points, ..) => emitter.emit_aimed(
+            points.group(range.start, || numbers.columns(level, range.start, 0)),
+            points.shares(),
+        ),
         _ => emitter.emit(|block| numbers.columns(level, range.start, block)),
     };
     group.end_at(range.end - range.start);

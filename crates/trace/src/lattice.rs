@@ -16,19 +16,20 @@ use etendue_scene::Scene;
 use etendue_transform::random::{self, Stream};
 use std::ops::Range;
 
-/// One lattice for each proposal of an emission.
+/// One lattice for each proposal of an emission that is aimed at a window. Proposals that are aimed at
+/// a surface use a net: their rays are no linear function of random numbers.
 #[derive(Debug)]
 pub(crate) struct Lattices {
     /// The vectors g / N, in units of 2⁻⁶⁴.
-    steps: Vec<[u64; 4]>,
+    steps: Vec<Option<[u64; 4]>>,
 }
 
 /// The points of the lattices of a batch. The photons of the batch are divided evenly among the
 /// proposals, in the order of their numbers.
 #[derive(Debug)]
 pub(crate) struct LatticePoints {
-    /// The steps and the shift of each lattice.
-    lattices: Vec<[[u64; 4]; 2]>,
+    /// The steps and the shift of each lattice; `None` for a net.
+    lattices: Vec<Option<[[u64; 4]; 2]>>,
     /// The number of the first photon of the batch, and the number of photons.
     first: u64,
     count: u64,
@@ -50,6 +51,9 @@ const TRIALS: [u64; 2] = [8, 256];
 /// planes for which all lattices are tried. So the choice takes a small part of the time of a run.
 const PHOTONS_PER_TRIAL: u64 = 4096;
 const AZIMUTHS: usize = 32;
+
+/// The number of lattices that are compared with the replicas of the spectrum behind blockers.
+const SHORTLIST: usize = 16;
 
 /// The smallest number of points of a lattice.
 const MIN_POINTS: u64 = 64;
@@ -132,18 +136,25 @@ impl Lattices {
         let trials = (TRIALS[1] * AZIMUTHS as u64 / azimuths as u64)
             .min(scene.run.photons / PHOTONS_PER_TRIAL)
             .clamp(TRIALS[0], TRIALS[1]);
+        let replicas = replicas(scene);
         let steps = proposals.iter().map(|proposal| {
-            let mut best = (f64::INFINITY, None);
-            for g in (0..trials).filter_map(|i| generator(i, points)) {
-                let found = badness(proposal, &targets, points, g, best.0);
-                if found < best.0 {
-                    best = (found, Some(g));
-                }
+            if !proposal.iter().all(Proposal::begins_in_window) {
+                return None;
             }
-            best.1.map(|g| g.map(|g| fraction(g, points)))
+            let generators = (0..trials).filter_map(|i| generator(i, points));
+            let by_light = |g| (badness(proposal, &targets, &[DIRECT], points, g), g);
+            let mut tried: Vec<_> = generators.map(by_light).collect();
+            tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let best = tried
+                .iter()
+                .take(SHORTLIST)
+                .map(|(_, g)| (badness(proposal, &targets, &replicas, points, *g), *g));
+            let (_, best) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some(best.map(|g| fraction(g, points)))
         });
-        let steps = steps.collect::<Option<_>>()?;
-        Some(Self { steps })
+        let steps: Vec<_> = steps.collect();
+        let has_any = steps.iter().any(Option::is_some);
+        has_any.then_some(Self { steps })
     }
 
     /// Returns the points for a batch whose photons have the numbers `range`.
@@ -165,7 +176,7 @@ impl Lattices {
         LatticePoints {
             lattices: (0..)
                 .zip(&self.steps)
-                .map(|(p, steps)| [*steps, shift(p)])
+                .map(|(p, steps)| steps.map(|steps| [steps, shift(p)]))
                 .collect(),
             first,
             count,
@@ -182,9 +193,10 @@ impl LatticePoints {
         &self.shares
     }
 
-    /// Returns the random numbers of a group of photons that begins with `photon`.
+    /// Returns the random numbers of a group of photons that begins with `photon`. `net` returns the
+    /// group's numbers from a net.
     #[inline]
-    pub(crate) fn group(&self, photon: u64) -> LatticeGroup {
+    pub(crate) fn group(&self, photon: u64, net: impl Fn() -> [[u32; ABREAST]; 4]) -> LatticeGroup {
         let number = self.lattices.len() as u64;
         let index = |i: usize| (photon - self.first + i as u64).min(self.count - 1);
         let proposal = |i: usize| (index(i) * number / self.count) as usize;
@@ -192,15 +204,21 @@ impl LatticePoints {
         let word = |i: usize, k: usize, [steps, shift]: &[[u64; 4]; 2]| {
             (index(i).wrapping_mul(steps[k]).wrapping_add(shift[k]) >> 32) as u32
         };
-        if begin == end {
-            let lattice = &self.lattices[begin];
-            return LatticeGroup {
-                words: [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, lattice))),
-                proposals: [begin; ABREAST],
-            };
-        }
+        let words = match (&self.lattices[begin], begin == end) {
+            (Some(lattice), true) => [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, lattice))),
+            (None, true) => net(),
+            (_, false) => {
+                let net = net();
+                [0, 1, 2, 3].map(|k| {
+                    lanes(|i| match &self.lattices[proposal(i)] {
+                        Some(lattice) => word(i, k, lattice),
+                        None => net[k][i],
+                    })
+                })
+            }
+        };
         LatticeGroup {
-            words: [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, &self.lattices[proposal(i)]))),
+            words,
             proposals: lanes(proposal),
         }
     }
@@ -225,15 +243,55 @@ fn generator(candidate: u64, points: u64) -> Option<[u64; 4]> {
     (divisor[1] == 1).then_some([1, a, square, square * a % points])
 }
 
+/// A part of the spectrum of light behind blockers: the frequency (ρ, ν) at the light along x and y to
+/// which blockers move the spectrum of the light, and the power relative to that of the light.
+#[derive(Clone, Copy, Debug)]
+struct Replica {
+    along: [[f64; 2]; 2],
+    power: f64,
+}
+
+/// The spectrum of the light itself.
+const DIRECT: Replica = Replica {
+    along: [[0.0; 2]; 2],
+    power: 1.0,
+};
+
+/// The power of a first replica relative to that of the light: that of a square wave.
+const REPLICA_POWER: f64 = 0.1;
+
+/// Returns the spectrum of the light, and its first replicas behind periodic blockers.
+fn replicas(scene: &Scene) -> Vec<Replica> {
+    let mut all = vec![DIRECT];
+    for layer in &scene.blockers {
+        let Some(pitch) = layer.pitch else { continue };
+        for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
+            if (i, j) != (0, 0) {
+                let at = |order: i32| {
+                    [
+                        f64::from(order) / pitch,
+                        f64::from(order) * layer.distance / pitch,
+                    ]
+                };
+                all.push(Replica {
+                    along: [at(i), at(j)],
+                    power: REPLICA_POWER,
+                });
+            }
+        }
+    }
+    all
+}
+
 /// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
-/// [`Target::nearness`] over the shortest vectors of the dual lattice. Returns a part of the sum if
-/// this part exceeds `limit`.
+/// [`Target::nearness`] over the shortest vectors of the dual lattice, around each part of the
+/// spectrum.
 fn badness(
     proposal: &[Proposal; 2],
     targets: &[Target],
+    replicas: &[Replica],
     points: u64,
     g: [u64; 4],
-    limit: f64,
 ) -> f64 {
     let inverses = proposal.each_ref().map(Proposal::frequencies);
     let basis = dual_basis(points, g).map(|vector| vector.map(|h| h as f64));
@@ -252,11 +310,12 @@ fn badness(
                 let (at, slope) = (h[2 * i], h[2 * i + 1]);
                 [a * at + b * slope, c * at + d * slope]
             });
-            let all = targets.iter().map(|target| target.nearness(along));
-            sum += all.sum::<f64>();
-        }
-        if sum > limit {
-            break;
+            for replica in replicas {
+                let from = |i: usize| [0, 1].map(|k| along[i][k] + replica.along[i][k]);
+                let from = [from(0), from(1)];
+                let all = targets.iter().map(|target| target.nearness(from));
+                sum += replica.power * all.sum::<f64>();
+            }
         }
     }
     sum
@@ -326,24 +385,27 @@ mod tests {
     /// Every photon of a batch has one point of the lattice of its proposal.
     #[test]
     fn groups_are_the_points_of_their_lattices() {
+        let steps = [1, 7, 49, 43].map(|g| fraction(g, 301));
         let lattices = Lattices {
-            steps: [300_u64, 301, 302]
-                .map(|points| [1, 7, 49, 43].map(|g| fraction(g, points)))
-                .to_vec(),
+            steps: vec![Some(steps), None, Some(steps)],
         };
         let range = 5_000..5_903;
         let points = lattices.of(1, Stream::Lattice, 3, &range);
         assert_eq!(points.shares(), [1.0 / 3.0; 3]);
         let mut counts = [0; 3];
         for first in range.clone().step_by(ABREAST) {
-            let group = points.group(first);
+            let group = points.group(first, || [[9; ABREAST]; 4]);
             for (i, photon) in (0..ABREAST).zip(first..range.end) {
                 let index = photon - range.start;
                 let proposal = group.proposals[i];
                 counts[proposal] += 1;
                 assert_eq!(proposal as u64, index / 301);
-                let [steps, shift] = points.lattices[proposal];
-                let word = index.wrapping_mul(steps[1]).wrapping_add(shift[1]) >> 32;
+                let word = match points.lattices[proposal] {
+                    Some([steps, shift]) => {
+                        index.wrapping_mul(steps[1]).wrapping_add(shift[1]) >> 32
+                    }
+                    None => 9,
+                };
                 assert_eq!(u64::from(group.words[1][i]), word);
             }
         }

@@ -253,6 +253,11 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
+    /// Checks whether the position in the window is drawn first.
+    pub(crate) fn begins_in_window(&self) -> bool {
+        self.order == Order::Position
+    }
+
     /// Returns the cumulative densities at the two ends of the range of the second coordinate.
     #[inline(always)]
     fn ranges<const N: usize>(&self, first: &[f64; N]) -> [[f64; N]; 2] {
