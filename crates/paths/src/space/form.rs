@@ -1,6 +1,7 @@
 //! Intersects rays with geometries in local coordinates, and samples the areas of geometries.
 
-use super::local::Local;
+use super::Ray;
+use super::local::{Local, Spot};
 use super::mesh::WorldMesh;
 use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};
@@ -38,16 +39,12 @@ impl Form {
         (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
     }
 
-    /// Returns the first hit on a ray at distances strictly within bounds. `along` has unit
-    /// length.
-    pub(crate) fn first(
-        &self,
-        start: DVec3,
-        along: DVec3,
-        [from, until]: [f64; 2],
-    ) -> Option<(f64, Local)> {
-        let within = |at: f64| at > from && at < until;
-        match self {
+    /// Returns the first hit on a ray at distances strictly within bounds.
+    #[inline]
+    pub(super) fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Spot> {
+        let Ray { from: start, along } = *ray;
+        let within = |at: &f64| *at > from && *at < until;
+        let distance = match self {
             Self::Rectangle | Self::Disc => {
                 let at = -start.z / along.z;
                 let place = (start + at * along).truncate();
@@ -55,30 +52,38 @@ impl Form {
                     Self::Disc => place.length_squared() <= 1.0,
                     _ => place.abs().max_element() <= 1.0,
                 };
-                (within(at) && is_on).then(|| (at, self.flat(place)))
+                (within(&at) && is_on).then_some(at)
             }
             Self::Sphere => {
-                let at = roots(start, along, DVec3::ONE)?
-                    .into_iter()
-                    .find(|at| within(*at))?;
-                Some((at, ball(start + at * along)))
+                let both = roots(start, along, DVec3::ONE)?;
+                both.into_iter().find(within)
             }
             Self::Cylinder => {
-                let on = |at: f64| (0.0..=1.0).contains(&(start.z + at * along.z));
+                let on = |at: &f64| (0.0..=1.0).contains(&(start.z + at * along.z));
                 let both = roots(start, along, DVec3::new(1.0, 1.0, 0.0))?;
-                let at = both.into_iter().find(|at| within(*at) && on(*at))?;
-                Some((at, tube(start + at * along)))
+                both.into_iter().find(|at| within(at) && on(at))
             }
-            Self::Mesh(mesh) => mesh.first(start, along, [from, until]),
+            Self::Mesh(mesh) => return mesh.first(ray, [from, until]),
+        };
+        distance.map(Spot::at)
+    }
+
+    /// Checks whether a ray hits the geometry at a distance strictly within bounds.
+    #[inline]
+    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_met(ray, within),
+            other => other.first(ray, within).is_some(),
         }
     }
 
-    /// Checks whether a ray hits the geometry at a distance strictly within bounds. `along` has
-    /// unit length.
-    pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
+    /// Returns the point of the geometry at a hit; `place` is its position.
+    pub(super) fn local(&self, place: DVec3, spot: &Spot) -> Local {
         match self {
-            Self::Mesh(mesh) => mesh.is_met(start, along, within),
-            other => other.first(start, along, within).is_some(),
+            Self::Rectangle | Self::Disc => self.flat(place.truncate()),
+            Self::Sphere => ball(place),
+            Self::Cylinder => tube(place),
+            Self::Mesh(mesh) => mesh.local(spot.triangle as usize, spot.weights),
         }
     }
 

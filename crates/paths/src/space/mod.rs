@@ -3,16 +3,18 @@
 mod form;
 mod local;
 mod mesh;
+mod tree;
 mod triangle;
 
-use etendue_bvh::WideHierarchy;
+use etendue_bvh::Primitive;
 use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
 use form::Form;
 use glam::{DAffine3, DMat3, DVec3};
-use local::Local;
+use local::Spot;
 use mesh::WorldMesh;
 use std::collections::HashMap;
 use std::sync::Arc;
+use tree::{PieceName, Tree, WHOLE};
 
 /// A ray. Distances along the ray are multiples of `along`, which has length 1.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +53,7 @@ pub struct Hit {
 #[derive(Debug)]
 pub struct SceneGeometry {
     placed: Vec<Placed>,
-    hierarchy: WideHierarchy,
+    tree: Tree,
     /// Minimum distance of a hit. A hit at a smaller distance is on the surface from which the ray
     /// starts.
     nearest: f64,
@@ -78,12 +80,7 @@ impl SceneGeometry {
     /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let mut meshes = HashMap::new();
-        let placed: Vec<Placed> = world
-            .shapes
-            .iter()
-            .map(|shape| Placed::new(shape, &mut meshes))
-            .collect();
+        let placed = placed(&world.shapes);
         let bounds: Vec<[DVec3; 2]> = placed.iter().map(Placed::bounds).collect();
         let all = bounds
             .iter()
@@ -95,8 +92,9 @@ impl SceneGeometry {
             .iter()
             .map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
+        let tree = tree(&placed, &bounds, farthest, high - low);
         Self {
-            hierarchy: WideHierarchy::new(placed.len(), farthest, |i| bounds[i]),
+            tree,
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),
@@ -111,25 +109,24 @@ impl SceneGeometry {
     /// Returns the first hit of a ray, at distances within bounds.
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
-        let from = from.max(self.nearest);
-        let mut first: Option<(f64, usize, Local)> = None;
-        self.hierarchy
-            .along(ray.from, ray.along, [from, until], |i| {
-                let shape = self.hierarchy.order()[i] as usize;
-                let end = first.map_or(until, |(at, ..)| at);
-                if let Some((at, local)) = self.placed[shape].first(ray, [from, end]) {
-                    first = Some((at, shape, local));
-                }
-                first.map_or(until, |(at, ..)| at)
-            });
-        let (distance, shape, local) = first?;
-        Some(self.placed[shape].hit(ray, distance, shape, &local))
+        self.first_of(ray, [from.max(self.nearest), until], |_| true)
     }
 
     /// Returns the first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
-        let (distance, local) = self.placed[shape].first(ray, within)?;
-        Some(self.placed[shape].hit(ray, distance, shape, &local))
+        self.first_of(ray, within, |other| other == shape)
+    }
+
+    #[inline]
+    fn first_of(
+        &self,
+        ray: &Ray,
+        within: [f64; 2],
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<Hit> {
+        let whole = |shape: usize, within| self.placed[shape].first(ray, within);
+        let (shape, spot) = self.tree.first(ray, within, counts, whole)?;
+        Some(self.placed[shape].hit(ray, shape, &spot))
     }
 
     /// Checks whether nothing is between two points.
@@ -143,16 +140,9 @@ impl SceneGeometry {
     /// Checks whether a ray hits nothing before a distance.
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
-        let until = distance - self.nearest;
-        let mut met = false;
-        self.hierarchy
-            .along(ray.from, ray.along, [self.nearest, until], |i| {
-                let shape = self.hierarchy.order()[i] as usize;
-                met |= self.placed[shape].is_met(ray, [self.nearest, until]);
-                // After a hit, the traversal ends.
-                if met { f64::NEG_INFINITY } else { until }
-            });
-        !met
+        let within = [self.nearest, distance - self.nearest];
+        let whole = |shape: usize| self.placed[shape].is_met(ray, within);
+        !self.tree.is_met(ray, within, whole)
     }
 }
 
@@ -187,34 +177,36 @@ impl Placed {
         })
     }
 
-    fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<(f64, Local)> {
-        let (start, along, scale) = self.seen(ray);
-        let within = within.map(|at| at * scale);
-        let (at, local) = self.form.first(start, along, within)?;
-        Some((at / scale, local))
+    #[inline]
+    fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<Spot> {
+        self.form.first(&self.seen(ray), within)
     }
 
+    #[inline]
     fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
-        let (start, along, scale) = self.seen(ray);
-        self.form.is_met(start, along, within.map(|at| at * scale))
+        self.form.is_met(&self.seen(ray), within)
     }
 
-    /// Returns the origin and the direction of a ray in local coordinates, and the scale of
-    /// distances in these coordinates.
-    fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
-        let start = self.to_local.transform_point3(ray.from);
-        let along = self.to_local.transform_vector3(ray.along);
-        let scale = along.length();
-        (start, along / scale, scale)
+    /// Returns a ray in local coordinates. Its direction has another length, so distances are
+    /// those in the world.
+    #[inline]
+    fn seen(&self, ray: &Ray) -> Ray {
+        Ray {
+            from: self.to_local.transform_point3(ray.from),
+            along: self.to_local.transform_vector3(ray.along),
+        }
     }
 
-    fn hit(&self, ray: &Ray, distance: f64, shape: usize, local: &Local) -> Hit {
+    fn hit(&self, ray: &Ray, shape: usize, spot: &Spot) -> Hit {
+        let position = ray.at(spot.distance);
+        let place = self.to_local.transform_point3(position);
+        let local = self.form.local(place, spot);
         let turned = self.to_local.matrix3.transpose();
         let normal = self.side * (turned * local.normal).normalize();
         let shading = self.side * (turned * local.shading).normalize();
         Hit {
-            distance,
-            position: ray.at(distance),
+            distance: spot.distance,
+            position,
             shape,
             normal,
             frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
@@ -234,6 +226,51 @@ impl Placed {
     pub(crate) fn areas(&self) -> Vec<f64> {
         self.form.areas(&self.to_world)
     }
+}
+
+/// Returns the surfaces of shapes. Shapes with the same triangles share a mesh.
+fn placed(shapes: &[Shape]) -> Vec<Placed> {
+    let mut meshes = HashMap::new();
+    let placed = shapes.iter().map(|shape| Placed::new(shape, &mut meshes));
+    placed.collect()
+}
+
+/// Size of the triangles below which a mesh has a hierarchy of its own, relative to the size of the
+/// world. The boxes in the hierarchy of the world are padded by about a tenth of this.
+const FINE: f64 = 1e-4;
+
+/// Returns the tree over the triangles of meshes in the world and over other surfaces. A mesh of
+/// several shapes, or with small triangles, counts as one surface with its own tree.
+fn tree(placed: &[Placed], bounds: &[[DVec3; 2]], origins: f64, world: DVec3) -> Tree {
+    let mut names = Vec::new();
+    for ((surface, placed), [low, high]) in (0..).zip(placed).zip(bounds) {
+        let whole = PieceName {
+            surface,
+            triangle: WHOLE,
+        };
+        match &placed.form {
+            Form::Mesh(mesh) => {
+                let is_fine = mesh.fineness() * (*high - *low).length() < FINE * world.length();
+                if is_fine || Arc::strong_count(mesh) > 1 {
+                    mesh.build_tree();
+                    names.push(whole);
+                } else {
+                    names.extend(mesh.names(surface));
+                }
+            }
+            _ => names.push(whole),
+        }
+    }
+    Tree::new(&names, origins, |name| {
+        let surface = name.surface as usize;
+        match &placed[surface].form {
+            Form::Mesh(mesh) if name.triangle != WHOLE => {
+                let to_world = |p| placed[surface].to_world.transform_point3(p);
+                Primitive::Triangle(mesh.corners(name.triangle).map(to_world))
+            }
+            _ => Primitive::Box(bounds[surface]),
+        }
+    })
 }
 
 /// Returns a frame whose Z is a normal, and whose X is along the component of a direction

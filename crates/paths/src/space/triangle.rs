@@ -31,7 +31,7 @@ impl TriangleRay {
     /// intersection*). For a shared edge, both triangles compute the same number with opposite
     /// signs, so no ray passes between the triangles.
     #[inline]
-    pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
+    pub(super) fn meets(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
         let [a, b, c] = seen.map(|p| p.truncate() - p.z * self.slopes);
         let sides = DVec3::new(b.perp_dot(c), c.perp_dot(a), a.perp_dot(b));
@@ -80,7 +80,7 @@ mod tests {
             let sight = TriangleRay::new(start, (place - start).normalize());
             // The two triangles have a common edge. They list its two corners in opposite order.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
-            let met = [sight.meets(one), sight.meets(other)];
+            let met = [sight.meets(&one), sight.meets(&other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");
             on_edge += u32::from(met.iter().all(Option::is_some));
         }
@@ -105,7 +105,7 @@ mod tests {
                 continue;
             }
             let (at, found) = TriangleRay::new(start, along)
-                .meets(corners)
+                .meets(&corners)
                 .expect("aimed at it");
             // Rounding errors are larger for grazing rays.
             assert!(
