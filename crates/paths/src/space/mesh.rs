@@ -52,6 +52,11 @@ impl WorldMesh {
         (self.triangles.corners().len() as f64).sqrt().recip()
     }
 
+    /// Returns whether the mesh has a tree of its own.
+    pub(super) fn has_tree(&self) -> bool {
+        self.tree.get().is_some()
+    }
+
     /// Returns the triangles as pieces of a surface.
     pub(super) fn names(&self, surface: u32) -> impl Iterator<Item = PieceName> + use<> {
         let numbers = (0..).take(self.triangles.corners().len());

@@ -1,20 +1,21 @@
 //! Intersects rays with all surfaces, to find first hits and to test visibility.
 
 mod form;
+mod lanes;
 mod local;
 mod mesh;
+mod search;
 mod tree;
 mod triangle;
 
-use etendue_bvh::Primitive;
 use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
 use form::Form;
 use glam::{DAffine3, DMat3, DVec3};
 use local::Spot;
 use mesh::WorldMesh;
+use search::Search;
 use std::collections::HashMap;
 use std::sync::Arc;
-use tree::{PieceName, Tree, WHOLE};
 
 /// A ray. Distances along the ray are multiples of `along`, which has length 1.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +54,7 @@ pub struct Hit {
 #[derive(Debug)]
 pub struct SceneGeometry {
     placed: Vec<Placed>,
-    tree: Tree,
+    search: Search,
     /// Minimum distance of a hit. A hit at a smaller distance is on the surface from which the ray
     /// starts.
     nearest: f64,
@@ -92,9 +93,8 @@ impl SceneGeometry {
             .iter()
             .map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
-        let tree = tree(&placed, &bounds, farthest, high - low);
         Self {
-            tree,
+            search: Search::new(&placed, &bounds, farthest),
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),
@@ -109,24 +109,20 @@ impl SceneGeometry {
     /// Returns the first hit of a ray, at distances within bounds.
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
-        self.first_of(ray, [from.max(self.nearest), until], |_| true)
+        let within = [from.max(self.nearest), until];
+        let (shape, spot) = self.search.first(&self.placed, ray, within)?;
+        Some(self.placed[shape].hit(ray, shape, &spot))
     }
 
     /// Returns the first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
-        self.first_of(ray, within, |other| other == shape)
-    }
-
-    #[inline]
-    fn first_of(
-        &self,
-        ray: &Ray,
-        within: [f64; 2],
-        counts: impl Fn(usize) -> bool,
-    ) -> Option<Hit> {
-        let whole = |shape: usize, within| self.placed[shape].first(ray, within);
-        let (shape, spot) = self.tree.first(ray, within, counts, whole)?;
-        Some(self.placed[shape].hit(ray, shape, &spot))
+        let placed = &self.placed[shape];
+        let spot = if placed.is_whole() {
+            placed.first(ray, within)
+        } else {
+            self.search.first_of(shape, ray, within)
+        };
+        Some(placed.hit(ray, shape, &spot?))
     }
 
     /// Checks whether nothing is between two points.
@@ -141,8 +137,7 @@ impl SceneGeometry {
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let within = [self.nearest, distance - self.nearest];
-        let whole = |shape: usize| self.placed[shape].is_met(ray, within);
-        !self.tree.is_met(ray, within, whole)
+        !self.search.is_met(&self.placed, ray, within)
     }
 }
 
@@ -175,6 +170,11 @@ impl Placed {
         world.fold(start, |[low, high], corner| {
             [low.min(corner), high.max(corner)]
         })
+    }
+
+    /// Returns whether the surface is one piece, and not the triangles of its mesh.
+    fn is_whole(&self) -> bool {
+        !matches!(&self.form, Form::Mesh(mesh) if !mesh.has_tree())
     }
 
     #[inline]
@@ -233,44 +233,6 @@ fn placed(shapes: &[Shape]) -> Vec<Placed> {
     let mut meshes = HashMap::new();
     let placed = shapes.iter().map(|shape| Placed::new(shape, &mut meshes));
     placed.collect()
-}
-
-/// Size of the triangles below which a mesh has a hierarchy of its own, relative to the size of the
-/// world. The boxes in the hierarchy of the world are padded by about a tenth of this.
-const FINE: f64 = 1e-4;
-
-/// Returns the tree over the triangles of meshes in the world and over other surfaces. A mesh of
-/// several shapes, or with small triangles, counts as one surface with its own tree.
-fn tree(placed: &[Placed], bounds: &[[DVec3; 2]], origins: f64, world: DVec3) -> Tree {
-    let mut names = Vec::new();
-    for ((surface, placed), [low, high]) in (0..).zip(placed).zip(bounds) {
-        let whole = PieceName {
-            surface,
-            triangle: WHOLE,
-        };
-        match &placed.form {
-            Form::Mesh(mesh) => {
-                let is_fine = mesh.fineness() * (*high - *low).length() < FINE * world.length();
-                if is_fine || Arc::strong_count(mesh) > 1 {
-                    mesh.build_tree();
-                    names.push(whole);
-                } else {
-                    names.extend(mesh.names(surface));
-                }
-            }
-            _ => names.push(whole),
-        }
-    }
-    Tree::new(&names, origins, |name| {
-        let surface = name.surface as usize;
-        match &placed[surface].form {
-            Form::Mesh(mesh) if name.triangle != WHOLE => {
-                let to_world = |p| placed[surface].to_world.transform_point3(p);
-                Primitive::Triangle(mesh.corners(name.triangle).map(to_world))
-            }
-            _ => Primitive::Box(bounds[surface]),
-        }
-    })
 }
 
 /// Returns a frame whose Z is a normal, and whose X is along the component of a direction

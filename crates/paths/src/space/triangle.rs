@@ -5,13 +5,13 @@ use glam::{DVec2, DVec3};
 /// A ray prepared for triangle tests. The axes are permuted and scaled to give the ray the
 /// direction (x, y, 1).
 pub(super) struct TriangleRay {
-    start: DVec3,
+    pub(super) start: DVec3,
     /// The axis along which the component of the direction is largest. This axis becomes the last
     /// axis.
     last: usize,
-    slopes: DVec2,
+    pub(super) slopes: DVec2,
     /// The ratio of distances along the ray to depths along the last axis.
-    per_depth: f64,
+    pub(super) per_depth: f64,
 }
 
 impl TriangleRay {
@@ -24,6 +24,12 @@ impl TriangleRay {
             slopes: along.truncate() / along.z,
             per_depth: 1.0 / along.z,
         }
+    }
+
+    /// Returns the permuted axes.
+    #[inline]
+    pub(super) fn axes(&self) -> [usize; 3] {
+        [(self.last + 1) % 3, (self.last + 2) % 3, self.last]
     }
 
     /// Returns the distance of the hit, and two of its barycentric coordinates, which belong to the
