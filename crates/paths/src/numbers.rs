@@ -8,9 +8,12 @@ use etendue_transform::random::{Stream, unit, words};
 pub(crate) struct PathNumbers<'a> {
     seed: u64,
     path: u64,
-    block: u32,
-    left: [u32; 4],
+    /// The pair of blocks from which numbers are taken, of four numbers each. Blocks are computed
+    /// in pairs because a processor computes two at the same time.
+    left: [u32; 8],
     used: usize,
+    /// The index of the next block.
+    block: u32,
     /// The net that gives the first numbers, and the index of its point that this path uses; `None`
     /// if no net is used.
     net: Option<(&'a Net, u32)>,
@@ -24,9 +27,9 @@ impl<'a> PathNumbers<'a> {
         Self {
             seed,
             path,
+            left: [0; 8],
+            used: 8,
             block: 0,
-            left: [0; 4],
-            used: 4,
             net: None,
         }
     }
@@ -39,21 +42,31 @@ impl<'a> PathNumbers<'a> {
         }
     }
 
-    fn next(&mut self) -> f64 {
-        if self.used == 4 {
-            self.left = match self.net {
-                Some((net, point)) if self.block < JOINT => net.words(point, self.block),
-                _ => words(self.seed, Stream::Backward, self.path, self.block),
-            };
-            self.block += 1;
-            self.used = 0;
+    /// Returns the next `N` numbers.
+    #[inline]
+    pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
+        if let Some(words) = self.left.get(self.used..).and_then(|left| left.first_chunk()) {
+            self.used += N;
+            return words.map(unit);
         }
-        self.used += 1;
-        unit(self.left[self.used - 1])
+        let mut drawn = [0.0; N];
+        for number in &mut drawn {
+            if self.used == self.left.len() {
+                self.refill();
+            }
+            *number = unit(self.left[self.used]);
+            self.used += 1;
+        }
+        drawn
     }
 
-    /// Returns the next `N` numbers.
-    pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
-        [(); N].map(|()| self.next())
+    fn refill(&mut self) {
+        let pair = [self.block, self.block + 1].map(|block| match self.net {
+            Some((net, point)) if block < JOINT => net.words(point, block),
+            _ => words(self.seed, Stream::Backward, self.path, block),
+        });
+        self.left.copy_from_slice(pair.as_flattened());
+        self.block += 2;
+        self.used = 0;
     }
 }

@@ -94,7 +94,7 @@ impl Paths {
         before: u32,
         search: LightSearch,
         numbers: &mut PathNumbers<'_>,
-        found: &mut dyn FnMut(DVec3, f64),
+        found: &mut impl FnMut(DVec3, f64),
     ) {
         let mut weight = 1.0;
         let mut first: Option<DVec3> = None;
@@ -130,6 +130,7 @@ impl Paths {
     }
 
     /// Returns the material at the hit.
+    #[inline]
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
     }
@@ -147,6 +148,7 @@ impl Paths {
 
     /// Returns the light emitted along a ray that hits a light, with its weight in multiple
     /// importance sampling.
+    #[inline]
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
         let weighted = |(radiance, looked): (f64, f64)| match last {
             Some(last) => radiance * mis_weight(last, looked),
@@ -160,6 +162,7 @@ impl Paths {
 
     /// Samples a light. Returns the light that this finds, and its incident direction in the frame
     /// of the hit.
+    #[inline]
     fn looked_for(
         &self,
         hit: &Hit,
@@ -171,7 +174,7 @@ impl Paths {
             return (DVec3::Z, 0.0);
         };
         let wi = hit.frame.transpose() * light.toward;
-        let value = scatter.value(&hit.point, wi, wo);
+        let (value, density) = scatter.value_and_density(&hit.point, wi, wo);
         if value <= 0.0 {
             return (wi, 0.0);
         }
@@ -182,9 +185,9 @@ impl Paths {
         if !self.geometry.is_free(&ray, light.distance) {
             return (wi, 0.0);
         }
-        let mis_weight = light.density.map_or(1.0, |looked| {
-            mis_weight(looked, scatter.density(&hit.point, wi, wo))
-        });
+        let mis_weight = light
+            .density
+            .map_or(1.0, |looked| mis_weight(looked, density));
         (wi, value * light.weight * mis_weight)
     }
 }

@@ -73,7 +73,11 @@ impl Paths {
     /// Returns the radiance by one path through a random point of a pixel.
     fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
-        let lens = disc(1.0, [a, b]).to_array();
+        let lens = if camera.has_lens() {
+            disc(1.0, [a, b]).to_array()
+        } else {
+            [0.0; 2]
+        };
         let look = camera.look([pixel[0] + x, pixel[1] + y], lens);
         let ray = Ray {
             from: look.from,

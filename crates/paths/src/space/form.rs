@@ -3,6 +3,7 @@
 use super::Ray;
 use super::local::{Local, Spot};
 use super::mesh::WorldMesh;
+use etendue_field::sincos_turns;
 use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -78,6 +79,7 @@ impl Form {
     }
 
     /// Returns the point of the geometry at a hit; `place` is its position.
+    #[inline]
     pub(super) fn local(&self, place: DVec3, spot: &Spot) -> Local {
         match self {
             Self::Rectangle | Self::Disc => self.flat(place.truncate()),
@@ -87,6 +89,7 @@ impl Form {
         }
     }
 
+    #[inline]
     fn flat(&self, place: DVec2) -> Local {
         let (uv, along_u) = match self {
             Self::Disc => {
@@ -95,10 +98,9 @@ impl Form {
             }
             _ => (0.5 * (place + 1.0), DVec3::X),
         };
-        let normal = DVec3::Z;
         Local {
-            normal,
-            shading: normal,
+            normal: DVec3::Z,
+            shading: None,
             point: uv.into(),
             along_u,
         }
@@ -119,6 +121,7 @@ impl Form {
     }
 
     /// Returns a point sampled uniformly by area on a piece.
+    #[inline]
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
             Self::Rectangle => {
@@ -134,7 +137,7 @@ impl Form {
                 (place, ball(place))
             }
             Self::Cylinder => {
-                let (sin, cos) = libm::sincos(TAU * b);
+                let (sin, cos) = sincos_turns(b);
                 let place = DVec3::new(cos, sin, a);
                 (place, tube(place))
             }
@@ -180,7 +183,7 @@ fn round(normal: DVec3, uv: DVec2) -> Local {
     let along_u = DVec3::new(-normal.y, normal.x, 0.0);
     Local {
         normal,
-        shading: normal,
+        shading: None,
         point: uv.into(),
         along_u,
     }

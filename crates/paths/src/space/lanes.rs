@@ -97,6 +97,7 @@ impl PieceGroups {
 
     /// Returns the first hit of a ray at a distance strictly within bounds, and the index of the
     /// surface.
+    #[inline]
     pub(super) fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<(usize, Spot)> {
         let sight = TriangleRay::new(ray.from, ray.along);
         let (distance, group, lane) =
@@ -129,6 +130,7 @@ impl PieceGroups {
     }
 
     /// Checks whether a ray hits anything at a distance strictly within bounds.
+    #[inline]
     pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
         let sight = TriangleRay::new(ray.from, ray.along);
         dispatch!(self.level, simd => self.any(simd, ray, &sight, within))
@@ -192,6 +194,7 @@ impl Group {
     }
 
     /// Returns the corners of a triangle.
+    #[inline]
     fn corners(&self, lane: usize) -> [DVec3; 3] {
         let number = |corner: usize, axis: usize| self.numbers[3 * corner + axis][lane];
         [0, 1, 2].map(|i| DVec3::new(number(i, 0), number(i, 1), number(i, 2)))

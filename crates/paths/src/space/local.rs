@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 pub(crate) struct Local {
     /// The geometric normal, of any length.
     pub(crate) normal: DVec3,
-    /// The shading normal.
-    pub(crate) shading: DVec3,
+    /// The shading normal, if it is not the geometric normal.
+    pub(crate) shading: Option<DVec3>,
     /// The point as textures see it.
     pub(crate) point: TexturePoint,
     /// The direction in which u increases.

@@ -96,6 +96,7 @@ impl WorldMesh {
 
     /// Returns the point of a triangle, given by its index in the mesh, whose barycentric
     /// coordinates are `place`. The coordinates belong to the second and the third corner.
+    #[inline]
     pub(super) fn local(&self, number: usize, place: DVec2) -> Local {
         let corners = self.triangles.corners()[number];
         let [a, b, c] = places(&self.triangles, corners);
@@ -120,7 +121,7 @@ impl WorldMesh {
         let shading = shading.filter(|sum: &DVec3| sum.length_squared() > 0.0);
         Local {
             normal,
-            shading: shading.unwrap_or(normal),
+            shading,
             point: TexturePoint {
                 uv,
                 triangle: number,

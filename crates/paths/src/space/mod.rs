@@ -69,6 +69,10 @@ pub(crate) struct Placed {
     pub(crate) form: Form,
     pub(crate) to_world: DAffine3,
     to_local: DAffine3,
+    /// The map of normals to the world.
+    turned: DMat3,
+    /// The shading frame of a rectangle, which is the same everywhere.
+    flat: Option<DMat3>,
     /// −1 if the front of the surface is flipped, otherwise 1.
     side: f64,
 }
@@ -107,6 +111,7 @@ impl SceneGeometry {
     }
 
     /// Returns the first hit of a ray, at distances within bounds.
+    #[inline]
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
         let within = [from.max(self.nearest), until];
@@ -134,6 +139,7 @@ impl SceneGeometry {
     }
 
     /// Checks whether a ray hits nothing before a distance.
+    #[inline]
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let within = [self.nearest, distance - self.nearest];
@@ -155,11 +161,20 @@ impl Placed {
                 Form::Mesh(Arc::clone(mesh))
             }
         };
+        let to_local = shape.to_world.inverse();
+        let turned = to_local.matrix3.transpose();
+        let side = if shape.is_flipped { -1.0 } else { 1.0 };
+        let flat = matches!(form, Form::Rectangle).then(|| {
+            let along_u = shape.to_world.transform_vector3(DVec3::X);
+            frame(side * (turned * DVec3::Z).normalize(), along_u)
+        });
         Self {
             form,
             to_world: shape.to_world,
-            to_local: shape.to_world.inverse(),
-            side: if shape.is_flipped { -1.0 } else { 1.0 },
+            to_local,
+            turned,
+            flat,
+            side,
         }
     }
 
@@ -197,28 +212,44 @@ impl Placed {
         }
     }
 
+    #[inline]
     fn hit(&self, ray: &Ray, shape: usize, spot: &Spot) -> Hit {
         let position = ray.at(spot.distance);
         let place = self.to_local.transform_point3(position);
         let local = self.form.local(place, spot);
-        let turned = self.to_local.matrix3.transpose();
-        let normal = self.side * (turned * local.normal).normalize();
-        let shading = self.side * (turned * local.shading).normalize();
+        let (normal, frame) = if let Some(flat) = self.flat {
+            (flat.z_axis, flat)
+        } else {
+            let normal = self.normal(local.normal);
+            let shading = local.shading.map_or(normal, |shading| self.normal(shading));
+            let along_u = self.to_world.transform_vector3(local.along_u);
+            (normal, frame(shading, along_u))
+        };
         Hit {
             distance: spot.distance,
             position,
             shape,
             normal,
-            frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
+            frame,
             point: local.point,
         }
     }
 
+    /// Converts a normal to a unit normal in the world.
+    #[inline]
+    fn normal(&self, local: DVec3) -> DVec3 {
+        self.side * (self.turned * local).normalize()
+    }
+
     /// Returns a point sampled uniformly by area on a piece of the surface, with its normal, and as
     /// textures see it.
+    #[inline]
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
         let (place, local) = self.form.sample(piece, random);
-        let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
+        let normal = match self.flat {
+            Some(flat) => flat.z_axis,
+            None => self.normal(local.normal),
+        };
         (self.to_world.transform_point3(place), normal, local.point)
     }
 
@@ -237,6 +268,7 @@ fn placed(shapes: &[Shape]) -> Vec<Placed> {
 
 /// Returns a frame whose Z is a normal, and whose X is along the component of a direction
 /// perpendicular to this normal.
+#[inline]
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
     let across = along - along.dot(normal) * normal;
     let x = across

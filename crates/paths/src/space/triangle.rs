@@ -15,6 +15,7 @@ pub(super) struct TriangleRay {
 }
 
 impl TriangleRay {
+    #[inline]
     pub(super) fn new(start: DVec3, along: DVec3) -> Self {
         let last = along.abs().max_position();
         let along = turned(along, last);
