@@ -1,10 +1,11 @@
 //! The random numbers of a path.
 
 use etendue_transform::Net;
-use etendue_transform::random::{Stream, unit, words};
+use etendue_transform::random::{Stream, columns, unit, words};
+use fearless_simd::{Level, dispatch};
 
 /// The sequence of random numbers of one path, in (0, 1).
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct PathNumbers<'a> {
     seed: u64,
     path: u64,
@@ -21,6 +22,9 @@ pub(crate) struct PathNumbers<'a> {
 
 /// Number of blocks of four numbers in a net.
 pub(crate) const JOINT: u32 = 2;
+
+/// Number of paths whose numbers are computed together.
+const GROUP: usize = 8;
 
 impl<'a> PathNumbers<'a> {
     pub(crate) fn new(seed: u64, path: u64) -> Self {
@@ -61,12 +65,44 @@ impl<'a> PathNumbers<'a> {
     }
 
     fn refill(&mut self) {
-        let pair = [self.block, self.block + 1].map(|block| match self.net {
-            Some((net, point)) if block < JOINT => net.words(point, block),
-            _ => words(self.seed, Stream::Backward, self.path, block),
-        });
-        self.left.copy_from_slice(pair.as_flattened());
-        self.block += 2;
+        let block = |next: u32| words(self.seed, Stream::Backward, self.path, self.block + next);
+        self.accept([block(0), block(1)]);
+    }
+
+    /// Takes the next two blocks, or those of the net instead.
+    fn accept(&mut self, blocks: [[u32; 4]; 2]) {
+        for (place, words) in self.left.chunks_exact_mut(4).zip(blocks) {
+            place.copy_from_slice(&match self.net {
+                Some((net, point)) if self.block < JOINT => net.words(point, self.block),
+                _ => words,
+            });
+            self.block += 1;
+        }
         self.used = 0;
+    }
+
+    /// Computes the next numbers of the paths of `items` that have used all of theirs, which is
+    /// faster for several paths together.
+    pub(crate) fn prepare<T>(items: &mut [T], numbers: impl Fn(&mut T) -> &mut Self) {
+        let level = Level::new();
+        for group in items.chunks_mut(GROUP) {
+            let (mut seeds, mut paths) = ([0; GROUP], [0; GROUP]);
+            let mut blocks = [[0; GROUP]; 2];
+            for (k, item) in group.iter_mut().enumerate() {
+                let of = numbers(item);
+                (seeds[k], paths[k]) = (of.seed, of.path);
+                (blocks[0][k], blocks[1][k]) = (of.block, of.block + 1);
+            }
+            let [first, second] = dispatch!(level, _simd => [
+                columns(&seeds, Stream::Backward, &paths, &blocks[0]),
+                columns(&seeds, Stream::Backward, &paths, &blocks[1]),
+            ]);
+            for (k, item) in group.iter_mut().enumerate() {
+                let of = numbers(item);
+                if of.used == of.left.len() {
+                    of.accept([&first, &second].map(|columns| columns.map(|column| column[k])));
+                }
+            }
+        }
     }
 }
