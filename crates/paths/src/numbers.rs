@@ -49,19 +49,23 @@ impl<'a> PathNumbers<'a> {
     /// Returns the next `N` numbers.
     #[inline]
     pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
-        if let Some(words) = self.left.get(self.used..).and_then(|left| left.first_chunk()) {
+        if let Some(words) = self.left[self.used..].first_chunk::<N>() {
             self.used += N;
-            return words.map(unit);
+            return std::array::from_fn(|i| unit(words[i]));
         }
         let mut drawn = [0.0; N];
         for number in &mut drawn {
-            if self.used == self.left.len() {
+            if self.is_empty() {
                 self.refill();
             }
             *number = unit(self.left[self.used]);
             self.used += 1;
         }
         drawn
+    }
+
+    fn is_empty(&self) -> bool {
+        self.used == self.left.len()
     }
 
     fn refill(&mut self) {
@@ -86,6 +90,9 @@ impl<'a> PathNumbers<'a> {
     pub(crate) fn prepare<T>(items: &mut [T], numbers: impl Fn(&mut T) -> &mut Self) {
         let level = Level::new();
         for group in items.chunks_mut(GROUP) {
+            if !group.iter_mut().any(|item| numbers(item).is_empty()) {
+                continue;
+            }
             let (mut seeds, mut paths) = ([0; GROUP], [0; GROUP]);
             let mut blocks = [[0; GROUP]; 2];
             for (k, item) in group.iter_mut().enumerate() {
@@ -99,7 +106,7 @@ impl<'a> PathNumbers<'a> {
             ]);
             for (k, item) in group.iter_mut().enumerate() {
                 let of = numbers(item);
-                if of.used == of.left.len() {
+                if of.is_empty() {
                     of.accept([&first, &second].map(|columns| columns.map(|column| column[k])));
                 }
             }

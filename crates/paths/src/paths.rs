@@ -40,7 +40,7 @@ pub(crate) const ROULETTE: u32 = 6;
 const LONGEST: u32 = 10_000;
 
 /// A path that is traced back step by step.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk<'a> {
     /// Distinguishes the path from others.
     number: usize,
@@ -146,7 +146,9 @@ impl Paths {
                 }
             }
             PathNumbers::prepare(walks, |walk| &mut walk.numbers);
-            walks = keep(walks, |walk| self.bounces(walk, met + 1 >= before + ROULETTE));
+            walks = keep(walks, |walk| {
+                self.bounces(walk, met + 1 >= before + ROULETTE)
+            });
             walks = keep(walks, |walk| {
                 let next = self.geometry.first(&walk.ray, [0.0, f64::INFINITY]);
                 let density = walk.density.filter(|_| search == LightSearch::Both);
@@ -245,7 +247,7 @@ impl Paths {
 }
 
 /// Moves the items to keep to the front, and returns them.
-fn keep<T>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T] {
+fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T] {
     let mut count = items.len();
     let mut i = 0;
     while i < count {
@@ -253,7 +255,7 @@ fn keep<T>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T]
             i += 1;
         } else {
             count -= 1;
-            items.swap(i, count);
+            items[i] = items[count];
         }
     }
     &mut items[..count]

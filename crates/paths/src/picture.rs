@@ -56,23 +56,26 @@ impl Paths {
         let mut radiances = [0.0; STREAM];
         let mut pixels = vec![[0.0; 2]; width];
         for start in (0..width * samples).step_by(STREAM) {
-            let numbers = start..(start + STREAM).min(width * samples);
+            let paths = start..(start + STREAM).min(width * samples);
+            let mut drawn: [PathNumbers<'_>; STREAM] = std::array::from_fn(|i| {
+                PathNumbers::new(seed, (row * width * samples + start + i) as u64)
+            });
+            PathNumbers::prepare(&mut drawn, |numbers| numbers);
             walks.clear();
-            for (i, number) in numbers.clone().enumerate() {
-                let path = (row * width * samples + number) as u64;
-                let pixel = [(number / samples) as f64, row as f64];
-                let (radiance, walk) = self.seen(camera, pixel, i, PathNumbers::new(seed, path));
+            for ((i, path), numbers) in paths.clone().enumerate().zip(drawn) {
+                let pixel = [(path / samples) as f64, row as f64];
+                let (radiance, walk) = self.seen(camera, pixel, i, numbers);
                 radiances[i] = radiance;
                 walks.extend(walk);
             }
             self.scattered(&mut walks, 0, LightSearch::Both, &mut |i, _, light| {
                 radiances[i] += light;
             });
-            for (number, radiance) in numbers.zip(radiances) {
+            for (path, radiance) in paths.zip(radiances) {
                 // This recurrence is numerically stable (Welford 1962).
-                let [mean, squares] = &mut pixels[number / samples];
+                let [mean, squares] = &mut pixels[path / samples];
                 let off = radiance - *mean;
-                *mean += off / (number % samples + 1) as f64;
+                *mean += off / (path % samples + 1) as f64;
                 *squares += off * (radiance - *mean);
             }
         }

@@ -147,12 +147,7 @@ impl Paths {
 
     /// Estimates the radiance of base and lobe by one path, which ends as if `before` surfaces were between
     /// the point and the eye.
-    fn by_one_path(
-        &self,
-        seen: &SurfaceHit,
-        before: u32,
-        numbers: PathNumbers<'_>,
-    ) -> [f64; 2] {
+    fn by_one_path(&self, seen: &SurfaceHit, before: u32, numbers: PathNumbers<'_>) -> [f64; 2] {
         let scatter = self.scatter(&seen.hit);
         let mut parts = [0.0; 2];
         let mut walk = Walk::new(0, (seen.ray, seen.hit), numbers);

@@ -60,7 +60,10 @@ impl Camera {
     /// Returns whether rays begin at different points of a lens.
     #[must_use]
     pub fn has_lens(&self) -> bool {
-        matches!(self.projection, Projection::Perspective { lens: Some(_), .. })
+        matches!(
+            self.projection,
+            Projection::Perspective { lens: Some(_), .. }
+        )
     }
 
     /// Returns the ray through a point of the picture and a point of the lens. The first is given

@@ -96,7 +96,7 @@ impl Form {
                 let uv = DVec2::new(place.length(), turn(place));
                 (uv, place.extend(0.0).try_normalize().unwrap_or(DVec3::X))
             }
-            _ => (0.5 * (place + 1.0), DVec3::X),
+            _ => (square_uv(place), DVec3::X),
         };
         Local {
             normal: DVec3::Z,
@@ -158,6 +158,12 @@ fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     // For a ray along the axis of a cylinder, a is 0 and there is no hit.
     let half = (left / a).sqrt();
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
+}
+
+/// Returns the texture coordinates of a point of the square.
+#[inline]
+pub(super) fn square_uv(place: DVec2) -> DVec2 {
+    0.5 * (place + 1.0)
 }
 
 /// Returns the azimuth divided by 2π, from 0 to 1.

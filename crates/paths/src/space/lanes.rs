@@ -117,14 +117,26 @@ impl PieceGroups {
     }
 
     /// Returns the first hit of a ray with one surface.
-    pub(super) fn first_of(&self, surface: usize, ray: &Ray, [from, until]: [f64; 2]) -> Option<Spot> {
+    pub(super) fn first_of(
+        &self,
+        surface: usize,
+        ray: &Ray,
+        [from, until]: [f64; 2],
+    ) -> Option<Spot> {
         let sight = TriangleRay::new(ray.from, ray.along);
-        let lanes = self.groups.iter().flat_map(|group| (0..group.count).map(move |lane| (group, lane)));
+        let lanes = self
+            .groups
+            .iter()
+            .flat_map(|group| (0..group.count).map(move |lane| (group, lane)));
         let spots = lanes.filter_map(|(group, lane)| {
             let name = group.names[lane];
             let of_surface = name.surface as usize == surface && name.triangle != WHOLE;
             let (distance, weights) = sight.meets(&group.corners(lane)).filter(|_| of_surface)?;
-            (distance > from && distance < until).then_some(Spot { distance, triangle: name.triangle, weights })
+            (distance > from && distance < until).then_some(Spot {
+                distance,
+                triangle: name.triangle,
+                weights,
+            })
         });
         spots.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }

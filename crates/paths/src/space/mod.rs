@@ -9,8 +9,8 @@ mod tree;
 mod triangle;
 
 use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
-use form::Form;
-use glam::{DAffine3, DMat3, DVec3};
+use form::{Form, square_uv};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use local::Spot;
 use mesh::WorldMesh;
 use search::Search;
@@ -216,14 +216,14 @@ impl Placed {
     fn hit(&self, ray: &Ray, shape: usize, spot: &Spot) -> Hit {
         let position = ray.at(spot.distance);
         let place = self.to_local.transform_point3(position);
-        let local = self.form.local(place, spot);
-        let (normal, frame) = if let Some(flat) = self.flat {
-            (flat.z_axis, flat)
+        let (normal, frame, point) = if let Some(flat) = self.flat {
+            (flat.z_axis, flat, square_uv(place.truncate()).into())
         } else {
+            let local = self.form.local(place, spot);
             let normal = self.normal(local.normal);
             let shading = local.shading.map_or(normal, |shading| self.normal(shading));
             let along_u = self.to_world.transform_vector3(local.along_u);
-            (normal, frame(shading, along_u))
+            (normal, frame(shading, along_u), local.point)
         };
         Hit {
             distance: spot.distance,
@@ -231,7 +231,7 @@ impl Placed {
             shape,
             normal,
             frame,
-            point: local.point,
+            point,
         }
     }
 
@@ -245,12 +245,14 @@ impl Placed {
     /// textures see it.
     #[inline]
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
-        let (place, local) = self.form.sample(piece, random);
-        let normal = match self.flat {
-            Some(flat) => flat.z_axis,
-            None => self.normal(local.normal),
+        let (place, normal, point) = if let Some(flat) = self.flat {
+            let uv = DVec2::from(random);
+            ((2.0 * uv - 1.0).extend(0.0), flat.z_axis, uv.into())
+        } else {
+            let (place, local) = self.form.sample(piece, random);
+            (place, self.normal(local.normal), local.point)
         };
-        (self.to_world.transform_point3(place), normal, local.point)
+        (self.to_world.transform_point3(place), normal, point)
     }
 
     /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
