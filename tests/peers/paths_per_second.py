@@ -17,7 +17,7 @@ import drjit as dr
 SIDE = 256
 DEPTH = 8  # surfaces of a path, as `--bounces` counts them
 ROULETTE = 6  # `paths::ROULETTE`
-FEW, MANY = 16, 272  # paths a pixel
+FEW, MANY = 16, 80  # paths a pixel
 SCENES = pathlib.Path(__file__).parent / "scenes"
 
 
