@@ -1,8 +1,8 @@
 //! Intersects rays with geometries in local coordinates, and samples the areas of geometries.
 
-use super::Ray;
 use super::local::{Local, Spot};
 use super::mesh::WorldMesh;
+use super::ray::Ray;
 use etendue_field::sincos_turns;
 use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};

@@ -1,9 +1,9 @@
 //! Intersects a ray with all surfaces of a small world, eight pieces at a time and without
 //! branches, in f64.
 
-use super::Ray;
 use super::form::Form;
 use super::local::Spot;
+use super::ray::Ray;
 use super::tree::{PieceName, WHOLE};
 use super::triangle::TriangleRay;
 use fearless_simd::{Level, Simd, dispatch, f64x8, mask64x8, prelude::*};

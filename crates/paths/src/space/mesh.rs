@@ -1,7 +1,7 @@
 //! Triangle meshes prepared for ray intersection.
 
-use super::Ray;
 use super::local::{Local, Spot};
+use super::ray::Ray;
 use super::tree::{PieceName, Tree};
 use etendue_bvh::Primitive;
 use etendue_sampling::triangle;

@@ -3,8 +3,9 @@
 use super::form::Form;
 use super::lanes::{PieceGroups, PieceShape};
 use super::local::Spot;
+use super::placed::Placed;
+use super::ray::Ray;
 use super::tree::{PieceName, Tree, WHOLE};
-use super::{Placed, Ray};
 use etendue_bvh::Primitive;
 use glam::DVec3;
 use std::sync::Arc;
@@ -134,7 +135,7 @@ fn names(placed: &[Placed], bounds: &[[DVec3; 2]]) -> Vec<PieceName> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::placed;
+    use crate::space::placed::placed;
     use etendue_transform::random::{self, Stream};
     use etendue_world::{Geometry, Shape, Triangles};
     use glam::DAffine3;

@@ -1,7 +1,7 @@
 //! A hierarchy over the triangles of meshes and over other surfaces.
 
-use super::Ray;
 use super::local::Spot;
+use super::ray::Ray;
 use super::triangle::TriangleRay;
 use etendue_bvh::{Primitive, WideHierarchy};
 use glam::DVec3;
