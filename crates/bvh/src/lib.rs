@@ -24,4 +24,4 @@ mod wide_hierarchy;
 
 pub use binary_hierarchy::BinaryHierarchy;
 pub use mesh_hierarchy::{MeshHierarchy, SearchMemory};
-pub use wide_hierarchy::{Primitive, WideHierarchy};
+pub use wide_hierarchy::{WideHierarchy, WidePrimitive};

@@ -24,7 +24,7 @@ pub struct WideHierarchy {
 
 /// A primitive of a hierarchy.
 #[derive(Clone, Copy, Debug)]
-pub enum Primitive {
+pub enum WidePrimitive {
     /// A triangle, given by its corners. A ray may meet it if it passes the triangle within
     /// rounding errors.
     Triangle([DVec3; 3]),
@@ -33,7 +33,7 @@ pub enum Primitive {
     Box([DVec3; 2]),
 }
 
-impl Primitive {
+impl WidePrimitive {
     fn bounds(self) -> [DVec3; 2] {
         match self {
             Self::Triangle([a, b, c]) => [a.min(b).min(c), a.max(b).max(c)],
@@ -55,7 +55,11 @@ impl WideHierarchy {
     /// Builds a hierarchy over indexed primitives. `origins` is the largest coordinate of the
     /// starting points of rays.
     #[must_use]
-    pub fn new(count: usize, origins: f64, primitive: impl Fn(usize) -> Primitive + Sync) -> Self {
+    pub fn new(
+        count: usize,
+        origins: f64,
+        primitive: impl Fn(usize) -> WidePrimitive + Sync,
+    ) -> Self {
         let bounds = |i: usize| primitive(i).bounds();
         let space = Space::around((0..count).map(bounds), origins);
         let bvh = bvh(count, &space, TreeKind::Collapsed, bounds);

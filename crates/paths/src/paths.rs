@@ -41,7 +41,7 @@ const LONGEST: u32 = 10_000;
 
 /// A path that is traced back step by step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Walk<'a> {
+pub(crate) struct TracedPath<'a> {
     /// Distinguishes the path from others.
     number: usize,
     ray: Ray,
@@ -54,7 +54,7 @@ pub(crate) struct Walk<'a> {
     numbers: PathNumbers<'a>,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> TracedPath<'a> {
     /// Begins a path at the hit of a ray.
     pub(crate) fn new(number: usize, (ray, hit): (Ray, Hit), numbers: PathNumbers<'a>) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl Paths {
         let hit = self.geometry.first(&ray, seen);
         let mut sum = self.shown(&ray, hit.as_ref(), before);
         if let Some(hit) = hit {
-            let mut walk = Walk::new(0, (ray, hit), numbers);
+            let mut walk = TracedPath::new(0, (ray, hit), numbers);
             let walks = std::slice::from_mut(&mut walk);
             self.scattered(walks, before, search, &mut |_, _, light| sum += light);
         }
@@ -124,7 +124,7 @@ impl Paths {
     /// a processor works on several at the same time.
     pub(crate) fn scattered(
         &self,
-        mut walks: &mut [Walk<'_>],
+        mut walks: &mut [TracedPath<'_>],
         before: u32,
         search: LightSearch,
         found: &mut impl FnMut(usize, DVec3, f64),
@@ -161,7 +161,7 @@ impl Paths {
     }
 
     /// Samples the direction in which a path continues; returns false if it ends.
-    fn bounces(&self, walk: &mut Walk<'_>, has_roulette: bool) -> bool {
+    fn bounces(&self, walk: &mut TracedPath<'_>, has_roulette: bool) -> bool {
         let hit = &walk.hit;
         let wo = hit.frame.transpose() * -walk.ray.along;
         let random = walk.numbers.draw();

@@ -1,7 +1,7 @@
 //! Pictures, with the variance of each pixel.
 
 use crate::numbers::PathNumbers;
-use crate::paths::{LightSearch, Paths, Walk};
+use crate::paths::{LightSearch, Paths, TracedPath};
 use crate::space::Ray;
 use etendue_sampling::disc;
 use etendue_world::Camera;
@@ -94,7 +94,7 @@ impl Paths {
         pixel: [f64; 2],
         number: usize,
         mut numbers: PathNumbers<'a>,
-    ) -> (f64, Option<Walk<'a>>) {
+    ) -> (f64, Option<TracedPath<'a>>) {
         let [x, y, a, b] = numbers.draw();
         let lens = if camera.has_lens() {
             disc(1.0, [a, b]).to_array()
@@ -108,6 +108,9 @@ impl Paths {
         };
         let hit = self.geometry.first(&ray, look.seen);
         let shown = self.shown(&ray, hit.as_ref(), 0);
-        (shown, hit.map(|hit| Walk::new(number, (ray, hit), numbers)))
+        (
+            shown,
+            hit.map(|hit| TracedPath::new(number, (ray, hit), numbers)),
+        )
     }
 }

@@ -2,7 +2,7 @@
 //! the objects that they reflect. Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
-use crate::paths::{LightSearch, Paths, Walk};
+use crate::paths::{LightSearch, Paths, TracedPath};
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
 use etendue_transform::Net;
@@ -150,7 +150,7 @@ impl Paths {
     fn by_one_path(&self, seen: &SurfaceHit, before: u32, numbers: PathNumbers<'_>) -> [f64; 2] {
         let scatter = self.scatter(&seen.hit);
         let mut parts = [0.0; 2];
-        let mut walk = Walk::new(0, (seen.ray, seen.hit), numbers);
+        let mut walk = TracedPath::new(0, (seen.ray, seen.hit), numbers);
         let walks = std::slice::from_mut(&mut walk);
         self.scattered(walks, before, LightSearch::Both, &mut |_, wi, light| {
             if light > 0.0 {

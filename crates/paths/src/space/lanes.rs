@@ -13,18 +13,18 @@ use glam::{DAffine3, DVec3};
 const WIDTH: usize = 8;
 
 /// A number for each of the pieces that are tested together.
-type Lanes<S> = f64x8<S>;
+type PieceLanes<S> = f64x8<S>;
 
 /// All pieces of a world, in groups.
 #[derive(Debug)]
 pub(super) struct PieceGroups {
-    groups: Vec<Group>,
+    groups: Vec<PieceGroup>,
     level: Level,
 }
 
-/// Pieces of one kind. Lanes without a piece have NaN numbers, and are never hit.
+/// Pieces of one kind. PieceLanes without a piece have NaN numbers, and are never hit.
 #[derive(Clone, Debug)]
-struct Group {
+struct PieceGroup {
     kind: PieceKind,
     count: usize,
     names: [PieceName; WIDTH],
@@ -76,13 +76,13 @@ impl PieceGroups {
     pub(super) fn new<'a>(
         pieces: impl Iterator<Item = (PieceName, PieceShape<'a>)>,
     ) -> Option<Self> {
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<PieceGroup> = Vec::new();
         for (name, shape) in pieces {
             let (kind, numbers) = shape.numbers()?;
-            let open = |group: &Group| group.kind == kind && group.count < WIDTH;
+            let open = |group: &PieceGroup| group.kind == kind && group.count < WIDTH;
             let place = groups.iter().position(open).unwrap_or(groups.len());
             if place == groups.len() {
-                groups.push(Group {
+                groups.push(PieceGroup {
                     kind,
                     count: 0,
                     names: [name; WIDTH],
@@ -157,21 +157,21 @@ impl PieceGroups {
         sight: &TriangleRay,
         [from, until]: [f64; 2],
     ) -> Option<(f64, usize, usize)> {
-        let mut best = Lanes::splat(simd, until);
-        let mut groups = Lanes::splat(simd, 0.0);
+        let mut best = PieceLanes::splat(simd, until);
+        let mut groups = PieceLanes::splat(simd, 0.0);
         let mut number = 0.0;
         for group in &self.groups {
             let (at, is_on) = group.crossings(simd, ray, sight, from);
             let is_nearer = is_on & at.simd_lt(best);
             best = is_nearer.select(at, best);
-            groups = is_nearer.select(Lanes::splat(simd, number), groups);
+            groups = is_nearer.select(PieceLanes::splat(simd, number), groups);
             number += 1.0;
         }
         let (low, high) = best.split();
         let (low, high) = low.min(high).split();
         let [a, b] = low.min(high).into();
         let distance = a.min(b);
-        let lane = best.simd_eq(Lanes::splat(simd, distance)).to_bitmask();
+        let lane = best.simd_eq(PieceLanes::splat(simd, distance)).to_bitmask();
         let lane = lane.trailing_zeros() as usize % WIDTH;
         (distance < until).then(|| (distance, etendue_field::whole(groups[lane]), lane))
     }
@@ -193,7 +193,7 @@ impl PieceGroups {
     }
 }
 
-impl Group {
+impl PieceGroup {
     fn add(&mut self, name: PieceName, numbers: [DVec3; 4]) {
         let lane = self.count;
         self.names[lane] = name;
@@ -221,7 +221,7 @@ impl Group {
         ray: &Ray,
         sight: &TriangleRay,
         from: f64,
-    ) -> (Lanes<S>, mask64x8<S>) {
+    ) -> (PieceLanes<S>, mask64x8<S>) {
         if self.kind == PieceKind::Triangle {
             let (at, is_on) = self.triangles(simd, sight);
             return (at, is_on & at.simd_gt(from));
@@ -249,7 +249,7 @@ impl Group {
 
     /// Returns a point (`w` = 1) or a vector (`w` = 0) in local coordinates.
     #[inline(always)]
-    fn local<S: Simd>(&self, simd: S, v: DVec3, w: f64) -> [Lanes<S>; 3] {
+    fn local<S: Simd>(&self, simd: S, v: DVec3, w: f64) -> [PieceLanes<S>; 3] {
         [
             self.component(simd, 0, v, w),
             self.component(simd, 1, v, w),
@@ -258,7 +258,7 @@ impl Group {
     }
 
     #[inline(always)]
-    fn component<S: Simd>(&self, simd: S, axis: usize, v: DVec3, w: f64) -> Lanes<S> {
+    fn component<S: Simd>(&self, simd: S, axis: usize, v: DVec3, w: f64) -> PieceLanes<S> {
         let x = self.number(simd, axis) * v.x;
         let y = self.number(simd, 3 + axis) * v.y;
         let z = self.number(simd, 6 + axis) * v.z;
@@ -266,14 +266,14 @@ impl Group {
     }
 
     #[inline(always)]
-    fn number<S: Simd>(&self, simd: S, i: usize) -> Lanes<S> {
-        Lanes::simd_from(simd, self.numbers[i])
+    fn number<S: Simd>(&self, simd: S, i: usize) -> PieceLanes<S> {
+        PieceLanes::simd_from(simd, self.numbers[i])
     }
 
     /// Does the same as [`TriangleRay::meets`] with the same arithmetic, so that no ray passes
     /// between two triangles.
     #[inline(always)]
-    fn triangles<S: Simd>(&self, simd: S, sight: &TriangleRay) -> (Lanes<S>, mask64x8<S>) {
+    fn triangles<S: Simd>(&self, simd: S, sight: &TriangleRay) -> (PieceLanes<S>, mask64x8<S>) {
         let a = self.corner(simd, sight, 0);
         let b = self.corner(simd, sight, 1);
         let c = self.corner(simd, sight, 2);
@@ -285,7 +285,7 @@ impl Group {
 
     /// Returns a corner of each triangle as seen along the ray.
     #[inline(always)]
-    fn corner<S: Simd>(&self, simd: S, sight: &TriangleRay, i: usize) -> [Lanes<S>; 3] {
+    fn corner<S: Simd>(&self, simd: S, sight: &TriangleRay, i: usize) -> [PieceLanes<S>; 3] {
         let [x, y, z] = sight.axes();
         let z = self.number(simd, 3 * i + z) - sight.start.z;
         let x = self.number(simd, 3 * i + x) - sight.start.x;
@@ -295,7 +295,7 @@ impl Group {
 }
 
 #[inline(always)]
-fn side<S: Simd>(p: [Lanes<S>; 3], q: [Lanes<S>; 3]) -> Lanes<S> {
+fn side<S: Simd>(p: [PieceLanes<S>; 3], q: [PieceLanes<S>; 3]) -> PieceLanes<S> {
     p[0] * q[1] - p[1] * q[0]
 }
 
@@ -304,11 +304,11 @@ fn side<S: Simd>(p: [Lanes<S>; 3], q: [Lanes<S>; 3]) -> Lanes<S> {
 #[inline(always)]
 fn quadrics<S: Simd>(
     simd: S,
-    start: [Lanes<S>; 3],
-    along: [Lanes<S>; 3],
+    start: [PieceLanes<S>; 3],
+    along: [PieceLanes<S>; 3],
     from: f64,
     is_sphere: bool,
-) -> (Lanes<S>, mask64x8<S>) {
+) -> (PieceLanes<S>, mask64x8<S>) {
     let weight = f64::from(u8::from(is_sphere));
     let a = dot(along, along, weight);
     // As in `form`, distances are measured from the point that is nearest to the axis.
@@ -316,7 +316,7 @@ fn quadrics<S: Simd>(
     let x = start[0] + middle * along[0];
     let y = start[1] + middle * along[1];
     let z = start[2] + middle * along[2];
-    let left = Lanes::splat(simd, 1.0) - dot([x, y, z], [x, y, z], weight);
+    let left = PieceLanes::splat(simd, 1.0) - dot([x, y, z], [x, y, z], weight);
     let half = (left / a).sqrt();
     let (near, far) = (middle - half, middle + half);
     let (mut is_near, mut is_far) = (near.simd_gt(from), far.simd_gt(from));
@@ -328,11 +328,11 @@ fn quadrics<S: Simd>(
 }
 
 #[inline(always)]
-fn dot<S: Simd>(p: [Lanes<S>; 3], q: [Lanes<S>; 3], weight: f64) -> Lanes<S> {
+fn dot<S: Simd>(p: [PieceLanes<S>; 3], q: [PieceLanes<S>; 3], weight: f64) -> PieceLanes<S> {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2] * weight
 }
 
 #[inline(always)]
-fn is_between<S: Simd>(height: Lanes<S>) -> mask64x8<S> {
+fn is_between<S: Simd>(height: PieceLanes<S>) -> mask64x8<S> {
     height.simd_ge(0.0) & height.simd_le(1.0)
 }

@@ -2,8 +2,8 @@
 
 use super::local::{Local, Spot};
 use super::ray::Ray;
-use super::tree::{PieceName, Tree};
-use etendue_bvh::Primitive;
+use super::tree::{PieceName, PieceTree};
+use etendue_bvh::WidePrimitive;
 use etendue_sampling::triangle;
 use etendue_world::{TexturePoint, Triangles};
 use glam::{DAffine3, DVec2, DVec3};
@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct WorldMesh {
     triangles: Arc<Triangles>,
     bounds: [DVec3; 2],
-    tree: OnceLock<Tree>,
+    tree: OnceLock<PieceTree>,
 }
 
 impl WorldMesh {
@@ -41,8 +41,8 @@ impl WorldMesh {
             // this distance.
             let origins = 10.0 * (self.bounds[1] - self.bounds[0]).length();
             let names: Vec<PieceName> = self.names(0).collect();
-            Tree::new(&names, origins, |name| {
-                Primitive::Triangle(self.corners(name.triangle))
+            PieceTree::new(&names, origins, |name| {
+                WidePrimitive::Triangle(self.corners(name.triangle))
             })
         });
     }

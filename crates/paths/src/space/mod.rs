@@ -15,13 +15,13 @@ use glam::DVec3;
 pub use placed::Hit;
 use placed::{Placed, placed};
 pub use ray::Ray;
-use search::Search;
+use search::SurfaceSearch;
 
 /// All surfaces of a world.
 #[derive(Debug)]
 pub struct SceneGeometry {
     placed: Vec<Placed>,
-    search: Search,
+    search: SurfaceSearch,
     /// Minimum distance of a hit. A hit at a smaller distance is on the surface from which the ray
     /// starts.
     nearest: f64,
@@ -51,7 +51,7 @@ impl SceneGeometry {
             .map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
         Self {
-            search: Search::new(&placed, &bounds, farthest),
+            search: SurfaceSearch::new(&placed, &bounds, farthest),
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),

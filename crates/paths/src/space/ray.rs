@@ -1,4 +1,4 @@
-//! Rays.
+//! Rays of worlds, given by origin and direction.
 
 use glam::DVec3;
 

@@ -5,18 +5,18 @@ use super::lanes::{PieceGroups, PieceShape};
 use super::local::Spot;
 use super::placed::Placed;
 use super::ray::Ray;
-use super::tree::{PieceName, Tree, WHOLE};
-use etendue_bvh::Primitive;
+use super::tree::{PieceName, PieceTree, WHOLE};
+use etendue_bvh::WidePrimitive;
 use glam::DVec3;
 use std::sync::Arc;
 
 /// A structure that finds hits.
 #[derive(Debug)]
-pub(super) enum Search {
+pub(super) enum SurfaceSearch {
     /// For small worlds.
     Groups(PieceGroups),
     /// For other worlds.
-    Tree(Tree),
+    Tree(PieceTree),
 }
 
 /// The largest number of pieces that are all tested. For more pieces, a tree is faster.
@@ -26,7 +26,7 @@ const MAX_GROUPED: usize = 64;
 /// world. The boxes in the tree of the world are padded by about a tenth of this.
 const FINE: f64 = 1e-4;
 
-impl Search {
+impl SurfaceSearch {
     /// Prepares the search for surfaces with their bounds. `origins` is the largest coordinate of
     /// the starting points of rays.
     pub(super) fn new(placed: &[Placed], bounds: &[[DVec3; 2]], origins: f64) -> Self {
@@ -62,9 +62,9 @@ impl Search {
                 return Self::Groups(groups);
             }
         }
-        Self::Tree(Tree::new(&names, origins, |name| {
-            let whole = Primitive::Box(bounds[name.surface as usize]);
-            corners(name).map_or(whole, Primitive::Triangle)
+        Self::Tree(PieceTree::new(&names, origins, |name| {
+            let whole = WidePrimitive::Box(bounds[name.surface as usize]);
+            corners(name).map_or(whole, WidePrimitive::Triangle)
         }))
     }
 
@@ -181,9 +181,11 @@ mod tests {
         let placed = shapes();
         let bounds: Vec<_> = placed.iter().map(Placed::bounds).collect();
         let (small, large) = [64, 0]
-            .map(|most| Search::with_groups(&placed, &bounds, 9.0, most))
+            .map(|most| SurfaceSearch::with_groups(&placed, &bounds, 9.0, most))
             .into();
-        assert!(matches!(small, Search::Groups(_)) && matches!(large, Search::Tree(_)));
+        assert!(
+            matches!(small, SurfaceSearch::Groups(_)) && matches!(large, SurfaceSearch::Tree(_))
+        );
         let mut met = 0;
         for index in 1000..20_000 {
             let from = 4.0 * numbers(index, 0);

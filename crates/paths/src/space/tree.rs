@@ -3,20 +3,20 @@
 use super::local::Spot;
 use super::ray::Ray;
 use super::triangle::TriangleRay;
-use etendue_bvh::{Primitive, WideHierarchy};
+use etendue_bvh::{WideHierarchy, WidePrimitive};
 use glam::DVec3;
 
 /// The pieces of surfaces, with a bounding volume hierarchy.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(super) struct PieceTree {
     hierarchy: WideHierarchy,
     /// The pieces, in the order of the hierarchy.
-    pieces: Vec<Piece>,
+    pieces: Vec<TreePiece>,
 }
 
 /// A triangle of a mesh, or a whole surface.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct TreePiece {
     /// The corners of the triangle; NaN for a whole surface, which no triangle test hits.
     corners: [DVec3; 3],
     name: PieceName,
@@ -33,22 +33,22 @@ pub(super) struct PieceName {
 /// Stands for all of a surface instead of a triangle.
 pub(super) const WHOLE: u32 = u32::MAX;
 
-impl Tree {
+impl PieceTree {
     /// Builds the tree of pieces. `origins` is the largest coordinate of the starting points of
     /// rays.
     pub(super) fn new(
         names: &[PieceName],
         origins: f64,
-        primitive: impl Fn(PieceName) -> Primitive + Sync,
+        primitive: impl Fn(PieceName) -> WidePrimitive + Sync,
     ) -> Self {
         let hierarchy = WideHierarchy::new(names.len(), origins, |i| primitive(names[i]));
         let piece = |i: &u32| {
             let name = names[*i as usize];
             let corners = match primitive(name) {
-                Primitive::Triangle(corners) => corners,
-                Primitive::Box(_) => [DVec3::NAN; 3],
+                WidePrimitive::Triangle(corners) => corners,
+                WidePrimitive::Box(_) => [DVec3::NAN; 3],
             };
-            Piece { corners, name }
+            TreePiece { corners, name }
         };
         Self {
             pieces: hierarchy.order().iter().map(piece).collect(),
@@ -72,7 +72,7 @@ impl Tree {
         let (mut end, mut nearest) = (until, 0);
         self.hierarchy
             .along(ray.from, ray.along, [from, until], |i| {
-                let Piece { corners, name } = &self.pieces[i];
+                let TreePiece { corners, name } = &self.pieces[i];
                 let surface = name.surface as usize;
                 let spot = match name.triangle {
                     _ if !counts(surface) => None,
@@ -110,7 +110,7 @@ impl Tree {
         let sight = TriangleRay::new(ray.from, ray.along);
         let mut is_met = false;
         self.hierarchy.along(ray.from, ray.along, within, |i| {
-            let Piece { corners, name } = &self.pieces[i];
+            let TreePiece { corners, name } = &self.pieces[i];
             is_met |= match name.triangle {
                 WHOLE => whole(name.surface as usize),
                 _ => sight
