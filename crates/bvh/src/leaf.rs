@@ -3,14 +3,14 @@
 //! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
 //! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). A triangle is rejected
 //! only if the ray is on different sides of the triangle's edges by more than all rounding
-//! errors.
+//! errors. A box in a leaf is a triangle with NaN corners, which is never rejected.
 
 use crate::single::single;
 use crate::wide::Visit;
 use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};
 
-/// The largest number of triangles, or of boxes, in a leaf.
+/// The largest number of primitives in a leaf.
 pub(crate) const MAX_LEAF: usize = 4;
 
 /// A vector with one number for each triangle of a leaf.
@@ -115,15 +115,14 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// The leaves of a tree of triangles. Each visit passes to the caller the triangles that a ray may
-/// meet.
-pub(crate) struct TriangleLeaves<'a, M> {
+/// The leaves of a tree. Each visit passes to the caller the primitives that a ray may meet.
+pub(crate) struct Leaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,
     pub(crate) meet: M,
 }
 
-impl<M: FnMut(usize) -> f32> Visit for TriangleLeaves<'_, M> {
+impl<M: FnMut(usize) -> f32> Visit for Leaves<'_, M> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32 {
         let leaf = &self.leaves[leaf];

@@ -3,8 +3,8 @@
 //! A hierarchy is in f32 and only finds candidates; the caller computes the intersections in f64.
 //! Boxes are padded by more than rounding errors, so no candidate is missed. obvhs builds a tree
 //! with two boxes in a node. Rays traverse this tree directly ([`BinaryHierarchy`]), or traverse
-//! a tree with eight boxes in a node (`wide`). The leaves of the wide tree hold a few boxes, or
-//! triangles that are tested together ([`WideHierarchy`]), or the box of one triangle
+//! a tree with eight boxes in a node (`wide`). The leaves of the wide tree hold a few boxes and
+//! triangles, which are tested together ([`WideHierarchy`]), or the box of one triangle
 //! ([`MeshHierarchy`]).
 //!
 //! The builder panics on boxes with NaN. No valid scene has boxes with NaN. The builder never
@@ -24,4 +24,4 @@ mod wide_hierarchy;
 
 pub use binary_hierarchy::BinaryHierarchy;
 pub use mesh_hierarchy::{MeshHierarchy, SearchMemory};
-pub use wide_hierarchy::WideHierarchy;
+pub use wide_hierarchy::{WideHierarchy, WidePrimitive};

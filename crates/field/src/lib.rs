@@ -49,7 +49,7 @@ pub use number::{brief, decimals, fixed, percent, sinc, tidy, uncertain, whole};
 pub use patch::{Patch, Specular};
 pub use pattern::{Pattern, Picture};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
-pub use portable::{Complex, cis, modulus, power, square_root};
+pub use portable::{Complex, cis, modulus, power, sincos_turns, square_root};
 pub use projection::{Projection, ProjectionGrid};
 pub use raster::Raster;
 pub use ray_light::{FluxRay, RayLight};

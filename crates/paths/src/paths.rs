@@ -39,6 +39,36 @@ pub(crate) const ROULETTE: u32 = 6;
 /// the rounding error of a picture.
 const LONGEST: u32 = 10_000;
 
+/// A path that is traced back step by step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TracedPath<'a> {
+    /// Distinguishes the path from others.
+    number: usize,
+    ray: Ray,
+    hit: Hit,
+    weight: f64,
+    /// The direction in which the path has left its first hit.
+    first: Option<DVec3>,
+    /// The density of the ray's direction; `None` for a delta direction.
+    density: Option<f64>,
+    numbers: PathNumbers<'a>,
+}
+
+impl<'a> TracedPath<'a> {
+    /// Begins a path at the hit of a ray.
+    pub(crate) fn new(number: usize, (ray, hit): (Ray, Hit), numbers: PathNumbers<'a>) -> Self {
+        Self {
+            number,
+            ray,
+            hit,
+            weight: 1.0,
+            first: None,
+            density: None,
+            numbers,
+        }
+    }
+}
+
 impl Paths {
     /// Creates the paths of a world whose shapes refer to existing materials.
     #[must_use]
@@ -63,14 +93,14 @@ impl Paths {
         seen: [f64; 2],
         before: u32,
         search: LightSearch,
-        numbers: &mut PathNumbers<'_>,
+        numbers: PathNumbers<'_>,
     ) -> f64 {
         let hit = self.geometry.first(&ray, seen);
         let mut sum = self.shown(&ray, hit.as_ref(), before);
         if let Some(hit) = hit {
-            self.scattered((ray, hit), before, search, numbers, &mut |_, light| {
-                sum += light;
-            });
+            let mut walk = TracedPath::new(0, (ray, hit), numbers);
+            let walks = std::slice::from_mut(&mut walk);
+            self.scattered(walks, before, search, &mut |_, _, light| sum += light);
         }
         sum
     }
@@ -85,51 +115,76 @@ impl Paths {
         }
     }
 
-    /// Returns the radiance that a hit surface scatters back along the ray. The result lists the
-    /// parts that one path finds, each with its incident direction in the frame of the hit.
-    /// `before` is the number of surfaces between the hit and the camera.
+    /// Finds the radiance that hit surfaces scatters back along rays. `found` receives the parts
+    /// that the path of each walk finds: the number of the walk, the incident direction in the
+    /// frame of its first hit, and the radiance. `before` is the number of surfaces between the
+    /// hits and the camera.
+    ///
+    /// All walks make a step before one makes the next. Their steps do not depend on each other, so
+    /// a processor works on several at the same time.
     pub(crate) fn scattered(
         &self,
-        (mut ray, mut hit): (Ray, Hit),
+        mut walks: &mut [TracedPath<'_>],
         before: u32,
         search: LightSearch,
-        numbers: &mut PathNumbers<'_>,
-        found: &mut dyn FnMut(DVec3, f64),
+        found: &mut impl FnMut(usize, DVec3, f64),
     ) {
-        let mut weight = 1.0;
-        let mut first: Option<DVec3> = None;
         for met in before..self.depth {
-            let scatter = self.scatter(&hit);
-            let wo = hit.frame.transpose() * -ray.along;
-            if search == LightSearch::Both && !scatter.is_smooth() {
-                let (wi, light) = self.looked_for(&hit, scatter, wo, numbers.draw());
-                found(first.unwrap_or(wi), weight * light);
-            }
-            let Some(bounce) = scatter.sample(&hit.point, wo, numbers.draw()) else {
+            if walks.is_empty() {
                 break;
-            };
-            weight *= bounce.weight;
-            let [survives] = numbers.draw();
-            if met + 1 >= before + ROULETTE {
-                let share = weight.min(0.95);
-                if survives >= share {
-                    break;
+            }
+            if search == LightSearch::Both {
+                PathNumbers::prepare(walks, |walk| &mut walk.numbers);
+                for walk in &mut *walks {
+                    let scatter = self.scatter(&walk.hit);
+                    if !scatter.is_smooth() {
+                        let wo = walk.hit.frame.transpose() * -walk.ray.along;
+                        let random = walk.numbers.draw();
+                        let (wi, light) = self.looked_for(&walk.hit, scatter, wo, random);
+                        found(walk.number, walk.first.unwrap_or(wi), walk.weight * light);
+                    }
                 }
-                weight /= share;
             }
-            ray = onward(&hit, &bounce);
-            let next = self.geometry.first(&ray, [0.0, f64::INFINITY]);
-            let from = *first.get_or_insert(bounce.wi);
-            let density = bounce.density.filter(|_| search == LightSearch::Both);
-            found(from, weight * self.emitted(&ray, next.as_ref(), density));
-            let Some(next) = next else {
-                break;
-            };
-            hit = next;
+            PathNumbers::prepare(walks, |walk| &mut walk.numbers);
+            walks = keep(walks, |walk| {
+                self.bounces(walk, met + 1 >= before + ROULETTE)
+            });
+            walks = keep(walks, |walk| {
+                let next = self.geometry.first(&walk.ray, [0.0, f64::INFINITY]);
+                let density = walk.density.filter(|_| search == LightSearch::Both);
+                let from = walk.first.unwrap_or(DVec3::Z);
+                let light = self.emitted(&walk.ray, next.as_ref(), density);
+                found(walk.number, from, walk.weight * light);
+                next.map(|next| walk.hit = next).is_some()
+            });
         }
     }
 
+    /// Samples the direction in which a path continues; returns false if it ends.
+    fn bounces(&self, walk: &mut TracedPath<'_>, has_roulette: bool) -> bool {
+        let hit = &walk.hit;
+        let wo = hit.frame.transpose() * -walk.ray.along;
+        let random = walk.numbers.draw();
+        let Some(bounce) = self.scatter(hit).sample(&hit.point, wo, random) else {
+            return false;
+        };
+        walk.weight *= bounce.weight;
+        let [survives] = walk.numbers.draw();
+        if has_roulette {
+            let share = walk.weight.min(0.95);
+            if survives >= share {
+                return false;
+            }
+            walk.weight /= share;
+        }
+        walk.ray = onward(hit, &bounce);
+        walk.density = bounce.density;
+        walk.first.get_or_insert(bounce.wi);
+        true
+    }
+
     /// Returns the material at the hit.
+    #[inline]
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
     }
@@ -147,6 +202,7 @@ impl Paths {
 
     /// Returns the light emitted along a ray that hits a light, with its weight in multiple
     /// importance sampling.
+    #[inline]
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
         let weighted = |(radiance, looked): (f64, f64)| match last {
             Some(last) => radiance * mis_weight(last, looked),
@@ -160,6 +216,7 @@ impl Paths {
 
     /// Samples a light. Returns the light that this finds, and its incident direction in the frame
     /// of the hit.
+    #[inline]
     fn looked_for(
         &self,
         hit: &Hit,
@@ -171,7 +228,7 @@ impl Paths {
             return (DVec3::Z, 0.0);
         };
         let wi = hit.frame.transpose() * light.toward;
-        let value = scatter.value(&hit.point, wi, wo);
+        let (value, density) = scatter.value_and_density(&hit.point, wi, wo);
         if value <= 0.0 {
             return (wi, 0.0);
         }
@@ -182,11 +239,26 @@ impl Paths {
         if !self.geometry.is_free(&ray, light.distance) {
             return (wi, 0.0);
         }
-        let mis_weight = light.density.map_or(1.0, |looked| {
-            mis_weight(looked, scatter.density(&hit.point, wi, wo))
-        });
+        let mis_weight = light
+            .density
+            .map_or(1.0, |looked| mis_weight(looked, density));
         (wi, value * light.weight * mis_weight)
     }
+}
+
+/// Moves the items to keep to the front, and returns them.
+fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T] {
+    let mut count = items.len();
+    let mut i = 0;
+    while i < count {
+        if is_kept(&mut items[i]) {
+            i += 1;
+        } else {
+            count -= 1;
+            items[i] = items[count];
+        }
+    }
+    &mut items[..count]
 }
 
 /// Returns the weight of a direction with density `own` in multiple importance sampling, where the

@@ -1,7 +1,7 @@
 //! Pictures, with the variance of each pixel.
 
 use crate::numbers::PathNumbers;
-use crate::paths::{LightSearch, Paths};
+use crate::paths::{LightSearch, Paths, TracedPath};
 use crate::space::Ray;
 use etendue_sampling::disc;
 use etendue_world::Camera;
@@ -17,6 +17,9 @@ pub struct Picture {
     /// Variance of that mean, estimated from the samples.
     pub variance: Vec<f64>,
 }
+
+/// Number of paths that are traced together.
+const STREAM: usize = 32;
 
 impl Paths {
     /// Renders the picture of a camera with `samples` paths per pixel; `progress` receives the
@@ -34,8 +37,7 @@ impl Paths {
             // If `progress` unwinds to stop the work, it also unwinds in this call, so no further
             // row is computed.
             progress(0);
-            let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
-            let pixels: Vec<[f64; 2]> = pixels.collect();
+            let pixels = self.row(camera, row, samples, seed);
             progress(w as u64);
             pixels
         };
@@ -47,38 +49,68 @@ impl Paths {
         }
     }
 
-    /// Returns the mean of a pixel, and the variance of this mean.
-    fn pixel(
-        &self,
-        camera: &Camera,
-        [column, row]: [usize; 2],
-        samples: u32,
-        seed: u64,
-    ) -> [f64; 2] {
-        let number = (row * camera.size[0] + column) as u64;
-        let (mut mean, mut squares) = (0.0, 0.0);
-        for sample in 0..samples {
-            let mut numbers =
-                PathNumbers::new(seed, number * u64::from(samples) + u64::from(sample));
-            let radiance = self.seen(camera, [column as f64, row as f64], &mut numbers);
-            // This recurrence is numerically stable (Welford 1962).
-            let off = radiance - mean;
-            mean += off / f64::from(sample + 1);
-            squares += off * (radiance - mean);
+    /// Returns the mean of each pixel of a row, and the variance of this mean.
+    fn row(&self, camera: &Camera, row: usize, samples: u32, seed: u64) -> Vec<[f64; 2]> {
+        let (width, samples) = (camera.size[0], samples as usize);
+        let mut walks = Vec::with_capacity(STREAM);
+        let mut radiances = [0.0; STREAM];
+        let mut pixels = vec![[0.0; 2]; width];
+        for start in (0..width * samples).step_by(STREAM) {
+            let paths = start..(start + STREAM).min(width * samples);
+            let mut drawn: [PathNumbers<'_>; STREAM] = std::array::from_fn(|i| {
+                PathNumbers::new(seed, (row * width * samples + start + i) as u64)
+            });
+            PathNumbers::prepare(&mut drawn, |numbers| numbers);
+            walks.clear();
+            for ((i, path), numbers) in paths.clone().enumerate().zip(drawn) {
+                let pixel = [(path / samples) as f64, row as f64];
+                let (radiance, walk) = self.seen(camera, pixel, i, numbers);
+                radiances[i] = radiance;
+                walks.extend(walk);
+            }
+            self.scattered(&mut walks, 0, LightSearch::Both, &mut |i, _, light| {
+                radiances[i] += light;
+            });
+            for (path, radiance) in paths.zip(radiances) {
+                // This recurrence is numerically stable (Welford 1962).
+                let [mean, squares] = &mut pixels[path / samples];
+                let off = radiance - *mean;
+                *mean += off / (path % samples + 1) as f64;
+                *squares += off * (radiance - *mean);
+            }
         }
-        let count = f64::from(samples);
-        [mean, squares / (count * (count - 1.0).max(1.0))]
+        let count = samples as f64;
+        for [_, squares] in &mut pixels {
+            *squares /= count * (count - 1.0).max(1.0);
+        }
+        pixels
     }
 
-    /// Returns the radiance by one path through a random point of a pixel.
-    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
+    /// Returns what a ray through a random point of a pixel sees of sources, and the path that
+    /// begins at its hit.
+    fn seen<'a>(
+        &self,
+        camera: &Camera,
+        pixel: [f64; 2],
+        number: usize,
+        mut numbers: PathNumbers<'a>,
+    ) -> (f64, Option<TracedPath<'a>>) {
         let [x, y, a, b] = numbers.draw();
-        let lens = disc(1.0, [a, b]).to_array();
+        let lens = if camera.has_lens() {
+            disc(1.0, [a, b]).to_array()
+        } else {
+            [0.0; 2]
+        };
         let look = camera.look([pixel[0] + x, pixel[1] + y], lens);
         let ray = Ray {
             from: look.from,
             along: look.along,
         };
-        self.radiance(ray, look.seen, 0, LightSearch::Both, numbers)
+        let hit = self.geometry.first(&ray, look.seen);
+        let shown = self.shown(&ray, hit.as_ref(), 0);
+        (
+            shown,
+            hit.map(|hit| TracedPath::new(number, (ray, hit), numbers)),
+        )
     }
 }

@@ -2,7 +2,7 @@
 //! the objects that they reflect. Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
-use crate::paths::{LightSearch, Paths};
+use crate::paths::{LightSearch, Paths, TracedPath};
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
 use etendue_transform::Net;
@@ -121,8 +121,8 @@ impl Paths {
         let [mut base, mut mean, mut squares] = [0.0; 3];
         for path in 0..paths {
             let key = number * u64::from(paths) + u64::from(path);
-            let mut numbers = PathNumbers::new(seed, key).of_net(&net, path);
-            let parts = self.by_one_path(seen, 0, &mut numbers);
+            let numbers = PathNumbers::new(seed, key).of_net(&net, path);
+            let parts = self.by_one_path(seen, 0, numbers);
             let radiance = parts[0] + parts[1];
             base += parts[0];
             let off = radiance - mean;
@@ -141,34 +141,24 @@ impl Paths {
     #[must_use]
     pub fn direct(&self, seen: &SurfaceHit, seed: u64, number: u64, index: u32) -> [f64; 2] {
         let net = Net::new(seed, Stream::EvenNet, number, JOINT);
-        let mut numbers = PathNumbers::new(seed, number).of_net(&net, index);
-        self.by_one_path(seen, self.depth.saturating_sub(1), &mut numbers)
+        let numbers = PathNumbers::new(seed, number).of_net(&net, index);
+        self.by_one_path(seen, self.depth.saturating_sub(1), numbers)
     }
 
     /// Estimates the radiance of base and lobe by one path, which ends as if `before` surfaces were between
     /// the point and the eye.
-    fn by_one_path(
-        &self,
-        seen: &SurfaceHit,
-        before: u32,
-        numbers: &mut PathNumbers<'_>,
-    ) -> [f64; 2] {
+    fn by_one_path(&self, seen: &SurfaceHit, before: u32, numbers: PathNumbers<'_>) -> [f64; 2] {
         let scatter = self.scatter(&seen.hit);
         let mut parts = [0.0; 2];
-        let start = (seen.ray, seen.hit);
-        self.scattered(
-            start,
-            before,
-            LightSearch::Both,
-            numbers,
-            &mut |wi, light| {
-                if light > 0.0 {
-                    let base = scatter.base_share(&seen.hit.point, wi, seen.wo());
-                    parts[0] += light * base;
-                    parts[1] += light * (1.0 - base);
-                }
-            },
-        );
+        let mut walk = TracedPath::new(0, (seen.ray, seen.hit), numbers);
+        let walks = std::slice::from_mut(&mut walk);
+        self.scattered(walks, before, LightSearch::Both, &mut |_, wi, light| {
+            if light > 0.0 {
+                let base = scatter.base_share(&seen.hit.point, wi, seen.wo());
+                parts[0] += light * base;
+                parts[1] += light * (1.0 - base);
+            }
+        });
         parts
     }
 

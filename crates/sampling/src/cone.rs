@@ -21,6 +21,7 @@ impl Cone {
 
     /// Returns a cone around an axis. It contains the directions whose angle to the axis has at
     /// least the given cosine. The axis has unit length.
+    #[inline]
     #[must_use]
     pub fn new(axis: DVec3, cosine: f64) -> Self {
         Self {
@@ -31,6 +32,7 @@ impl Cone {
 
     /// Returns the cone of directions from an observer to a sphere. `way` is the vector from the
     /// observer to the centre of the sphere. Returns `None` if the observer is inside the sphere.
+    #[inline]
     #[must_use]
     pub fn around_sphere(way: DVec3, radius: f64) -> Option<Self> {
         let squared = way.length_squared();
@@ -43,12 +45,14 @@ impl Cone {
     }
 
     /// Returns the solid angle, whose inverse is the sampling density.
+    #[inline]
     #[must_use]
     pub fn solid_angle(&self) -> f64 {
         TAU * self.fall
     }
 
     /// Samples a direction within the cone.
+    #[inline]
     #[must_use]
     pub fn sample(&self, [a, b]: [f64; 2]) -> DVec3 {
         about(self.axis, polar(a * self.fall, b))

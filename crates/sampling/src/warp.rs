@@ -1,14 +1,14 @@
 //! Maps from the unit square to discs, triangles and directions.
 
-use etendue_field::Frame;
+use etendue_field::{Frame, sincos_turns};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::FRAC_1_PI;
 
 /// Samples a point uniformly from a disc about the origin.
 #[inline]
 #[must_use]
 pub fn disc(radius: f64, [a, b]: [f64; 2]) -> DVec2 {
-    let (sin, cos) = libm::sincos(TAU * b);
+    let (sin, cos) = sincos_turns(b);
     radius * a.sqrt() * DVec2::new(cos, sin)
 }
 
@@ -49,7 +49,7 @@ pub fn cosine_hemisphere_density(direction: DVec3) -> f64 {
 #[must_use]
 pub fn polar(fall: f64, turn: f64) -> DVec3 {
     let sine = (fall * (2.0 - fall)).max(0.0).sqrt();
-    let (sin, cos) = libm::sincos(TAU * turn);
+    let (sin, cos) = sincos_turns(turn);
     DVec3::new(sine * cos, sine * sin, 1.0 - fall)
 }
 

@@ -10,6 +10,12 @@ pub trait Bsdf {
     /// Returns the density of [`Self::direction`] per solid angle of wi.
     fn density(&self, wi: DVec3, wo: DVec3) -> f64;
 
+    /// Returns [`Self::value`] and [`Self::density`]; after inlining, they share their common terms.
+    #[inline]
+    fn value_and_density(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
+        (self.value(wi, wo), self.density(wi, wo))
+    }
+
     /// Samples a direction wi; `None` if light is absorbed, or if a delta component was chosen.
     fn direction(&self, wo: DVec3, random: [f64; 3]) -> Option<DVec3>;
 
@@ -27,10 +33,10 @@ pub trait Bsdf {
             return Some(only);
         }
         let wi = self.direction(wo, random)?;
-        let density = self.density(wi, wo);
+        let (value, density) = self.value_and_density(wi, wo);
         (density > 0.0).then(|| BsdfSample {
             wi,
-            weight: self.value(wi, wo) * wi.z.abs() / density,
+            weight: value * wi.z.abs() / density,
             density: Some(density),
         })
     }

@@ -2,9 +2,9 @@
 //! along two axes: Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*).
 
 use crate::bsdf::mirrored;
-use etendue_field::MicrofacetDistribution;
+use etendue_field::{MicrofacetDistribution, sincos_turns};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Microfacets that are mirrors. Their normals are distributed about Z, and they mask each other by
 /// Smith's function.
@@ -76,7 +76,7 @@ impl Microfacets {
             MicrofacetDistribution::Beckmann => (-libm::log(a)).sqrt(),
             MicrofacetDistribution::Ggx => (a / (1.0 - a)).sqrt(),
         };
-        let (sin, cos) = libm::sincos(TAU * b);
+        let (sin, cos) = sincos_turns(b);
         let [x, y] = self.alpha.map(|alpha| alpha * tangent);
         mirrored(wo, DVec3::new(x * cos, y * sin, 1.0).normalize())
     }
@@ -141,7 +141,7 @@ impl Microfacets {
         let up = view.cross(across);
         // A point of the projected hemisphere is sampled. The projection consists of half of a
         // disc, and of the visible part of the other half.
-        let (sin, cos) = libm::sincos(TAU * b);
+        let (sin, cos) = sincos_turns(b);
         let radius = a.sqrt();
         let t1 = radius * cos;
         let seen = 0.5 * (1.0 + view.z);

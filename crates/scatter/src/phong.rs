@@ -2,7 +2,7 @@
 
 use crate::bsdf::before;
 use crate::{Bsdf, lambertian};
-use etendue_field::power;
+use etendue_field::{power, sincos_turns};
 use etendue_sampling::about;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -31,7 +31,7 @@ impl Phong {
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-        let (sin, cos) = libm::sincos(TAU * b);
+        let (sin, cos) = sincos_turns(b);
         let along = power(a, 1.0 / (self.exponent + 1.0));
         let across = ((1.0 - along) * (1.0 + along)).sqrt();
         let local = DVec3::new(across * cos, across * sin, along);

@@ -49,6 +49,7 @@ impl Coat {
     }
 
     /// Returns the transmittance at an angle of this cosine.
+    #[inline]
     fn through(&self, cosine: f64) -> f64 {
         if self.facets.is_none() {
             return 1.0 - Interface::new(self.index, cosine).reflected;
@@ -77,6 +78,7 @@ pub struct Plastic<'a> {
 impl Plastic<'_> {
     /// Returns the contribution of the base to the BRDF, with both directions in front of the
     /// surface.
+    #[inline]
     #[must_use]
     pub fn base_value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let through = self.coat.through(wi.z) * self.coat.through(wo.z);
@@ -85,6 +87,7 @@ impl Plastic<'_> {
 
     /// Returns the share of the light reaching the base that the base reflects. Repeated
     /// reflections by the coat are included.
+    #[inline]
     #[must_use]
     pub fn base_albedo(&self) -> f64 {
         let within = self.coat.within;
@@ -98,6 +101,7 @@ impl Plastic<'_> {
 
     /// Returns the share of directions that are sampled by the coat: approximately its share of the
     /// light.
+    #[inline]
     fn coat_share(&self, wo: DVec3) -> f64 {
         let through = self.coat.through(wo.z);
         let coat = (1.0 - through) * self.specular;
@@ -111,6 +115,7 @@ impl Plastic<'_> {
 }
 
 impl Bsdf for Plastic<'_> {
+    #[inline]
     fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 {
             return 0.0;
@@ -122,6 +127,7 @@ impl Bsdf for Plastic<'_> {
         coat + self.base_value(wi, wo)
     }
 
+    #[inline]
     fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 {
             return 0.0;
@@ -134,6 +140,7 @@ impl Bsdf for Plastic<'_> {
         share * coat + (1.0 - share) * lambertian::density(wi)
     }
 
+    #[inline]
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
         if c < self.coat_share(wo) {
             before(self.coat.facets?.sample(wo, [a, b]))
@@ -142,6 +149,7 @@ impl Bsdf for Plastic<'_> {
         }
     }
 
+    #[inline]
     fn mirrored(&self, wo: DVec3, c: f64) -> Option<BsdfSample> {
         // A smooth coat gets its share of the samples, and the base gets the remaining samples.
         let share = self.coat_share(wo);

@@ -4,9 +4,9 @@
 use crate::bsdf::{before, mirrored};
 use crate::fresnel::Interface;
 use crate::{Bsdf, Microfacets, RoughDielectric, lambertian};
-use etendue_field::{MicrofacetDistribution, power};
+use etendue_field::{MicrofacetDistribution, power, sincos_turns};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// The smallest share of directions that the facets sample, because Schlick's factor is larger at
 /// grazing angles than the share of the lobe that is estimated.
@@ -125,7 +125,7 @@ impl Principled {
     fn coat_sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         let squared = self.coat_alpha * self.coat_alpha;
         let height = (1.0 - power(squared, 1.0 - b)) / (1.0 - squared);
-        let (sin, cos) = libm::sincos(TAU * a);
+        let (sin, cos) = sincos_turns(a);
         let radius = (1.0 - height).max(0.0).sqrt();
         let normal = DVec3::new(radius * cos, radius * sin, height.max(0.0).sqrt());
         mirrored(wo, normal)

@@ -45,6 +45,33 @@ pub fn words(seed: u64, stream: Stream, index: u64, block: u32) -> [u32; 4] {
     )
 }
 
+/// Returns [`words`] of `N` items, each with its own seed, index and block, as a column for each
+/// word. The compiler can vectorise the function.
+#[inline(always)]
+#[must_use]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a 64-bit word is split into two of 32"
+)]
+pub fn columns<const N: usize>(
+    seeds: &[u64; N],
+    stream: Stream,
+    indices: &[u64; N],
+    blocks: &[u32; N],
+) -> [[u32; N]; 4] {
+    let mut columns = [[0; N]; 4];
+    for k in 0..N {
+        let (index, seed) = (indices[k], seeds[k]);
+        let counter = [index as u32, (index >> 32) as u32, blocks[k], stream as u32];
+        let [x, y, z, w] = philox(counter, [seed as u32, (seed >> 32) as u32]);
+        columns[0][k] = x;
+        columns[1][k] = y;
+        columns[2][k] = z;
+        columns[3][k] = w;
+    }
+    columns
+}
+
 /// Converts a random word to a number in (0, 1). The number is the centre of one of 2³² equal
 /// cells.
 #[inline]
@@ -65,7 +92,7 @@ pub fn index(word: u32, count: usize) -> usize {
     ((unit(word) * count as f64) as usize).min(count - 1)
 }
 
-#[inline]
+#[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the two halves of a 64-bit product"
@@ -90,7 +117,19 @@ fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 
 #[cfg(test)]
 mod tests {
-    use super::philox;
+    use super::{Stream, columns, philox, words};
+
+    #[test]
+    fn columns_are_words() {
+        let seeds = [3, 1 << 40, 7, 8];
+        let indices = [0, 5, 1 << 35, u64::MAX];
+        let blocks = [0, 1, 2, 9];
+        let columns = columns(&seeds, Stream::Backward, &indices, &blocks);
+        for k in 0..4 {
+            let expected = words(seeds[k], Stream::Backward, indices[k], blocks[k]);
+            assert_eq!(columns.map(|column| column[k]), expected);
+        }
+    }
 
     /// Known answers of the Random123 distribution, file `kat_vectors`, philox4x32 with 10 rounds.
     #[test]

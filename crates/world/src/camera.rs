@@ -57,9 +57,19 @@ pub struct Look {
 }
 
 impl Camera {
+    /// Returns whether rays begin at different points of a lens.
+    #[must_use]
+    pub fn has_lens(&self) -> bool {
+        matches!(
+            self.projection,
+            Projection::Perspective { lens: Some(_), .. }
+        )
+    }
+
     /// Returns the ray through a point of the picture and a point of the lens. The first is given
     /// in pixels to the right and down from the picture's top left, and the second by a point of
     /// the unit disc.
+    #[inline]
     #[must_use]
     pub fn look(&self, [right, down]: [f64; 2], lens: [f64; 2]) -> Look {
         let [w, h] = self.size.map(|n| n as f64);

@@ -63,6 +63,7 @@ pub enum Filter {
 
 impl Texture {
     /// Returns the value at a point of the surface.
+    #[inline]
     #[must_use]
     pub fn value(&self, point: &TexturePoint) -> f64 {
         match self {

@@ -41,24 +41,28 @@ impl Triangles {
     }
 
     /// Positions of the vertices.
+    #[inline]
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
     /// Returns the vertices of each triangle.
+    #[inline]
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners
     }
 
     /// Shading normals at the vertices.
+    #[inline]
     #[must_use]
     pub fn normals(&self) -> Option<&[DVec3]> {
         self.normals.as_deref()
     }
 
     /// Texture coordinates of the vertices.
+    #[inline]
     #[must_use]
     pub fn uvs(&self) -> Option<&[DVec2]> {
         self.uvs.as_deref()

@@ -19,6 +19,7 @@ pub(crate) struct Incoming {
 }
 
 /// Returns the direction and the distance from one point to another.
+#[inline]
 pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     let between = to - from;
     let distance = between.length();
@@ -27,6 +28,7 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
 
 /// Returns the radiance that a shape emits in a direction from a given point. The
 /// radiance is the same in all directions on the front.
+#[inline]
 pub(super) fn emitted(emission: &Texture, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
         emission.value(point)

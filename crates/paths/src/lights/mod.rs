@@ -52,6 +52,7 @@ impl LightSampler {
 
     /// Samples incident light at a point with four random numbers. Returns `None` if no light
     /// arrives.
+    #[inline]
     pub(crate) fn sample(
         &self,
         geometry: &SceneGeometry,
@@ -71,6 +72,7 @@ impl LightSampler {
 
     /// Picks a light by a random number, each light with equal probability. Returns the light, and
     /// a random number in (0, 1) for further use.
+    #[inline]
     fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
         let place = r * self.lights.len() as f64;
         let light = self.lights.get(whole(place))?;
@@ -92,6 +94,7 @@ impl LightSampler {
 
     /// Returns the emission of a shape that a ray along `along` hits, and the density with which
     /// [`Self::sample`] draws this direction.
+    #[inline]
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let Some(light) = self.of_shape[hit.shape].map(|light| &self.lights[light]) else {
             return (0.0, 0.0);
@@ -106,6 +109,7 @@ impl LightSampler {
 
     /// Returns, for each distant light, its radiance from a direction, and the density with which
     /// [`Self::sample`] draws this direction.
+    #[inline]
     pub(crate) fn of_sky(&self, toward: DVec3) -> impl Iterator<Item = (f64, f64)> {
         let count = self.lights.len() as f64;
         let skies = self.lights.iter().filter_map(move |light| match light {
@@ -184,6 +188,7 @@ impl From<&Light> for SampledLight {
 }
 
 impl SampledLight {
+    #[inline]
     fn sample(&self, geometry: &SceneGeometry, at: DVec3, r: [f64; 4]) -> Option<Incoming> {
         let [a, b, c, _] = r;
         match self {

@@ -28,6 +28,7 @@ impl ShiningShape {
         self.pieces.total()
     }
 
+    #[inline]
     pub(super) fn sample(
         &self,
         geometry: &SceneGeometry,
@@ -48,6 +49,7 @@ impl ShiningShape {
 
     /// Samples a point uniformly by area. Returns the point, its normal, and the point as
     /// textures see it.
+    #[inline]
     fn place(
         &self,
         geometry: &SceneGeometry,
@@ -69,10 +71,12 @@ impl ShiningShape {
 
     /// Returns the density, per solid angle, of a point at a distance. `cosine` is the cosine of
     /// the angle between the normal at the point and the direction to it.
+    #[inline]
     fn density(&self, distance: f64, cosine: f64) -> f64 {
         distance * distance / (cosine.abs() * self.area())
     }
 
+    #[inline]
     pub(super) fn of_hit(&self, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, &hit.point, hit.normal, -along);
         (radiance, self.density(hit.distance, hit.normal.dot(along)))

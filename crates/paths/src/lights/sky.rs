@@ -1,6 +1,6 @@
 //! Distant light.
 
-use etendue_sampling::{Cone, LatLongSampler};
+use etendue_sampling::{Cone, LatLongSampler, sphere};
 use etendue_world::SkyMap;
 use glam::{DMat3, DVec3};
 
@@ -27,7 +27,7 @@ impl SampledSky {
     /// Samples a direction towards the light.
     pub(super) fn sample(&self, r: [f64; 4]) -> DVec3 {
         match self {
-            Self::Constant(_) => Cone::SPHERE.sample([r[0], r[1]]),
+            Self::Constant(_) => sphere([r[0], r[1]]),
             Self::Map {
                 sampler, to_world, ..
             } => *to_world * sampler.sample(r),

@@ -176,7 +176,7 @@ impl<'a> Probe<'a> {
         let line = self.legs[plane.leg].line(&self.paths.geometry, &plane.frame, ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
         let range = [0.0, f64::INFINITY];
-        self.paths.radiance(line, range, before, search, numbers)
+        self.paths.radiance(line, range, before, search, *numbers)
     }
 
     /// Checks whether BSDF rays, which never sample a light, find all lights. They never find point

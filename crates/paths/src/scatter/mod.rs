@@ -16,12 +16,12 @@ use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
 use glam::DVec3;
 use place::{
-    Coated, conductor, facets, factor, fresnel, phong, principled, rough_dielectric, share,
+    Coated, conductor, factor, fresnel, phong, principled, rough_dielectric, share,
     smooth_dielectric,
 };
 use principled_side::PrincipledSide;
 pub use reflects::Reflects;
-use turn::{Turn, to_front};
+use turn::to_front;
 
 /// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
@@ -59,61 +59,59 @@ impl From<&Material> for Scatter {
 }
 
 impl Scatter {
-    /// Returns the BSDF times |cos| of wi, without delta components such as mirrors.
-    pub(crate) fn value(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
+    /// Returns the BSDF times |cos| of wi, and the density of [`Self::sample`] per solid angle,
+    /// both without delta components such as mirrors.
+    pub(crate) fn value_and_density(
+        &self,
+        point: &TexturePoint,
+        wi: DVec3,
+        wo: DVec3,
+    ) -> (f64, f64) {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
-                side.value(point, turned(wi), turned(wo))
+                side.value_and_density(point, turned(wi), turned(wo))
             }
-            Self::Mask(opacity, of) => opacity.value(point) * of.value(point, wi, wo),
+            Self::Mask(opacity, of) => {
+                let opacity = opacity.value(point);
+                let (value, density) = of.value_and_density(point, wi, wo);
+                (opacity * value, opacity * density)
+            }
             Self::Blend(weight, of) => {
-                let ([a, b], share) = (&**of, weight.value(point).clamp(0.0, 1.0));
-                (1.0 - share) * a.value(point, wi, wo) + share * b.value(point, wi, wo)
+                let share = weight.value(point).clamp(0.0, 1.0);
+                let [a, b] = of.each_ref().map(|of| of.value_and_density(point, wi, wo));
+                let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
+                (mix(a.0, b.0), mix(a.1, b.1))
             }
-            Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or(0.0, |rough| {
+            Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or((0.0, 0.0), |rough| {
                 let turned = to_front(wo);
-                let (wi, wo) = (turned(wi), turned(wo));
-                factor(of, point, wi) * rough.value(wi, wo) * wi.z.abs()
+                let (value, density) = both(&rough, turned(wi), turned(wo));
+                (factor(of, point, turned(wi)) * value, density)
             }),
-            Self::Principled(of) => PrincipledSide::new(of, point, wo).value(wi, wo),
-            _ if !is_front => 0.0,
-            Self::Diffuse(reflectance) => reflectance.value(point) * lambertian::density(wi),
-            Self::Conductor(of) => conductor(of, point).map_or(0.0, |rough| {
-                of.reflectance.value(point) * rough.value(wi, wo) * wi.z
+            Self::Principled(of) => PrincipledSide::new(of, point, wo).value_and_density(wi, wo),
+            _ if !is_front => (0.0, 0.0),
+            Self::Diffuse(reflectance) => {
+                let density = lambertian::density(wi);
+                (reflectance.value(point) * density, density)
+            }
+            Self::Conductor(of) => conductor(of, point).map_or((0.0, 0.0), |rough| {
+                let (value, density) = both(&rough, wi, wo);
+                (of.reflectance.value(point) * value, density)
             }),
-            Self::Plastic(of) => of.at(point).value(wi, wo) * wi.z,
-            Self::Phong(of) => phong(of, point).value(wi, wo) * wi.z,
+            Self::Plastic(of) => both(&of.at(point), wi, wo),
+            Self::Phong(of) => both(&phong(of, point), wi, wo),
         }
     }
 
-    /// Returns the density of [`Self::sample`] per solid angle, without delta components.
+    /// Returns the first of [`Self::value_and_density`].
+    pub(crate) fn value(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
+        self.value_and_density(point, wi, wo).0
+    }
+
+    /// Returns the second of [`Self::value_and_density`].
     pub(crate) fn density(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
-        let is_front = wi.z > 0.0 && wo.z > 0.0;
-        match self {
-            Self::TwoSided(sides) => {
-                let (side, turned) = side_of(sides, wo);
-                side.density(point, turned(wi), turned(wo))
-            }
-            Self::Mask(opacity, of) => opacity.value(point) * of.density(point, wi, wo),
-            Self::Blend(weight, of) => {
-                let ([a, b], share) = (&**of, weight.value(point).clamp(0.0, 1.0));
-                (1.0 - share) * a.density(point, wi, wo) + share * b.density(point, wi, wo)
-            }
-            Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or(0.0, |rough| {
-                let turned = to_front(wo);
-                rough.density(turned(wi), turned(wo))
-            }),
-            Self::Principled(of) => PrincipledSide::new(of, point, wo).density(wi, wo),
-            _ if !is_front => 0.0,
-            Self::Diffuse(_) => lambertian::density(wi),
-            Self::Conductor(of) => {
-                facets(of.roughness.as_ref(), point).map_or(0.0, |facets| facets.density(wi, wo))
-            }
-            Self::Plastic(of) => of.at(point).density(wi, wo),
-            Self::Phong(of) => phong(of, point).density(wi, wo),
-        }
+        self.value_and_density(point, wi, wo).1
     }
 
     /// Samples a direction wi from three numbers in (0, 1); `None` if light is absorbed.
@@ -200,10 +198,9 @@ impl Scatter {
         if bounce.density.is_none() {
             return Some(bounce);
         }
-        let density = self.density(point, bounce.wi, wo);
-        let weight = self.value(point, bounce.wi, wo) / density;
+        let (value, density) = self.value_and_density(point, bounce.wi, wo);
         Some(BsdfSample {
-            weight,
+            weight: value / density,
             density: Some(density),
             ..bounce
         })
@@ -333,9 +330,16 @@ impl Scatter {
     }
 }
 
+/// Returns a BSDF times |cos| of wi, and its density.
+fn both(of: &impl Bsdf, wi: DVec3, wo: DVec3) -> (f64, f64) {
+    let (value, density) = of.value_and_density(wi, wo);
+    (value * wi.z.abs(), density)
+}
+
 /// Returns the material on the side that faces a direction, and the flip to the frame of this
 /// side.
-fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, Turn) {
+#[inline]
+fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, impl Fn(DVec3) -> DVec3 + Copy) {
     (&sides[usize::from(wo.z <= 0.0)], to_front(wo))
 }
 

@@ -30,16 +30,11 @@ impl PrincipledSide {
         }
     }
 
-    /// Returns the BSDF times |cos| of wi.
-    pub(super) fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+    /// Returns the BSDF times |cos| of wi, and the density of [`Self::sample`] per solid angle.
+    pub(super) fn value_and_density(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
         let turned = to_front(wo);
-        self.bsdf().value(turned(wi), turned(wo)) * wi.z.abs()
-    }
-
-    /// Returns the density of [`Self::sample`] per solid angle.
-    pub(super) fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
-        let turned = to_front(wo);
-        self.bsdf().density(turned(wi), turned(wo))
+        let (value, density) = self.bsdf().value_and_density(turned(wi), turned(wo));
+        (value * wi.z.abs(), density)
     }
 
     /// Samples a direction wi; `None` if light is absorbed.

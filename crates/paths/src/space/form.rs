@@ -1,7 +1,9 @@
 //! Intersects rays with geometries in local coordinates, and samples the areas of geometries.
 
-use super::local::Local;
+use super::local::{Local, Spot};
 use super::mesh::WorldMesh;
+use super::ray::Ray;
+use etendue_field::sincos_turns;
 use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -38,16 +40,12 @@ impl Form {
         (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
     }
 
-    /// Returns the first hit on a ray at distances strictly within bounds. `along` has unit
-    /// length.
-    pub(crate) fn first(
-        &self,
-        start: DVec3,
-        along: DVec3,
-        [from, until]: [f64; 2],
-    ) -> Option<(f64, Local)> {
-        let within = |at: f64| at > from && at < until;
-        match self {
+    /// Returns the first hit on a ray at distances strictly within bounds.
+    #[inline]
+    pub(super) fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Spot> {
+        let Ray { from: start, along } = *ray;
+        let within = |at: &f64| *at > from && *at < until;
+        let distance = match self {
             Self::Rectangle | Self::Disc => {
                 let at = -start.z / along.z;
                 let place = (start + at * along).truncate();
@@ -55,45 +53,54 @@ impl Form {
                     Self::Disc => place.length_squared() <= 1.0,
                     _ => place.abs().max_element() <= 1.0,
                 };
-                (within(at) && is_on).then(|| (at, self.flat(place)))
+                (within(&at) && is_on).then_some(at)
             }
             Self::Sphere => {
-                let at = roots(start, along, DVec3::ONE)?
-                    .into_iter()
-                    .find(|at| within(*at))?;
-                Some((at, ball(start + at * along)))
+                let both = roots(start, along, DVec3::ONE)?;
+                both.into_iter().find(within)
             }
             Self::Cylinder => {
-                let on = |at: f64| (0.0..=1.0).contains(&(start.z + at * along.z));
+                let on = |at: &f64| (0.0..=1.0).contains(&(start.z + at * along.z));
                 let both = roots(start, along, DVec3::new(1.0, 1.0, 0.0))?;
-                let at = both.into_iter().find(|at| within(*at) && on(*at))?;
-                Some((at, tube(start + at * along)))
+                both.into_iter().find(|at| within(at) && on(at))
             }
-            Self::Mesh(mesh) => mesh.first(start, along, [from, until]),
-        }
+            Self::Mesh(mesh) => return mesh.first(ray, [from, until]),
+        };
+        distance.map(Spot::at)
     }
 
-    /// Checks whether a ray hits the geometry at a distance strictly within bounds. `along` has
-    /// unit length.
-    pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
+    /// Checks whether a ray hits the geometry at a distance strictly within bounds.
+    #[inline]
+    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
         match self {
-            Self::Mesh(mesh) => mesh.is_met(start, along, within),
-            other => other.first(start, along, within).is_some(),
+            Self::Mesh(mesh) => mesh.is_met(ray, within),
+            other => other.first(ray, within).is_some(),
         }
     }
 
+    /// Returns the point of the geometry at a hit; `place` is its position.
+    #[inline]
+    pub(super) fn local(&self, place: DVec3, spot: &Spot) -> Local {
+        match self {
+            Self::Rectangle | Self::Disc => self.flat(place.truncate()),
+            Self::Sphere => ball(place),
+            Self::Cylinder => tube(place),
+            Self::Mesh(mesh) => mesh.local(spot.triangle as usize, spot.weights),
+        }
+    }
+
+    #[inline]
     fn flat(&self, place: DVec2) -> Local {
         let (uv, along_u) = match self {
             Self::Disc => {
                 let uv = DVec2::new(place.length(), turn(place));
                 (uv, place.extend(0.0).try_normalize().unwrap_or(DVec3::X))
             }
-            _ => (0.5 * (place + 1.0), DVec3::X),
+            _ => (square_uv(place), DVec3::X),
         };
-        let normal = DVec3::Z;
         Local {
-            normal,
-            shading: normal,
+            normal: DVec3::Z,
+            shading: None,
             point: uv.into(),
             along_u,
         }
@@ -114,6 +121,7 @@ impl Form {
     }
 
     /// Returns a point sampled uniformly by area on a piece.
+    #[inline]
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
             Self::Rectangle => {
@@ -129,7 +137,7 @@ impl Form {
                 (place, ball(place))
             }
             Self::Cylinder => {
-                let (sin, cos) = libm::sincos(TAU * b);
+                let (sin, cos) = sincos_turns(b);
                 let place = DVec3::new(cos, sin, a);
                 (place, tube(place))
             }
@@ -150,6 +158,12 @@ fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     // For a ray along the axis of a cylinder, a is 0 and there is no hit.
     let half = (left / a).sqrt();
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
+}
+
+/// Returns the texture coordinates of a point of the square.
+#[inline]
+pub(super) fn square_uv(place: DVec2) -> DVec2 {
+    0.5 * (place + 1.0)
 }
 
 /// Returns the azimuth divided by 2π, from 0 to 1.
@@ -175,7 +189,7 @@ fn round(normal: DVec3, uv: DVec2) -> Local {
     let along_u = DVec3::new(-normal.y, normal.x, 0.0);
     Local {
         normal,
-        shading: normal,
+        shading: None,
         point: uv.into(),
         along_u,
     }

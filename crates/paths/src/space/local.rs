@@ -1,17 +1,39 @@
-//! A point of a geometry.
+//! Points of a geometry.
 
 use etendue_world::TexturePoint;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A point of a geometry, in local coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Local {
     /// The geometric normal, of any length.
     pub(crate) normal: DVec3,
-    /// The shading normal.
-    pub(crate) shading: DVec3,
+    /// The shading normal, if it is not the geometric normal.
+    pub(crate) shading: Option<DVec3>,
     /// The point as textures see it.
     pub(crate) point: TexturePoint,
     /// The direction in which u increases.
     pub(crate) along_u: DVec3,
+}
+
+/// The hit of a ray with a geometry.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// The distance, in multiples of the direction of the ray.
+    pub(super) distance: f64,
+    /// The number of the triangle, if the geometry is a mesh.
+    pub(super) triangle: u32,
+    /// The barycentric coordinates of the second and the third corner of this triangle.
+    pub(super) weights: DVec2,
+}
+
+impl Spot {
+    /// Returns the hit with a geometry that is not a mesh.
+    pub(super) fn at(distance: f64) -> Self {
+        Self {
+            distance,
+            triangle: 0,
+            weights: DVec2::ZERO,
+        }
+    }
 }

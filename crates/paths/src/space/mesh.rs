@@ -1,95 +1,103 @@
 //! Triangle meshes prepared for ray intersection.
 
-use super::local::Local;
-use super::triangle::TriangleRay;
-use etendue_bvh::WideHierarchy;
+use super::local::{Local, Spot};
+use super::ray::Ray;
+use super::tree::{PieceName, PieceTree};
+use etendue_bvh::WidePrimitive;
 use etendue_sampling::triangle;
 use etendue_world::{TexturePoint, Triangles};
 use glam::{DAffine3, DVec2, DVec3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-/// Triangles with a bounding volume hierarchy.
+/// A mesh, with a hierarchy of its own if it is intersected in local coordinates.
 #[derive(Debug)]
 pub(crate) struct WorldMesh {
     triangles: Arc<Triangles>,
-    hierarchy: WideHierarchy,
-    /// The vertices of triangles, in the order of the hierarchy.
-    ordered: Vec<[u32; 3]>,
     bounds: [DVec3; 2],
+    tree: OnceLock<PieceTree>,
 }
 
 impl WorldMesh {
     pub(super) fn new(triangles: Arc<Triangles>) -> Self {
-        let corners = triangles.corners();
-        let bounds = |i: usize| {
-            let [a, b, c] = places(&triangles, corners[i]);
+        let corners = triangles.corners().iter().copied();
+        let bounds = |corners: [u32; 3]| {
+            let [a, b, c] = places(&triangles, corners);
             [a.min(b).min(c), a.max(b).max(c)]
         };
-        let all = (0..corners.len())
+        let all = corners
             .map(bounds)
             .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
-        let all = all.unwrap_or_default();
-        // Rays may begin far from the mesh, so the boxes are padded for rounding errors at this
-        // distance.
-        let origins = 10.0 * (all[1] - all[0]).length();
-        let hierarchy = WideHierarchy::over_triangles(corners.len(), origins, |i| {
-            places(&triangles, corners[i])
-        });
-        let order = hierarchy.order().iter();
         Self {
-            ordered: order.map(|i| corners[*i as usize]).collect(),
-            hierarchy,
-            bounds: all,
+            bounds: all.unwrap_or_default(),
             triangles,
+            tree: OnceLock::new(),
         }
+    }
+
+    /// Builds the tree, after which rays are intersected in local coordinates.
+    pub(super) fn build_tree(&self) {
+        self.tree.get_or_init(|| {
+            // Rays may begin far from the mesh, so the boxes are padded for rounding errors at
+            // this distance.
+            let origins = 10.0 * (self.bounds[1] - self.bounds[0]).length();
+            let names: Vec<PieceName> = self.names(0).collect();
+            PieceTree::new(&names, origins, |name| {
+                WidePrimitive::Triangle(self.corners(name.triangle))
+            })
+        });
+    }
+
+    /// Returns the approximate size of the triangles, relative to the size of the mesh.
+    pub(super) fn fineness(&self) -> f64 {
+        (self.triangles.corners().len() as f64).sqrt().recip()
+    }
+
+    /// Returns whether the mesh has a tree of its own.
+    pub(super) fn has_tree(&self) -> bool {
+        self.tree.get().is_some()
+    }
+
+    /// Returns the triangles as pieces of a surface.
+    pub(super) fn names(&self, surface: u32) -> impl Iterator<Item = PieceName> + use<> {
+        let numbers = (0..).take(self.triangles.corners().len());
+        numbers.map(move |triangle| PieceName { surface, triangle })
+    }
+
+    /// Returns the corners of a triangle.
+    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        places(&self.triangles, self.triangles.corners()[triangle as usize])
     }
 
     pub(super) fn bounds(&self) -> [DVec3; 2] {
         self.bounds
     }
 
-    pub(super) fn first(
-        &self,
-        start: DVec3,
-        along: DVec3,
-        [from, until]: [f64; 2],
-    ) -> Option<(f64, Local)> {
-        let sight = TriangleRay::new(start, along);
-        let mut first: Option<(f64, usize, DVec2)> = None;
-        let mut end = until;
-        self.hierarchy.along(start, along, [from, until], |i| {
-            if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
-                && at > from
-                // Among hits at the same distance, the hit with the lowest index is used, so the
-                // result does not depend on the traversal order.
-                && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
-            {
-                first = Some((at, i, place));
-                end = at;
-            }
-            end
-        });
-        first.map(|(at, i, place)| (at, self.local(self.hierarchy.order()[i] as usize, place)))
+    pub(super) fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<Spot> {
+        let (ray, scale) = scaled(ray);
+        let within = within.map(|at| at * scale);
+        let (_, spot) = self
+            .tree
+            .get()?
+            .first(&ray, within, |_| true, |_, _| None)?;
+        Some(Spot {
+            distance: spot.distance / scale,
+            ..spot
+        })
     }
 
     /// Checks whether a ray hits the mesh at a distance strictly within bounds.
-    pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
-        let sight = TriangleRay::new(start, along);
-        let mut is_met = false;
-        self.hierarchy.along(start, along, [from, until], |i| {
-            let corners = places(&self.triangles, self.ordered[i]);
-            is_met |= sight
-                .meets(corners)
-                .is_some_and(|(at, _)| at > from && at < until);
-            // After a hit, the traversal ends.
-            if is_met { f64::NEG_INFINITY } else { until }
-        });
-        is_met
+    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+        let (ray, scale) = scaled(ray);
+        let within = within.map(|at| at * scale);
+        self.tree
+            .get()
+            .is_some_and(|tree| tree.is_met(&ray, within, |_| false))
     }
 
     /// Returns the point of a triangle, given by its index in the mesh, whose barycentric
     /// coordinates are `place`. The coordinates belong to the second and the third corner.
-    fn local(&self, number: usize, place: DVec2) -> Local {
+    #[inline]
+    pub(super) fn local(&self, number: usize, place: DVec2) -> Local {
         let corners = self.triangles.corners()[number];
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);
@@ -113,7 +121,7 @@ impl WorldMesh {
         let shading = shading.filter(|sum: &DVec3| sum.length_squared() > 0.0);
         Local {
             normal,
-            shading: shading.unwrap_or(normal),
+            shading,
             point: TexturePoint {
                 uv,
                 triangle: number,
@@ -142,6 +150,13 @@ impl WorldMesh {
             self.local(number, place),
         )
     }
+}
+
+/// Returns a ray with a direction of unit length, and the length of its former direction.
+fn scaled(ray: &Ray) -> (Ray, f64) {
+    let scale = ray.along.length();
+    let along = ray.along / scale;
+    (Ray { along, ..*ray }, scale)
 }
 
 fn places(triangles: &Triangles, corners: [u32; 3]) -> [DVec3; 3] {

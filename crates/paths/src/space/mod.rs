@@ -1,73 +1,33 @@
 //! Intersects rays with all surfaces, to find first hits and to test visibility.
 
 mod form;
+mod lanes;
 mod local;
 mod mesh;
+mod placed;
+mod ray;
+mod search;
+mod tree;
 mod triangle;
 
-use etendue_bvh::WideHierarchy;
-use etendue_world::{Geometry, Shape, TexturePoint, Triangles, World};
-use form::Form;
-use glam::{DAffine3, DMat3, DVec3};
-use local::Local;
-use mesh::WorldMesh;
-use std::collections::HashMap;
-use std::sync::Arc;
-
-/// A ray. Distances along the ray are multiples of `along`, which has length 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Ray {
-    /// Its origin.
-    pub from: DVec3,
-    /// Its direction.
-    pub along: DVec3,
-}
-
-impl Ray {
-    pub(crate) fn at(&self, distance: f64) -> DVec3 {
-        self.from + distance * self.along
-    }
-}
-
-/// The hit of a ray.
-#[derive(Clone, Copy, Debug)]
-pub struct Hit {
-    /// The distance along the ray.
-    pub distance: f64,
-    /// The position in the world.
-    pub position: DVec3,
-    /// The index of the shape.
-    pub shape: usize,
-    /// The geometric normal, on the front of the surface.
-    pub normal: DVec3,
-    /// The shading frame, as a map to world coordinates. Z is the normal, interpolated on smooth
-    /// meshes, and X is along u.
-    pub frame: DMat3,
-    /// The position as textures see it.
-    pub point: TexturePoint,
-}
+use etendue_world::World;
+use glam::DVec3;
+pub use placed::Hit;
+use placed::{Placed, placed};
+pub use ray::Ray;
+use search::SurfaceSearch;
 
 /// All surfaces of a world.
 #[derive(Debug)]
 pub struct SceneGeometry {
     placed: Vec<Placed>,
-    hierarchy: WideHierarchy,
+    search: SurfaceSearch,
     /// Minimum distance of a hit. A hit at a smaller distance is on the surface from which the ray
     /// starts.
     nearest: f64,
     /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
-}
-
-/// A placed surface.
-#[derive(Debug)]
-pub(crate) struct Placed {
-    pub(crate) form: Form,
-    pub(crate) to_world: DAffine3,
-    to_local: DAffine3,
-    /// −1 if the front of the surface is flipped, otherwise 1.
-    side: f64,
 }
 
 /// Minimum hit distance relative to the size of the world. The relative error of points in f64 is
@@ -78,12 +38,7 @@ impl SceneGeometry {
     /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let mut meshes = HashMap::new();
-        let placed: Vec<Placed> = world
-            .shapes
-            .iter()
-            .map(|shape| Placed::new(shape, &mut meshes))
-            .collect();
+        let placed = placed(&world.shapes);
         let bounds: Vec<[DVec3; 2]> = placed.iter().map(Placed::bounds).collect();
         let all = bounds
             .iter()
@@ -96,7 +51,7 @@ impl SceneGeometry {
             .map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
         Self {
-            hierarchy: WideHierarchy::new(placed.len(), farthest, |i| bounds[i]),
+            search: SurfaceSearch::new(&placed, &bounds, farthest),
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),
@@ -109,27 +64,23 @@ impl SceneGeometry {
     }
 
     /// Returns the first hit of a ray, at distances within bounds.
+    #[inline]
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
-        let from = from.max(self.nearest);
-        let mut first: Option<(f64, usize, Local)> = None;
-        self.hierarchy
-            .along(ray.from, ray.along, [from, until], |i| {
-                let shape = self.hierarchy.order()[i] as usize;
-                let end = first.map_or(until, |(at, ..)| at);
-                if let Some((at, local)) = self.placed[shape].first(ray, [from, end]) {
-                    first = Some((at, shape, local));
-                }
-                first.map_or(until, |(at, ..)| at)
-            });
-        let (distance, shape, local) = first?;
-        Some(self.placed[shape].hit(ray, distance, shape, &local))
+        let within = [from.max(self.nearest), until];
+        let (shape, spot) = self.search.first(&self.placed, ray, within)?;
+        Some(self.placed[shape].hit(ray, shape, &spot))
     }
 
     /// Returns the first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
-        let (distance, local) = self.placed[shape].first(ray, within)?;
-        Some(self.placed[shape].hit(ray, distance, shape, &local))
+        let placed = &self.placed[shape];
+        let spot = if placed.is_whole() {
+            placed.first(ray, within)
+        } else {
+            self.search.first_of(shape, ray, within)
+        };
+        Some(placed.hit(ray, shape, &spot?))
     }
 
     /// Checks whether nothing is between two points.
@@ -141,107 +92,10 @@ impl SceneGeometry {
     }
 
     /// Checks whether a ray hits nothing before a distance.
+    #[inline]
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
-        let until = distance - self.nearest;
-        let mut met = false;
-        self.hierarchy
-            .along(ray.from, ray.along, [self.nearest, until], |i| {
-                let shape = self.hierarchy.order()[i] as usize;
-                met |= self.placed[shape].is_met(ray, [self.nearest, until]);
-                // After a hit, the traversal ends.
-                if met { f64::NEG_INFINITY } else { until }
-            });
-        !met
+        let within = [self.nearest, distance - self.nearest];
+        !self.search.is_met(&self.placed, ray, within)
     }
-}
-
-impl Placed {
-    fn new(shape: &Shape, meshes: &mut HashMap<*const Triangles, Arc<WorldMesh>>) -> Self {
-        let form = match &shape.geometry {
-            Geometry::Rectangle => Form::Rectangle,
-            Geometry::Disc => Form::Disc,
-            Geometry::Sphere => Form::Sphere,
-            Geometry::Cylinder => Form::Cylinder,
-            Geometry::Mesh(triangles) => {
-                let mesh = meshes
-                    .entry(Arc::as_ptr(triangles))
-                    .or_insert_with(|| Arc::new(WorldMesh::new(Arc::clone(triangles))));
-                Form::Mesh(Arc::clone(mesh))
-            }
-        };
-        Self {
-            form,
-            to_world: shape.to_world,
-            to_local: shape.to_world.inverse(),
-            side: if shape.is_flipped { -1.0 } else { 1.0 },
-        }
-    }
-
-    fn bounds(&self) -> [DVec3; 2] {
-        let corners = self.form.corners();
-        let world = corners.map(|corner| self.to_world.transform_point3(corner));
-        let start = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-        world.fold(start, |[low, high], corner| {
-            [low.min(corner), high.max(corner)]
-        })
-    }
-
-    fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<(f64, Local)> {
-        let (start, along, scale) = self.seen(ray);
-        let within = within.map(|at| at * scale);
-        let (at, local) = self.form.first(start, along, within)?;
-        Some((at / scale, local))
-    }
-
-    fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
-        let (start, along, scale) = self.seen(ray);
-        self.form.is_met(start, along, within.map(|at| at * scale))
-    }
-
-    /// Returns the origin and the direction of a ray in local coordinates, and the scale of
-    /// distances in these coordinates.
-    fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
-        let start = self.to_local.transform_point3(ray.from);
-        let along = self.to_local.transform_vector3(ray.along);
-        let scale = along.length();
-        (start, along / scale, scale)
-    }
-
-    fn hit(&self, ray: &Ray, distance: f64, shape: usize, local: &Local) -> Hit {
-        let turned = self.to_local.matrix3.transpose();
-        let normal = self.side * (turned * local.normal).normalize();
-        let shading = self.side * (turned * local.shading).normalize();
-        Hit {
-            distance,
-            position: ray.at(distance),
-            shape,
-            normal,
-            frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
-            point: local.point,
-        }
-    }
-
-    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal, and as
-    /// textures see it.
-    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
-        let (place, local) = self.form.sample(piece, random);
-        let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
-        (self.to_world.transform_point3(place), normal, local.point)
-    }
-
-    /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
-    pub(crate) fn areas(&self) -> Vec<f64> {
-        self.form.areas(&self.to_world)
-    }
-}
-
-/// Returns a frame whose Z is a normal, and whose X is along the component of a direction
-/// perpendicular to this normal.
-fn frame(normal: DVec3, along: DVec3) -> DMat3 {
-    let across = along - along.dot(normal) * normal;
-    let x = across
-        .try_normalize()
-        .unwrap_or_else(|| normal.any_orthonormal_vector());
-    DMat3::from_cols(x, normal.cross(x), normal)
 }

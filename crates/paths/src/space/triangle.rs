@@ -5,16 +5,17 @@ use glam::{DVec2, DVec3};
 /// A ray prepared for triangle tests. The axes are permuted and scaled to give the ray the
 /// direction (x, y, 1).
 pub(super) struct TriangleRay {
-    start: DVec3,
+    pub(super) start: DVec3,
     /// The axis along which the component of the direction is largest. This axis becomes the last
     /// axis.
     last: usize,
-    slopes: DVec2,
+    pub(super) slopes: DVec2,
     /// The ratio of distances along the ray to depths along the last axis.
-    per_depth: f64,
+    pub(super) per_depth: f64,
 }
 
 impl TriangleRay {
+    #[inline]
     pub(super) fn new(start: DVec3, along: DVec3) -> Self {
         let last = along.abs().max_position();
         let along = turned(along, last);
@@ -26,12 +27,18 @@ impl TriangleRay {
         }
     }
 
+    /// Returns the permuted axes.
+    #[inline]
+    pub(super) fn axes(&self) -> [usize; 3] {
+        [(self.last + 1) % 3, (self.last + 2) % 3, self.last]
+    }
+
     /// Returns the distance of the hit, and two of its barycentric coordinates, which belong to the
     /// second and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle
     /// intersection*). For a shared edge, both triangles compute the same number with opposite
     /// signs, so no ray passes between the triangles.
     #[inline]
-    pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
+    pub(super) fn meets(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
         let [a, b, c] = seen.map(|p| p.truncate() - p.z * self.slopes);
         let sides = DVec3::new(b.perp_dot(c), c.perp_dot(a), a.perp_dot(b));
@@ -80,7 +87,7 @@ mod tests {
             let sight = TriangleRay::new(start, (place - start).normalize());
             // The two triangles have a common edge. They list its two corners in opposite order.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
-            let met = [sight.meets(one), sight.meets(other)];
+            let met = [sight.meets(&one), sight.meets(&other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");
             on_edge += u32::from(met.iter().all(Option::is_some));
         }
@@ -105,7 +112,7 @@ mod tests {
                 continue;
             }
             let (at, found) = TriangleRay::new(start, along)
-                .meets(corners)
+                .meets(&corners)
                 .expect("aimed at it");
             // Rounding errors are larger for grazing rays.
             assert!(
