@@ -20,6 +20,9 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
     let at = |point| scene_at(&args.scene.source(), point, |run| args.photons.set(run));
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
+    for scene in &scenes {
+        limits::check_one_light(scene, "this command")?;
+    }
     let measuring = args.measure.then_some(args.photons.method);
     if args.measure {
         for scene in &scenes {

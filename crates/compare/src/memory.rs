@@ -65,10 +65,11 @@ impl Memory {
             // A transform of full precision needs a little less.
             threads: busy * sum(&|plane, _| SliceTransform::reduced(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
-                let held = 3.0
-                    + of.theory.parameters().len() as f64
-                    + replicates(scene, plane, &of.theory);
-                held * spectra(plane)
+                let each = of.of_lights(scene, plane).map(|(scene, plane, of, _)| {
+                    let held = of.theory.parameters().len() as f64;
+                    3.0 + held + replicates(scene, plane, &of.theory)
+                });
+                each.sum::<f64>() * spectra(plane)
             }) + largest(
                 1,
                 each(&|plane, of| {

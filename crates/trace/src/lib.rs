@@ -24,6 +24,7 @@ mod footprint_sampler;
 mod grid;
 mod heading;
 mod lanes;
+mod lights;
 mod line;
 mod mesh;
 mod mesh_order;
@@ -45,6 +46,7 @@ mod world;
 
 pub use backward::{Backward, LightNotFound, finds};
 pub use emit::Emitter;
+pub use lights::AllLights;
 pub use photon_group::{ABREAST, PhotonGroup};
 pub use tracer::Tracer;
 pub use world::PlaneInWorld;

@@ -25,6 +25,10 @@ pub enum Stream {
     Points,
     /// The shift of set `index` of points.
     Shift,
+    /// The seed of the further light `index`.
+    Light,
+    /// The random numbers of photon `index`, from which the power of a light is estimated.
+    Power,
 }
 
 /// Returns four random words for `block` of item `index` in a stream of `seed`.

@@ -190,7 +190,9 @@ impl BothSlices {
         // incidence.
         let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
         let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
-        if let [own, other] = shears[..] {
+        if let [own, other] = shears[..]
+            && other.is_across
+        {
             column
                 .guides
                 .retain(|guide| *guide != other || own == other);
@@ -204,7 +206,12 @@ impl BothSlices {
             },
             spectrum: other,
             finer: other_finer,
-            guides: shears.last().copied().into_iter().collect(),
+            // Behind parallel planes, each line belongs to a light, and to both pictures.
+            guides: if shears.iter().all(|guide| !guide.is_across) {
+                shears
+            } else {
+                shears.last().copied().into_iter().collect()
+            },
         });
     }
 }
@@ -301,7 +308,15 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         off_chain: None,
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
-            (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
+            (Theory::Parallel(_), _) if compared.report.in_window > 0 => {
+                let mut all: Vec<Guide> = Vec::new();
+                for (of, seen, ..) in theory.of_lights(scene, plane) {
+                    all.extend(guides(of, seen));
+                }
+                // Lights in one plane have the same lines.
+                all.dedup_by(|a, b| a == b);
+                all
+            }
             // After a mirror, the power of the spectrum lies along a line; after a lobe, it does
             // not.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
