@@ -18,11 +18,11 @@ use std::path::PathBuf;
 /// Runs `etendue bandwidth`; returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
-    let at = |point| scene_at(&args.scene.source(), point, |run| args.photons.set(run));
+    let at = |point| {
+        let scene = scene_at(&args.scene.source(), point, |run| args.photons.set(run))?;
+        limits::check_one_light(&scene, "this command").map(|()| scene)
+    };
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
-    for scene in &scenes {
-        limits::check_one_light(scene, "this command")?;
-    }
     let measuring = args.measure.then_some(args.photons.method);
     if args.measure {
         for scene in &scenes {

@@ -26,7 +26,7 @@ pub struct Applicability {
     pub dark: Option<String>,
     /// For each further light of the scene, the theory that applies to its light; `None` if the
     /// plane lies behind this light. All lights have a theory, or none has.
-    pub others: Vec<Option<Applicability>>,
+    pub others: Vec<Option<Self>>,
     /// The difference that arises if osculating patches deflect the rays instead of smooth meshes;
     /// `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,

@@ -21,7 +21,7 @@ pub struct Scene {
     pub light: Light,
     /// A scene for each further light. It equals this scene, but has only this light, and its
     /// distances begin at this light. Planes and blockers behind the light are omitted.
-    pub other_lights: Vec<Scene>,
+    pub other_lights: Vec<Self>,
     /// The layers of blockers, in the order of their distances.
     pub blockers: Vec<BlockerLayer>,
     /// The rectangular surfaces, in the order of the scene file.

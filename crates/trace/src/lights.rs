@@ -137,13 +137,15 @@ fn divided<'a>(
             seed: seed(scene.run.seed, number),
             ..scene.run
         };
-        let planes = of.planes.iter();
-        let planes = planes.filter_map(|plane| scene.plane_named(&plane.name));
-        let planes = planes.collect();
+        let named = (0..of.planes.len()).filter_map(|own| {
+            let whole = scene.plane_named(&of.planes[own].name)?;
+            Some((own, whole))
+        });
+        let (own, planes): (Vec<usize>, Vec<usize>) = named.unzip();
         let of = Scene {
             run,
             other_lights: Vec::new(),
-            ..of.clone()
+            ..of.seen_at(&own)
         };
         (of, planes)
     })

@@ -77,7 +77,7 @@ impl Resolver<'_> {
         let patches = patches.map(|p| (&p.name, extent(&p.patch.corners())));
         let meshes = scene.meshes.iter().map(|m| (&m.name, m.extent));
         let layers = scene.blockers.iter();
-        let layers =
+        let mut layers =
             layers.filter(|layer| (layer.distance - depth).abs() <= SAME_PLANE * depth.abs());
         if let Some((of, [nearest, _])) = surfaces
             .chain(patches)
@@ -86,7 +86,7 @@ impl Resolver<'_> {
         {
             let nearest = tidy(nearest);
             refuse(format!("in front of {of}, which begins at {nearest} m"));
-        } else if let Some(layer) = layers.last() {
+        } else if let Some(layer) = layers.next() {
             refuse(format!("beside the plane of {}", layer.name));
         } else if scene.planes.iter().all(|plane| plane.distance < depth) {
             refuse("in front of at least one plane".to_owned());
