@@ -34,6 +34,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_layers"),
     scene!("iris"),
     scene!("disc_light"),
+    scene!("two_lights"),
     scene!("mesh_blocker"),
     scene!("furnace"),
     scene!("diffuse"),

@@ -81,7 +81,8 @@ impl Memory {
             // for p-values.
             comparison: largest(threads, each(&|plane, _| (batches + 8.0) * spectra(plane)))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
-            meshes: meshes(scene),
+            // Lights at the same depth share their meshes.
+            meshes: meshes(scene) * depths(scene) as f64,
         }
     }
 
@@ -107,6 +108,12 @@ fn largest(count: usize, mut numbers: Vec<f64>) -> f64 {
 
 fn is_reference(applicability: &Applicability) -> bool {
     matches!(applicability.theory, Theory::None)
+}
+
+/// Returns the number of different depths of lights.
+fn depths(scene: &Scene) -> usize {
+    let moved = |other: &&Scene| other.path.frame != scene.path.frame;
+    1 + scene.other_lights.iter().filter(moved).count()
 }
 
 fn meshes(scene: &Scene) -> f64 {

@@ -1,7 +1,7 @@
 //! Resolves further lights, each to a scene in which it is the only light.
 
 use super::faults::vector;
-use super::{Resolver, SAME_PLANE, extent};
+use super::{Resolver, SAME_PLANE};
 use crate::scene::{Leg, MeshObject, Scene};
 use crate::triangles::Triangles;
 use etendue_field::{Frame, Light, Shape, tidy};
@@ -62,31 +62,25 @@ impl Resolver<'_> {
         })
     }
 
-    /// Checks the distance of a light along the first leg.
+    /// Checks the distance of a light along the first leg. As for the first light, oblique surfaces
+    /// may reach behind the light.
     fn depth(&mut self, name: &str, depth: f64, scene: &Scene) {
         let mut refuse = |allowed: String| {
             let shown = format!("at distance {} m along the central ray", tidy(depth));
             self.faults
                 .add_on_path(format!("{name}.center"), shown, allowed);
         };
-        let surfaces = scene
-            .surfaces
-            .iter()
-            .map(|s| (&s.name, extent(&s.corners())));
-        let patches = scene.patches.iter();
-        let patches = patches.map(|p| (&p.name, extent(&p.patch.corners())));
-        let meshes = scene.meshes.iter().map(|m| (&m.name, m.extent));
-        let layers = scene.blockers.iter();
-        let mut layers =
-            layers.filter(|layer| (layer.distance - depth).abs() <= SAME_PLANE * depth.abs());
-        if let Some((of, [nearest, _])) = surfaces
-            .chain(patches)
-            .chain(meshes)
-            .find(|(_, [nearest, _])| *nearest <= depth)
-        {
-            let nearest = tidy(nearest);
-            refuse(format!("in front of {of}, which begins at {nearest} m"));
-        } else if let Some(layer) = layers.next() {
+        let across = scene.surfaces.iter();
+        let across = across.filter_map(|s| Some((&s.name, s.across()?.0)));
+        let meshes = scene.meshes.iter().map(|m| (&m.name, m.extent[0]));
+        let mut near = across.chain(meshes).filter(|(_, at)| *at <= depth);
+        let mut layers = scene.blockers.iter();
+        let beside = |at: f64| (at - depth).abs() <= SAME_PLANE * depth.abs();
+        if let Some((of, at)) = near.next() {
+            refuse(format!("in front of {of}, which begins at {} m", tidy(at)));
+        } else if scene.path.first_hit() <= depth {
+            refuse("in front of the first surface of the path".to_owned());
+        } else if let Some(layer) = layers.find(|layer| beside(layer.distance)) {
             refuse(format!("beside the plane of {}", layer.name));
         } else if scene.planes.iter().all(|plane| plane.distance < depth) {
             refuse("in front of at least one plane".to_owned());
