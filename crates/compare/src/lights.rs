@@ -2,20 +2,6 @@
 
 use crate::prediction::{PredictedParameter, Prediction};
 use etendue_field::{Projection, Slices};
-use etendue_theory::Parameter;
-
-/// Returns whether a parameter belongs to a light, and not to an object that all lights share.
-/// `all` are the parameters of a model; the first travel begins at the light.
-pub(crate) fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
-    match parameter {
-        Parameter::SourceSize | Parameter::SpotExponent | Parameter::ImageWidth => true,
-        Parameter::Travel(_) => {
-            let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
-            all.iter().find(is_travel) == Some(&parameter)
-        }
-        _ => false,
-    }
-}
 
 impl Prediction {
     /// Adds the prediction of another light. Errors that no replicates show add up. Parameters

@@ -5,14 +5,13 @@ use crate::budget::budget;
 use crate::class::Class;
 use crate::depth::depth;
 use crate::first_order::FirstOrder;
-use crate::lights::is_of_light;
 use crate::theories::Theory;
 use crate::validity::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Model, Over, RayBudget, reflections, scattering};
+use etendue_theory::{Model, Over, Parameter, RayBudget, reflections, scattering};
 use ndarray::Array2;
 
 /// Everything that a measurement of a plane is compared with.
@@ -262,6 +261,19 @@ impl Prediction {
             depth: None,
             cuts: Vec::new(),
         })
+    }
+}
+
+/// Returns whether a parameter belongs to a light, and not to an object that all lights share.
+/// `all` are the parameters of a model; the first travel begins at the light.
+fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
+    match parameter {
+        Parameter::SourceSize | Parameter::SpotExponent | Parameter::ImageWidth => true,
+        Parameter::Travel(_) => {
+            let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
+            all.iter().find(is_travel) == Some(&parameter)
+        }
+        _ => false,
     }
 }
 

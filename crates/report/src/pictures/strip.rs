@@ -239,11 +239,12 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
 
 /// Returns a description of the predicted lines of a strip.
 fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
-    let most = columns.iter().map(|column| column.guides.len()).max();
+    let mut guides = columns.iter().flat_map(|column| &column.guides);
+    let has_replicas = guides.clone().any(|guide| guide.through != [0.0, 0.0]);
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
-    match (most, is_exact) {
-        (None | Some(0), _) => "",
-        (Some(1), true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
+    match (guides.next(), is_exact) {
+        (None, _) => "",
+        (_, true) if !has_replicas => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
         (_, true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*, and its replicas.",
         (_, false) => {
             " Lines at the edges: the spectrum according to the chain, in the plane of incidence and orthogonal to it."
@@ -309,12 +310,15 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => {
+                let lights = theory.of_lights(scene, plane);
+                let lights = lights.filter(|(.., of, _)| matches!(of.theory, Theory::Parallel(_)));
                 let mut all: Vec<Guide> = Vec::new();
-                for (of, seen, ..) in theory.of_lights(scene, plane) {
-                    all.extend(guides(of, seen));
+                for guide in lights.flat_map(|(of, seen, ..)| guides(of, seen)) {
+                    // Lights in one plane have the same lines.
+                    if !all.contains(&guide) {
+                        all.push(guide);
+                    }
                 }
-                // Lights in one plane have the same lines.
-                all.dedup_by(|a, b| a == b);
                 all
             }
             // After a mirror, the power of the spectrum lies along a line; after a lobe, it does

@@ -38,7 +38,7 @@ impl Resolver<'_> {
                 Shape::Rectangle(rectangle) => rectangle.center = [center.x, center.y],
                 Shape::Disc(disc) => disc.center = [center.x, center.y],
             }
-        } else if center.x.hypot(center.y) > ON_RAY * length {
+        } else if libm::hypot(center.x, center.y) > ON_RAY * length {
             let allowed = "a place on the central ray: only a Rectangle, a Disc or a Spot may stand beside it";
             let shown = vector(&file.center());
             self.faults
