@@ -103,7 +103,13 @@ impl Prediction {
         let each = applicability.of_lights(scene, plane);
         let each = each.map(|(of, seen, theory, number)| {
             let number = (!is_alone).then_some(number);
-            Self::of_light((of, seen, theory), budget(scene), number)
+            let (window, grid) = (plane.window, plane.grid);
+            let seen = VirtualPlane {
+                window,
+                grid,
+                ..seen.clone()
+            };
+            Self::of_light((of, &seen, theory), budget(scene), number)
         });
         let sum = each.reduce(Self::plus);
         sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability))
