@@ -685,6 +685,8 @@ class Scene(TypedDict):
     """The frequencies of every plane that has no frequencies of its own"""
     light: "Light"
     """The light source"""
+    other_lights: NotRequired[Sequence["Light"]]
+    """Further lights. Their light adds to that of `light`, and all lights shine along the central ray. Only a `Rectangle`, a `Disc` or a `Spot` may stand beside the central ray"""
     path: "Path"
     """The central ray"""
     planes: Sequence["Plane"]

@@ -4,7 +4,7 @@ use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, c
 use etendue_field::PhotonSource;
 use etendue_scene::{RunFile, Sampling, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_trace::{Backward, Tracer};
+use etendue_trace::{AllLights, Backward, Tracer};
 
 macro_rules! scene {
     ($name:literal) => {
@@ -34,6 +34,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_layers"),
     scene!("iris"),
     scene!("disc_light"),
+    scene!("two_lights"),
     scene!("mesh_blocker"),
     scene!("furnace"),
     scene!("diffuse"),
@@ -98,12 +99,28 @@ pub(crate) fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement 
 
 /// Measures a scene with the photon tracer.
 pub(crate) fn traced(scene: &Scene) -> Measurement {
-    measured(scene, &Tracer::new(scene))
+    if scene.other_lights.is_empty() {
+        measured(scene, &Tracer::new(scene))
+    } else {
+        measured(scene, &AllLights::photons(scene))
+    }
+}
+
+/// Measures a scene with photons that are not aimed.
+pub(crate) fn traced_evenly(scene: &Scene) -> Measurement {
+    if scene.other_lights.is_empty() {
+        measured(scene, &Tracer::evenly(scene))
+    } else {
+        measured(scene, &AllLights::evenly(scene))
+    }
 }
 
 /// Measures a scene with backward rays; returns `None` if no backward tracer exists for the
 /// scene.
 pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
+    if !scene.other_lights.is_empty() {
+        return Some(measured(scene, &AllLights::backward(scene).ok()?));
+    }
     let backward = Backward::new(scene).ok()?;
     Some(measured(scene, &backward))
 }

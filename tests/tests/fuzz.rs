@@ -11,9 +11,10 @@ use rayon::prelude::*;
 
 /// Scenes that together contain every kind of light, blocker and plane; the first scene is
 /// mutated most often.
-const SCENES: [&str; 6] = [
+const SCENES: [&str; 7] = [
     include_str!("../../scenes/fig9b.ron"),
     include_str!("../../scenes/disc_light.ron"),
+    include_str!("../../scenes/two_lights.ron"),
     include_str!("../../scenes/fig4_point.ron"),
     include_str!("../../scenes/fig4_spot.ron"),
     include_str!("../../scenes/two_layers.ron"),

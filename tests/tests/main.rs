@@ -6,6 +6,7 @@ mod architecture;
 mod environments;
 mod fuzz;
 mod hostile;
+mod lights;
 mod physics;
 mod precision;
 #[path = "../src/statistics.rs"]

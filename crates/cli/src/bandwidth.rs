@@ -11,14 +11,20 @@ use etendue_pipeline::{limits, load, method};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
-use etendue_sweep::values::{points, shown};
+use etendue_sweep::values::{SweepPoint, points, shown};
 use etendue_sweep::{BandwidthRow, bandwidths, scene_at};
 use std::path::PathBuf;
+
+/// Returns the scene at a point of the sweep, which must have one light.
+fn one_light(args: &BandwidthArgs, point: &SweepPoint) -> Result<Scene, Failure> {
+    let scene = scene_at(&args.scene.source(), point, |run| args.photons.set(run))?;
+    limits::check_one_light(&scene, "this command").map(|()| scene)
+}
 
 /// Runs `etendue bandwidth`; returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
-    let at = |point| scene_at(&args.scene.source(), point, |run| args.photons.set(run));
+    let at = |point: &SweepPoint| one_light(args, point);
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
     let measuring = args.measure.then_some(args.photons.method);
     if args.measure {

@@ -119,10 +119,21 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
                 method::step(method::judge_of(Method::Photons, scene, plane))
             ));
         }
-        let assumptions = applicability.theory.assumptions().iter();
-        lines.extend(assumptions.map(|assumption| format!("  assumes  {assumption}")));
-        if let Some(chain) = applicability.affine_chain(scene) {
-            lines.extend(rays(&chain));
+        let begin = lines.len();
+        for (of, _, theory, number) in applicability.of_lights(scene, plane) {
+            for assumption in theory.theory.assumptions() {
+                let line = format!("  assumes  {assumption}");
+                // Lights with the same theory make the same assumptions.
+                if !lines[begin..].contains(&line) {
+                    lines.push(line);
+                }
+            }
+            if let Some(chain) = theory.affine_chain(of) {
+                if !scene.other_lights.is_empty() {
+                    lines.push(format!("  light {number}"));
+                }
+                lines.extend(rays(&chain));
+            }
         }
         lines.push(format!(
             "  measured at {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per {}",

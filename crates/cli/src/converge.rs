@@ -14,6 +14,7 @@ use etendue_store::Failure;
 /// Runs `etendue converge`; returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
+    limits::check_one_light(&scene, "this command")?;
     let theories = Applicability::of_planes(&scene);
     limits::check_work(&scene, &theories)?;
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;

@@ -24,6 +24,9 @@ pub struct Applicability {
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
+    /// For each further light of the scene, the theory that applies to its light; `None` if the
+    /// plane lies behind this light. All lights have a theory, or none has.
+    pub others: Vec<Option<Self>>,
     /// The difference that arises if osculating patches deflect the rays instead of smooth meshes;
     /// `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
@@ -78,9 +81,49 @@ impl Applicability {
         planes.map(|plane| Self::new(scene, plane)).collect()
     }
 
-    /// Decides which theory applies to a plane of a scene.
+    /// Decides which theory applies to a plane of a scene. Theory applies to the sum of several
+    /// lights if it applies to each light.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
+        let first = Self::of_first_light(scene, plane);
+        let others = scene.other_lights.iter().map(|other| {
+            let seen = &other.planes[other.plane_named(&plane.name)?];
+            Some(Self::of_first_light(other, seen))
+        });
+        let others: Vec<Option<Self>> = others.collect();
+        if others.is_empty() {
+            return first;
+        }
+        let each = std::iter::once(Some(&first)).chain(others.iter().map(Option::as_ref));
+        let each = each.zip(1..).filter_map(|(of, number)| Some((of?, number)));
+        let reasons = each.flat_map(|(of, number): (&Self, u32)| {
+            let each = of.reasons.iter();
+            each.map(move |reason| format!("light {number}: {reason}"))
+        });
+        let reasons: Vec<String> = reasons.collect();
+        if reasons.is_empty() {
+            return Self { others, ..first };
+        }
+        let others = others.into_iter();
+        let others = others.map(|of| Some(of?.without_theory(Vec::new())));
+        Self {
+            others: others.collect(),
+            ..first.without_theory(reasons)
+        }
+    }
+
+    fn without_theory(self, reasons: Vec<String>) -> Self {
+        Self {
+            theory: Theory::None,
+            reasons,
+            dark: None,
+            off_patches: None,
+            ..self
+        }
+    }
+
+    /// Decides which theory applies to the light of the first light of a scene.
+    fn of_first_light(scene: &Scene, plane: &VirtualPlane) -> Self {
         let found = Self::of(scene, plane, Theory::of(scene, plane));
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
@@ -122,6 +165,7 @@ impl Applicability {
                 reasons,
                 declined,
                 dark: None,
+                others: Vec::new(),
                 off_patches: None,
             };
         }
@@ -133,14 +177,34 @@ impl Applicability {
             reasons,
             declined,
             dark,
+            others: Vec::new(),
             off_patches,
         }
+    }
+
+    /// Returns the theory of each light that may reach a plane, with the scene of this light, its
+    /// plane, and its number, which counts from 1.
+    pub fn of_lights<'a>(
+        &'a self,
+        scene: &'a Scene,
+        plane: &'a VirtualPlane,
+    ) -> impl Iterator<Item = (&'a Scene, &'a VirtualPlane, &'a Self, usize)> {
+        let others = scene.other_lights.iter().zip(&self.others).zip(2..);
+        let others = others.filter_map(|((other, theory), number)| {
+            let seen = &other.planes[other.plane_named(&plane.name)?];
+            Some((other, seen, theory.as_ref()?, number))
+        });
+        std::iter::once((scene, plane, self, 1)).chain(others)
     }
 
     /// Returns the kind of prediction.
     #[must_use]
     pub fn class(&self) -> Class {
+        let mut others = self.others.iter().flatten();
         match self.theory {
+            Theory::Parallel(_) if others.any(|of| of.class() == Class::FirstOrder) => {
+                Class::FirstOrder
+            }
             Theory::Parallel(_) => Class::Exact,
             Theory::Specular(_) | Theory::Scattering(_) | Theory::Reflections(_) => {
                 Class::FirstOrder
@@ -165,6 +229,28 @@ impl Applicability {
     #[must_use]
     pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let Window { x, y, u, v } = &plane.window;
+        let mut steps = Vec::new();
+        for (of, seen, theory, number) in self.of_lights(scene, plane) {
+            let own = theory.steps_of_light(of, seen);
+            if scene.other_lights.is_empty() {
+                steps.extend(own);
+            } else {
+                steps.extend(own.iter().map(|step| format!("light {number}  {step}")));
+            }
+        }
+        let unknown = self.reasons.iter();
+        steps.extend(unknown.map(|reason| format!("without theory  {reason}")));
+        if !scene.other_lights.is_empty() {
+            steps.push("add  the light of all lights".to_owned());
+        }
+        steps.push(format!(
+            "multiply  by the window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
+        ));
+        steps
+    }
+
+    /// Describes the steps of one light before the window.
+    fn steps_of_light(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let mut steps = chain(scene, plane).describe();
         let maps = match &self.theory {
             Theory::Specular(_) => self.affine_chain(scene).map(|chain| chain.steps),
@@ -185,12 +271,7 @@ impl Applicability {
             steps.truncate(1);
             steps.extend(maps);
         }
-        let unknown = self.reasons.iter();
-        steps.extend(unknown.map(|reason| format!("without theory  {reason}")));
         steps.extend(self.dark.iter().map(|reason| format!("dark  {reason}")));
-        steps.push(format!(
-            "multiply  by the window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
-        ));
         steps
     }
 }

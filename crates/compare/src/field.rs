@@ -30,7 +30,8 @@ pub enum PredictedField {
 
 impl PredictedField {
     /// Returns the prediction of theory for a plane, either in closed form or by nets of rays in
-    /// `groups` groups. Returns `None` if no theory applies or no ray arrives.
+    /// `groups` groups. Returns `None` if no theory applies, if no ray arrives, or if the scene has
+    /// several lights.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -39,6 +40,10 @@ impl PredictedField {
         (grid, assignment): (FieldGrid, Assignment),
         groups: usize,
     ) -> Option<Self> {
+        // The sum over several lights is not implemented.
+        if !scene.other_lights.is_empty() {
+            return None;
+        }
         if applicability.dark.is_some() {
             let spectrum = FieldTransform::new(grid, assignment);
             return Some(Self::Exact {

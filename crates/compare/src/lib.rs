@@ -22,6 +22,7 @@ mod field;
 mod first_order;
 mod full_radial;
 mod heavy_rays;
+mod lights;
 mod memory;
 mod noise;
 mod parallel;

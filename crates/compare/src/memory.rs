@@ -65,10 +65,11 @@ impl Memory {
             // A transform of full precision needs a little less.
             threads: busy * sum(&|plane, _| SliceTransform::reduced(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
-                let held = 3.0
-                    + of.theory.parameters().len() as f64
-                    + replicates(scene, plane, &of.theory);
-                held * spectra(plane)
+                let each = of.of_lights(scene, plane).map(|(scene, plane, of, _)| {
+                    let held = of.theory.parameters().len() as f64;
+                    3.0 + held + replicates(scene, plane, &of.theory)
+                });
+                each.sum::<f64>() * spectra(plane)
             }) + largest(
                 1,
                 each(&|plane, of| {
@@ -80,7 +81,8 @@ impl Memory {
             // for p-values.
             comparison: largest(threads, each(&|plane, _| (batches + 8.0) * spectra(plane)))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
-            meshes: meshes(scene),
+            // Lights at the same depth share their meshes.
+            meshes: meshes(scene) * depths(scene) as f64,
         }
     }
 
@@ -106,6 +108,12 @@ fn largest(count: usize, mut numbers: Vec<f64>) -> f64 {
 
 fn is_reference(applicability: &Applicability) -> bool {
     matches!(applicability.theory, Theory::None)
+}
+
+/// Returns the number of different depths of lights.
+fn depths(scene: &Scene) -> usize {
+    let moved = |other: &&Scene| other.path.frame != scene.path.frame;
+    1 + scene.other_lights.iter().filter(moved).count()
 }
 
 fn meshes(scene: &Scene) -> f64 {

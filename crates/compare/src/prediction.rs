@@ -11,7 +11,7 @@ use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Model, Over, RayBudget, reflections, scattering};
+use etendue_theory::{Model, Over, Parameter, RayBudget, reflections, scattering};
 use ndarray::Array2;
 
 /// Everything that a measurement of a plane is compared with.
@@ -30,6 +30,9 @@ pub struct Prediction {
     /// osculating patches, and the two tracers of a reference deflect rays at them differently. The
     /// error is `None` without a smooth mesh.
     pub mesh_error: Option<f64>,
+    /// The quadrature error of lights without replicates, relative to the slices of all lights, if
+    /// other lights have replicates.
+    pub rule_error: Option<f64>,
     /// The first-order chain. Where a first-order chain exists, `slices` and all other fields
     /// belong to the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
@@ -75,7 +78,7 @@ impl Prediction {
     /// Returns ‖error‖/‖slices‖ for the errors that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
-        both(quadrature, self.mesh_error)
+        both(both(quadrature, self.rule_error), self.mesh_error)
     }
 
     /// Returns ‖error‖/‖slices‖ as estimated from the replicates of theory. This error does not
@@ -86,13 +89,39 @@ impl Prediction {
 
     /// Returns the combined ‖error‖/‖slices‖ of all kinds of error.
     pub(crate) fn error(&self) -> Option<f64> {
-        both(self.quadrature_error, self.mesh_error)
+        both(
+            both(self.quadrature_error, self.rule_error),
+            self.mesh_error,
+        )
     }
 
-    /// Returns the prediction of theory for a plane of a scene. Returns `None` where no theory
-    /// applies and [`Self::reference`] takes its place.
+    /// Returns the prediction of theory for a plane of a scene: the sum over all lights. Returns
+    /// darkness where no theory applies and [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
+        let is_alone = scene.other_lights.is_empty();
+        let each = applicability.of_lights(scene, plane);
+        let each = each.map(|(of, seen, theory, number)| {
+            let number = (!is_alone).then_some(number);
+            let (window, grid) = (plane.window, plane.grid);
+            let seen = VirtualPlane {
+                window,
+                grid,
+                ..seen.clone()
+            };
+            Self::of_light((of, &seen, theory), budget(scene), number)
+        });
+        let sum = each.reduce(Self::plus);
+        sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability))
+    }
+
+    /// Returns the prediction for one light. `number` is the number of the light if there are
+    /// others.
+    fn of_light(
+        (scene, plane, applicability): (&Scene, &VirtualPlane, &Applicability),
+        budget: RayBudget,
+        number: Option<usize>,
+    ) -> Self {
         let empty = Self::darkness(scene, plane, applicability);
         if applicability.dark.is_some() {
             return empty;
@@ -100,10 +129,10 @@ impl Prediction {
         let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let over = (&plane.window, &plane.grid, &cells);
         match &applicability.theory {
-            Theory::Parallel(chain) => empty.by(chain, over, budget(scene), |_| None),
+            Theory::Parallel(chain) => empty.by(chain, over, (budget, number), |_| None),
             Theory::None => empty,
             Theory::Specular(view) => {
-                let found = empty.by(view.as_ref(), over, budget(scene), |exact| {
+                let found = empty.by(view.as_ref(), over, (budget, number), |exact| {
                     FirstOrder::new(scene, view, over, exact)
                 });
                 let half = &found.slices.half;
@@ -115,12 +144,12 @@ impl Prediction {
                     ..found
                 }
             }
-            Theory::Scattering(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
+            Theory::Scattering(view) => empty.by(view.as_ref(), over, (budget, number), |exact| {
                 let chain = scattering::chain(view)?;
                 let defect = scattering::defect(view, &chain)?;
                 FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
             }),
-            Theory::Reflections(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
+            Theory::Reflections(view) => empty.by(view.as_ref(), over, (budget, number), |exact| {
                 let chain = reflections::chain(view)?;
                 let defect = reflections::defect(view, &chain)?;
                 FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
@@ -128,21 +157,29 @@ impl Prediction {
         }
     }
 
-    /// Returns the prediction of a model, with the first-order chain beside it.
+    /// Returns the prediction of a model, with the first-order chain beside it. If there are
+    /// several lights, there is no first-order chain, because each light would have its own.
     fn by<M: Model>(
         self,
         model: &M,
         over: Over<'_>,
-        budget: RayBudget,
+        (budget, number): (RayBudget, Option<usize>),
         first_order: impl FnOnce(&etendue_theory::Predicted) -> Option<FirstOrder>,
     ) -> Self {
         let parameters = model.parameters();
         let found = model.predict(&parameters, over, budget);
-        let first_order = first_order(&found);
-        let parameters = parameters.into_iter().zip(found.derivatives);
-        let parameters = parameters.filter_map(|(parameter, derivative)| {
+        let first_order = match number {
+            None => first_order(&found),
+            Some(_) => None,
+        };
+        let name = |parameter| match number.filter(|_| is_of_light(parameter, &parameters)) {
+            Some(number) => format!("{} (light {number})", model.name(parameter)),
+            None => model.name(parameter),
+        };
+        let derivatives = parameters.iter().copied().zip(found.derivatives);
+        let parameters = derivatives.filter_map(|(parameter, derivative)| {
             Some(PredictedParameter {
-                name: model.name(parameter),
+                name: name(parameter),
                 unit: model.unit(parameter).to_owned(),
                 value: model.value(parameter)?,
                 derivative,
@@ -171,6 +208,7 @@ impl Prediction {
             slices: Slices::zeros(plane.grid),
             quadrature_error: None,
             mesh_error: None,
+            rule_error: None,
             first_order: None,
             replicates: Vec::new(),
             unblocked: 0.0,
@@ -220,6 +258,7 @@ impl Prediction {
             slices: estimate::slices(measurement, plane)?.mean,
             quadrature_error: None,
             mesh_error: None,
+            rule_error: None,
             first_order: None,
             replicates: batches.map(|batch| batch.slices.clone()).collect(),
             unblocked: 0.0,
@@ -228,6 +267,19 @@ impl Prediction {
             depth: None,
             cuts: Vec::new(),
         })
+    }
+}
+
+/// Returns whether a parameter belongs to a light, and not to an object that all lights share.
+/// `all` are the parameters of a model; the first travel begins at the light.
+fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
+    match parameter {
+        Parameter::SourceSize | Parameter::SpotExponent | Parameter::ImageWidth => true,
+        Parameter::Travel(_) => {
+            let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
+            all.iter().find(is_travel) == Some(&parameter)
+        }
+        _ => false,
     }
 }
 

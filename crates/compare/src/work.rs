@@ -107,10 +107,11 @@ pub(crate) fn of(
     plane: &VirtualPlane,
     applicability: &Applicability,
 ) -> PredictionWork {
-    if applicability.dark.is_some() {
-        return PredictionWork::none();
-    }
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
     let over = (&plane.window, &plane.grid, &picture);
-    applicability.theory.work(over, budget(scene))
+    let lit = applicability.of_lights(scene, plane);
+    let lit = lit.filter(|(.., theory, _)| theory.dark.is_none());
+    let each = lit.map(|(of, _, theory, _)| theory.theory.work(over, budget(of)));
+    each.reduce(PredictionWork::then)
+        .unwrap_or_else(PredictionWork::none)
 }

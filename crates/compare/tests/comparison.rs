@@ -79,6 +79,7 @@ fn prediction(width: f64) -> Prediction {
         steps: Vec::new(),
         quadrature_error: None,
         mesh_error: None,
+        rule_error: None,
         first_order: None,
         replicates: Vec::new(),
         depth: None,

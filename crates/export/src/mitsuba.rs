@@ -38,6 +38,11 @@ pub enum NotInMitsuba {
     /// A light of rays from a file.
     #[error("Mitsuba has no light that consists of rays: the rays of a file cannot be exported")]
     Rays,
+    /// Several lights that block each other's light in Mitsuba.
+    #[error(
+        "in Mitsuba, lights block light; several lights can be exported only if each is a Rectangle or a Disc, all are in one plane, and none overlap"
+    )]
+    Lights,
     /// A mask that is not opaque.
     #[error("in Mitsuba, semi-transparent masks must be pictures: {name:?} cannot be exported")]
     Mask {
@@ -97,6 +102,9 @@ pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
         owner: "light".to_owned(),
     };
     writer.light(&scene.light)?;
+    if !scene.other_lights.is_empty() {
+        writer.other_lights(scene)?;
+    }
     let beyond = 2.0 * reach(scene);
     for (number, layer) in scene.blockers.iter().enumerate() {
         writer.layer(number, layer, beyond)?;
@@ -287,10 +295,11 @@ fn shortened(rectangle: Rectangle, beyond: f64) -> Rectangle {
 /// Returns the largest distance from the central ray, along X or Y, of light that goes straight to
 /// a window or a surface.
 fn reach(scene: &Scene) -> f64 {
-    let ends = [0, 1].map(|axis| scene.light.extent(axis));
+    let ends = scene
+        .lights()
+        .flat_map(|of| [0, 1].map(|axis| of.light.extent(axis)));
     let light = ends
-        .as_flattened()
-        .iter()
+        .flatten()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
     // The sky is infinite, so the extent is cut off. Light from beyond this extent arrives within
     // a thousandth of a radian of grazing incidence.

@@ -70,7 +70,7 @@ impl<'a> SectionLayout<'a> {
         } else {
             "distance along the central ray *z*"
         };
-        let z = Axis::edges(along, "m", [0.0, section.length]);
+        let z = Axis::edges(along, "m", [section.first_light(), section.length]);
         let across =
             |distance: f64| area.x + MARGIN + z.fraction(distance) * (area.width - 2.0 * MARGIN);
         let names = names(&section.segments, area, across);
@@ -341,7 +341,7 @@ impl<'a> SectionLayout<'a> {
     /// Draws the z axis at the top, because the planes' numbers and names are below the plot.
     fn z_axis(&self, svg: &mut Svg) {
         let (left, right) = (
-            self.point([0.0, 0.0])[0],
+            self.point([self.section.first_light(), 0.0])[0],
             self.point([self.section.length, 0.0])[0],
         );
         let y = self.area.y;

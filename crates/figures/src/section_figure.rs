@@ -7,6 +7,15 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
+    /// Returns the z of the first light, or 0 if no light is behind the start of the central ray.
+    pub(crate) fn first_light(&self) -> f64 {
+        let lights = self
+            .segments
+            .iter()
+            .filter(|s| s.kind == SegmentKind::Light);
+        lights.map(|light| light.start[0]).fold(0.0, f64::min)
+    }
+
     /// Draws the scene to scale and the cut through y; returns the area for the main cut.
     pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
         let [width, height] = size;

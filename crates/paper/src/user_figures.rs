@@ -6,6 +6,7 @@ use crate::rows::{Seen, compared, feet};
 use crate::subject::FigureData;
 use crate::subject::Subject;
 use etendue_figures::{Figure, Plate};
+use etendue_pipeline::limits;
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::table::{grouped, spaced};
 use etendue_report::pictures::spectra_are;
@@ -22,6 +23,7 @@ pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     let mut warnings: Vec<String> = Vec::new();
     for source in &sources {
         let found = load::scene(source, |_| ())?;
+        limits::check_one_light(&found, "a figure")?;
         if scenes.iter().any(|scene| scene.name == found.name) {
             let message = format!(
                 "two scenes are named {}: give one file another name",

@@ -30,6 +30,7 @@ pub struct SceneCovariances {
 impl<'a> CovarianceStudy<'a> {
     /// Checks that the method can measure the scene.
     pub fn new(scene: &'a Scene, method: Method) -> Result<Self, Failure> {
+        limits::check_one_light(scene, "covariance tracing")?;
         method::check(scene, method)?;
         Ok(Self {
             scene,

@@ -1,6 +1,7 @@
 //! `--save field`: the light field of each plane on a 4D grid, and its full radial spectrum.
 
 use crate::case::MeasuredScene;
+use crate::limits;
 use crate::method::{judge_of, source};
 use crate::reporter::{Reporter, Work};
 use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
@@ -50,6 +51,7 @@ struct AliasingNumbers {
 
 /// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
 pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
+    limits::check_one_light(scene, "--save field")?;
     for plane in &scene.planes {
         let grid = FieldGrid::new(&plane.window, &plane.grid);
         let name = format!("--save field: the grid of {}", plane.name);
@@ -161,6 +163,7 @@ pub fn compare(
     planes: &mut [PlaneComparison],
     reporter: &dyn Reporter,
 ) -> Result<(), Failure> {
+    limits::check_one_light(&case.scene, "the full radial spectrum")?;
     let test = Test::each(&case.scene, TESTS);
     let each = case.scene.planes.iter().zip(planes).enumerate();
     for (index, (plane, comparison)) in each {

@@ -45,6 +45,6 @@ pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>,
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
     });
     let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
-    aim_check::leave_open(case, &mut planes);
+    aim_check::leave_open(case, &mut planes)?;
     Ok(planes)
 }

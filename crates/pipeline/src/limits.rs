@@ -23,10 +23,22 @@ pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failu
     }
 }
 
+/// Fails if a scene has several lights, which `what` does not support.
+pub fn check_one_light(scene: &Scene, what: &str) -> Result<(), Failure> {
+    match scene.lights().count() {
+        1 => Ok(()),
+        lights => Err(Failure::bad_input(format!(
+            "{}: the scene has {lights} lights, but {what} supports only one; remove other_lights",
+            scene.name
+        ))),
+    }
+}
+
 /// Fails if a plane cannot be compared with anything. This happens if the light is a ray file and
 /// no theory applies to the plane, because backward rays do not find the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
-    if !matches!(scene.light, Light::Rays { .. }) {
+    let mut lights = scene.lights();
+    if !lights.any(|of| matches!(of.light, Light::Rays { .. })) {
         return Ok(());
     }
     let mut planes = scene.planes.iter().zip(theories);

@@ -3,10 +3,17 @@
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
-use etendue_trace::{Backward, Tracer, finds};
+use etendue_trace::{AllLights, Backward, Tracer, finds};
 
 /// Returns the source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
+    if !scene.other_lights.is_empty() {
+        return Ok(match method {
+            Method::Photons => Box::new(AllLights::photons(scene)),
+            Method::Backward => Box::new(AllLights::backward(scene).map_err(Failure::bad_input)?),
+            Method::Even => Box::new(AllLights::evenly(scene)),
+        });
+    }
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
@@ -17,7 +24,7 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
 /// Fails, before any file is written, if a scene cannot be measured by `method`.
 pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
-        Method::Backward => Backward::new(scene).map(drop).map_err(Failure::bad_input),
+        Method::Backward => source(scene, method).map(drop),
         Method::Photons | Method::Even => Ok(()),
     }
 }
@@ -26,10 +33,18 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
 /// method is as independent of `method` as the scene allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
-        Method::Photons if finds(scene, plane) => Method::Backward,
+        Method::Photons if finds_all(scene, plane) => Method::Backward,
         Method::Photons => Method::Even,
         Method::Backward | Method::Even => Method::Photons,
     }
+}
+
+/// Checks whether rays traced back from a plane find each light that the plane may see.
+fn finds_all(scene: &Scene, plane: &VirtualPlane) -> bool {
+    scene.lights().all(|of| {
+        let seen = of.plane_named(&plane.name);
+        seen.is_none_or(|i| finds(of, &of.planes[i]))
+    })
 }
 
 /// Returns the text that describes the prediction of a plane without theory: rays traced by

@@ -2,7 +2,7 @@
 
 use crate::field::check_grid;
 use crate::reporter::{Reporter, Work};
-use crate::{method, planes};
+use crate::{limits, method, planes};
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
@@ -138,6 +138,7 @@ impl<'a> VarianceStudy<'a> {
         options: VarianceOptions,
     ) -> Result<Self, Failure> {
         options.check()?;
+        limits::check_one_light(scene, "a prediction of Monte Carlo errors")?;
         let plane = planes::chosen(scene, plane, options.arguments)?;
         let scene = with_box_window(scene, plane, options.frequencies);
         let light = WindowLight {

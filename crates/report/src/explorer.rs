@@ -76,6 +76,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
     let SceneFile {
         format,
         light,
+        other_lights,
         blockers,
         surfaces,
         path,
@@ -98,6 +99,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
         format,
         description: String::new(),
         light,
+        other_lights,
         blockers,
         surfaces,
         path,

@@ -22,7 +22,13 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     let mut told = BTreeSet::new();
     for (i, (file, plane)) in planes {
         told.extend(coarse(i, file, plane, &scene.file.frequencies));
-        told.extend(past_edges(scene, plane));
+    }
+    for scene in scene.lights() {
+        let past = scene
+            .planes
+            .iter()
+            .flat_map(|plane| past_edges(scene, plane));
+        told.extend(past);
     }
     let steep = steep(&scene.file.window);
     long(scene).into_iter().chain(steep).chain(told).collect()
@@ -201,7 +207,8 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let along = |axis: usize| {
         let [x, u] = windows[axis];
         let hit = x + (plane.distance - end) * u;
-        let [_, light] = scene.light.extent(axis);
+        let light = scene.light.extent(axis).map(f64::abs);
+        let light = light[0].max(light[1]);
         let from_light = light + (hit - light) * at / end;
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {

@@ -12,6 +12,7 @@ mod meshes;
 mod names;
 mod normals;
 mod obstacles;
+mod other_lights;
 mod overlap;
 mod patches;
 mod path;
@@ -83,7 +84,7 @@ impl Resolver<'_> {
         }
         self.name_of_scene(name);
         let frame = self.frame(&file);
-        self.run(&file.run);
+        self.run(&file.run, 1 + file.other_lights.len());
         self.level(file.run.alpha, file.planes.len());
         // If the frame is unknown or not finite, the checks continue with the identity frame,
         // which leaves all values unchanged.
@@ -111,10 +112,11 @@ impl Resolver<'_> {
 
         blockers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         frame?;
-        Some(Scene {
+        let mut scene = Scene {
             name: name.to_owned(),
             path,
             light,
+            other_lights: Vec::new(),
             blockers,
             surfaces,
             meshes,
@@ -131,7 +133,10 @@ impl Resolver<'_> {
                 sampling: file.run.sampling,
             },
             file,
-        })
+        };
+        scene.other_lights = self.other_lights(&scene);
+        scene.inputs.append(&mut self.inputs);
+        Some(scene)
     }
 
     /// Returns the bytes of a file named in the scene.
@@ -186,11 +191,17 @@ impl Resolver<'_> {
         }
     }
 
-    fn run(&mut self, run: &RunFile) {
-        // Each batch needs at least one photon, and one photon suffices to estimate noise.
-        let least = u64::from(run.batches);
+    fn run(&mut self, run: &RunFile, lights: usize) {
+        // Each batch needs at least one photon of each light, and one photon suffices to estimate
+        // noise.
+        let least = u64::from(run.batches) * lights as u64;
         if !(least..=1_000_000_000_000).contains(&run.photons) {
-            let allowed = format!("{least} (one for each batch) to 10^12");
+            let each = if lights > 1 {
+                "batch and light"
+            } else {
+                "batch"
+            };
+            let allowed = format!("{least} (one for each {each}) to 10^12");
             self.faults.add("run.photons", show(run.photons), allowed);
         }
     }

@@ -19,6 +19,9 @@ pub struct Scene {
     pub path: CentralRay,
     /// The light, at distance zero.
     pub light: Light,
+    /// A scene for each further light. It equals this scene, but has only this light, and its
+    /// distances begin at this light. Planes and blockers behind the light are omitted.
+    pub other_lights: Vec<Self>,
     /// The layers of blockers, in the order of their distances.
     pub blockers: Vec<BlockerLayer>,
     /// The rectangular surfaces, in the order of the scene file.
@@ -269,10 +272,29 @@ impl Scene {
     /// Returns this scene with only the planes whose indices are given.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
+        let kept: Vec<VirtualPlane> = planes.iter().map(|i| self.planes[*i].clone()).collect();
+        let other_lights = self.other_lights.iter().map(|other| {
+            let planes = kept
+                .iter()
+                .filter_map(|plane| other.plane_named(&plane.name));
+            other.seen_at(&planes.collect::<Vec<usize>>())
+        });
         Self {
-            planes: planes.iter().map(|i| self.planes[*i].clone()).collect(),
+            other_lights: other_lights.collect(),
+            planes: kept,
             ..self.clone()
         }
+    }
+
+    /// Returns the index of the plane with a name.
+    #[must_use]
+    pub fn plane_named(&self, name: &str) -> Option<usize> {
+        self.planes.iter().position(|plane| plane.name == name)
+    }
+
+    /// Returns a scene for each light, the first of which is this scene.
+    pub fn lights(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.other_lights)
     }
 
     /// Returns the BLAKE3 hash of everything that defines the scene. The hash covers the scene

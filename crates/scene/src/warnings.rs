@@ -38,7 +38,7 @@ impl Scene {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
-        warnings.extend(self.rays_behind());
+        warnings.extend(self.lights().filter_map(Self::rays_behind));
         for leg in 1..self.path.legs.len() {
             let later = self.planes.iter().filter(|plane| plane.leg >= leg);
             let seen = later.filter_map(|plane| Some((self.mismatch(leg, plane)?, plane)));

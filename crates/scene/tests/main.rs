@@ -6,6 +6,7 @@ mod json;
 mod limits;
 mod mesh;
 mod meshes_refused;
+mod other_lights;
 mod pictures;
 mod places;
 mod reading;

@@ -41,6 +41,11 @@ pub struct SceneFile {
     pub description: String,
     /// The light source.
     pub light: LightFile,
+    /// Further lights. Their light adds to that of `light`, and all lights shine along the central
+    /// ray. Only a `Rectangle`, a `Disc` or a `Spot` may stand beside the central ray.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(transform = told("a list of lights", "[Disc(center: (0.5, 0, 0), radius: 0.1)]"))]
+    pub other_lights: Vec<LightFile>,
     /// The blockers.
     #[serde(default)]
     #[schemars(transform = told("a list of blockers", r#"[Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)]"#))]

@@ -10,6 +10,9 @@ pub const FILE_BYTES: u64 = 16 << 20;
 /// Maximum number of bytes of a mesh or a picture, which is read into memory as a whole.
 pub const INPUT_BYTES: u64 = 1 << 30;
 
+/// Maximum number of further lights. Each light is traced and predicted on its own.
+pub const OTHER_LIGHTS: usize = 63;
+
 /// Maximum number of layers of blockers. This number is limited because each name is searched for
 /// among all layers.
 pub const LAYERS: usize = 1_000;

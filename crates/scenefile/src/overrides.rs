@@ -20,7 +20,7 @@ impl SceneFile {
             path: shown(format_args!("{path}={value}"), limits::VALUE),
             message: shown(message, limits::ALLOWED),
         };
-        let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
+        let mut tree = self.tree().map_err(|e| fault(e.to_string()))?;
         set(&mut tree, path, value).map_err(fault)?;
         serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
@@ -47,8 +47,19 @@ impl SceneFile {
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
 
+    /// Returns the file as a tree of values with all fields, which includes an empty list that a
+    /// file does not write.
+    fn tree(&self) -> serde_json::Result<Value> {
+        let mut tree = serde_json::to_value(self)?;
+        if let Value::Object(fields) = &mut tree {
+            let lights = fields.entry("other_lights");
+            lights.or_insert_with(|| Value::Array(Vec::new()));
+        }
+        Ok(tree)
+    }
+
     fn with_all_at_once(&self, fields: &[(String, String)]) -> Option<Self> {
-        let mut tree = serde_json::to_value(self).ok()?;
+        let mut tree = self.tree().ok()?;
         for (path, value) in fields {
             set(&mut tree, path, value).ok()?;
         }

@@ -35,6 +35,9 @@ pub struct PredictedPlane {
     chain: Vec<String>,
     quadrature_error: Option<f64>,
     mesh_error: Option<f64>,
+    /// The error of lights without replicates, if other lights have replicates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rule_error: Option<f64>,
     /// Numbers of the chain of affine maps, whose slices are in the arrays.
     first_order: Option<FirstOrderChain>,
     /// Names and units of the parameters, in the order of the arrays.
@@ -97,6 +100,7 @@ fn stored(
         slices,
         quadrature_error,
         mesh_error,
+        rule_error,
         first_order,
         replicates,
         unblocked,
@@ -139,6 +143,7 @@ fn stored(
         chain: steps.clone(),
         quadrature_error: *quadrature_error,
         mesh_error: *mesh_error,
+        rule_error: *rule_error,
         first_order: first_order.as_ref().map(|f| f.chain.clone()),
         parameters: parameters
             .iter()
@@ -240,6 +245,7 @@ fn read_plane(
         slices: slices(half),
         quadrature_error: words.quadrature_error,
         mesh_error: words.mesh_error,
+        rule_error: words.rule_error,
         first_order: first_order.map(|(slices, chain)| FirstOrder {
             slices,
             replicates: linear_replicates,

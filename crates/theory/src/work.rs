@@ -36,7 +36,8 @@ impl PredictionWork {
     }
 
     /// Returns the work of two predictions, one after the other.
-    pub(crate) fn then(self, next: Self) -> Self {
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
         Self {
             steps: self.steps + next.steps,
             bytes: self.bytes.max(next.bytes),

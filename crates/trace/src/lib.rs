@@ -25,6 +25,7 @@ mod grid;
 mod heading;
 mod lanes;
 mod lattice;
+mod lights;
 mod line;
 mod mesh;
 mod mesh_order;
@@ -46,6 +47,7 @@ mod world;
 
 pub use backward::{Backward, LightNotFound, finds};
 pub use emit::Emitter;
+pub use lights::AllLights;
 pub use photon_group::{ABREAST, PhotonGroup};
 pub use tracer::Tracer;
 pub use world::PlaneInWorld;

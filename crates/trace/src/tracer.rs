@@ -51,7 +51,7 @@ pub struct Tracer {
 /// have noise of 1.3·10⁻⁴ of the value at zero, ten times the largest error of the transform.
 /// Lattices have less noise at most frequencies: with 8·10⁶ photons the error is at most 0.012
 /// standard errors, with 5·10⁷ photons 0.005 (results/performance.md).
-const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
+pub(crate) const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 
 /// The smallest number of cycles of the largest frequency across the width of a light with which
 /// nets have reduced precision. The spectrum of a narrower light does not fall beyond the grid, and

@@ -29,6 +29,10 @@ pub enum Stream {
     Lattice,
     /// The shifts of the lattices of a batch of photons whose emission is not aimed.
     EvenLattice,
+    /// The seed of the further light `index`.
+    Light,
+    /// The random numbers of photon `index`, from which the power of a light is estimated.
+    Power,
 }
 
 /// Returns four random words for `block` of item `index` in a stream of `seed`.

@@ -102,6 +102,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
         reasons: Vec::new(),
         declined: Vec::new(),
         dark: None,
+        others: Vec::new(),
         off_patches: None,
     }];
     let [_, longest] = seconds(scene, &regardless);

@@ -12,6 +12,7 @@
 mod brdf;
 mod check;
 mod files;
+mod lights;
 mod lobes;
 mod maps;
 mod masks;
@@ -77,6 +78,7 @@ fn checks() -> io::Result<Vec<SecondCheck>> {
         lobes::checks(),
         textures::checks(),
         files::checks(&folder, &picture),
+        lights::checks(),
         sky::checks(&folder, &map),
         masks::checks(),
         surfaces::checks(),

@@ -16,20 +16,23 @@ const STRIPS: f64 = 64.0;
 /// The largest number of rectangles in a random picture of 9 × 9 pixels.
 const PIXELS: f64 = 41.0;
 
-/// A kind of blockers that a search selects.
+/// A feature of scenes that a search selects.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum SoughtBlockers {
+pub(super) enum SoughtFeature {
     Bars,
     Picture,
     Aperture,
+    /// Further lights. They are drawn only if they are selected.
+    Lights,
 }
 
-impl SoughtBlockers {
+impl SoughtFeature {
     pub(super) fn is_of(self, blockers: &BlockersFile) -> bool {
         match self {
             Self::Bars => matches!(blockers, BlockersFile::Bars { .. }),
             Self::Picture => matches!(blockers, BlockersFile::Picture { .. }),
             Self::Aperture => matches!(blockers, BlockersFile::Aperture { .. }),
+            Self::Lights => false,
         }
     }
 }

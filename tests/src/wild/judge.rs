@@ -2,10 +2,10 @@
 //! causes this.
 
 use super::run::{PlaneSummary, RunEnding, Runner};
-use crate::scenes::{measured, traced, traced_backwards};
+use crate::scenes::{traced, traced_backwards, traced_evenly};
 use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
 use etendue_scene::{SceneFile, resolve};
-use etendue_trace::{Tracer, finds};
+use etendue_trace::finds;
 use std::io;
 use std::path::Path;
 
@@ -231,13 +231,16 @@ struct Tracers {
 /// not aimed.
 fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
-    scene.planes.retain(|plane| plane.name == name);
+    scene = scene.seen_at(&[scene.plane_named(name)?]);
     let plane = scene.planes.first()?;
     let photons = traced(&scene);
-    let rays = if finds(&scene, plane) {
+    let rays = if scene.lights().all(|of| {
+        let seen = of.plane_named(name);
+        seen.is_none_or(|i| finds(of, &of.planes[i]))
+    }) {
         traced_backwards(&scene)?
     } else {
-        measured(&scene, &Tracer::evenly(&scene))
+        traced_evenly(&scene)
     };
     let inside = [&photons, &rays].map(|measured| measured.tally(0).inside);
     let theory = Applicability::new(&scene, plane);

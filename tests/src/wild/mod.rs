@@ -8,6 +8,7 @@ mod blockers;
 mod draw;
 mod judge;
 mod light;
+mod lights;
 mod pictures;
 mod planes;
 mod planted;
@@ -30,7 +31,7 @@ pub(crate) use small::{SmallOptions, small};
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;
 use crate::report::ReportSection;
-use blockers::SoughtBlockers;
+use blockers::SoughtFeature;
 use judge::{JudgedScene, judge};
 use run::Runner;
 use std::fs;
@@ -68,9 +69,9 @@ pub(crate) struct WildOptions {
     /// Folder for scenes with a fault.
     #[arg(long, default_value = "target/wild")]
     out: PathBuf,
-    /// Run only scenes with blockers of this kind, and pass over all others.
+    /// Run only scenes with this feature, and pass over all others.
     #[arg(long, value_name = "KIND")]
-    with: Option<SoughtBlockers>,
+    with: Option<SoughtFeature>,
     /// Only draw the scenes and save all of them, without running any.
     #[arg(long)]
     draw: bool,
@@ -134,12 +135,17 @@ fn one(
     };
     fs::create_dir_all(&runner.folder)?;
     fs::create_dir_all(&runner.scratch)?;
-    let Ok(file) = scene(options.seed, number, options.photons, &runner.folder) else {
+    let Ok(mut file) = scene(options.seed, number, options.photons, &runner.folder) else {
         return Ok(None);
     };
-    if let Some(kind) = options.with
-        && !file.blockers.iter().any(|blockers| kind.is_of(blockers))
-    {
+    if let Some(SoughtFeature::Lights) = options.with {
+        lights::add_lights(&mut file, (options.seed, number), &runner.folder)?;
+    }
+    let has = |kind: SoughtFeature| match kind {
+        SoughtFeature::Lights => !file.other_lights.is_empty(),
+        kind => file.blockers.iter().any(|blockers| kind.is_of(blockers)),
+    };
+    if !options.with.is_none_or(has) {
         return Ok(None);
     }
     if options.draw {

@@ -58,6 +58,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
         format: SceneFormat,
         description: String::new(),
         light,
+        other_lights: Vec::new(),
         blockers: Vec::new(),
         surfaces: Vec::new(),
         path: PathFile {

@@ -13,8 +13,14 @@ use std::io;
 use std::time::{Duration, Instant};
 
 /// Names of lists whose elements can be removed.
-const LISTS: [&str; 6] = [
-    "planes", "blockers", "visits", "surfaces", "shapes", "Lobes",
+const LISTS: [&str; 7] = [
+    "planes",
+    "other_lights",
+    "blockers",
+    "visits",
+    "surfaces",
+    "shapes",
+    "Lobes",
 ];
 /// Names of fields that can be removed or disabled.
 const OPTIONAL: [&str; 11] = [
@@ -80,9 +86,9 @@ fn candidates(tree: &Value) -> Vec<Value> {
     let places = places(tree, String::new());
     for list in LISTS {
         for (place, value) in &places {
-            let elements = value
-                .as_array()
-                .filter(|all| all.len() > usize::from(list != "blockers"));
+            let elements = value.as_array().filter(|all| {
+                all.len() > usize::from(!["blockers", "other_lights"].contains(&list))
+            });
             let Some(elements) = elements.filter(|_| name(place) == list) else {
                 continue;
             };

@@ -209,6 +209,7 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     Prediction {
         quadrature_error: None,
         mesh_error: None,
+        rule_error: None,
         slices,
         replicates,
         ..like

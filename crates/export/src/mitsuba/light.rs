@@ -4,6 +4,7 @@ use super::picture::{pfm, sampled};
 use super::xml::{self, emitter};
 use super::{NotInMitsuba, Writer, sky};
 use etendue_field::{Image, Light, Rectangle, Shape};
+use etendue_scene::Scene;
 use std::f64::consts::PI;
 
 /// Width and height of a picture in pixels.
@@ -41,6 +42,37 @@ impl Writer {
                 self.xml.sky(&file, &environment.frame);
             }
             Light::Rays { .. } => return Err(NotInMitsuba::Rays),
+        }
+        Ok(())
+    }
+
+    /// Writes further lights. Lights overlap if their bounds overlap.
+    pub(super) fn other_lights(&mut self, scene: &Scene) -> Result<(), NotInMitsuba> {
+        let flat = |of: &Scene| match of.light {
+            Light::Area {
+                shape,
+                radiance,
+                exponent,
+            } if exponent <= 0.0 && of.path == scene.path => Ok((shape, radiance)),
+            _ => Err(NotInMitsuba::Lights),
+        };
+        let all: Vec<_> = scene.lights().map(flat).collect::<Result<_, _>>()?;
+        for (i, (shape, radiance)) in all.iter().enumerate().skip(1) {
+            let own = shape.bounds();
+            let overlaps = |(other, _): &(Shape, f64)| {
+                let other = other.bounds();
+                (0..2).all(|axis| {
+                    let [a, b] = [own.extent(axis), other.extent(axis)];
+                    a[0] < b[1] && b[0] < a[1]
+                })
+            };
+            if all[..i].iter().any(overlaps) {
+                return Err(NotInMitsuba::Lights);
+            }
+            let looks = [emitter(*radiance), xml::black()].concat();
+            let id = format!("light_{}", i + 1);
+            self.xml.comment(&format!("light {}", i + 1));
+            self.xml.flat(&id, shape, 0.0, &looks);
         }
         Ok(())
     }

@@ -48,7 +48,8 @@ impl CuttingPlane<'_> {
     pub(super) fn pieces(&self, planes: &[&VirtualPlane]) -> Vec<(usize, Segment)> {
         let scene = self.scene;
         let half_width = self.half_width(planes);
-        let mut pieces = vec![(0, self.light())];
+        let lights = self.lights().into_iter();
+        let mut pieces: Vec<_> = lights.map(|segment| (0, segment)).collect();
         for layer in &scene.blockers {
             let rows = self.layer_extents(layer, half_width);
             let segments = labelled(SegmentKind::Blocker, &layer.name, rows, layer.distance);
@@ -109,7 +110,8 @@ impl CuttingPlane<'_> {
     /// light, of each bounded blocker and of each window.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
-        let light = self.light();
+        let lights = self.lights().into_iter();
+        let lights = lights.flat_map(|light| [light.start[1], light.end[1]]);
         let layers = scene.blockers.iter().filter_map(|layer| match &layer.mask {
             Mask::Opaque {
                 shapes,
@@ -141,7 +143,7 @@ impl CuttingPlane<'_> {
             .chain(corners.map(|p| p[axis]))
             .chain(windows)
             .chain(holes.flatten())
-            .chain([light.start[1], light.end[1]]);
+            .chain(lights);
         1.12 * reach.map(f64::abs).fold(0.0, f64::max)
     }
 
@@ -186,8 +188,20 @@ impl CuttingPlane<'_> {
         (-STEPS..=STEPS).map(at).collect()
     }
 
-    fn light(&self) -> Segment {
-        let scene = self.scene;
+    /// Returns the segments of all lights. If there are several, their labels have numbers.
+    fn lights(&self) -> Vec<Segment> {
+        let mut all: Vec<Segment> = self.scene.lights().map(|of| self.light(of)).collect();
+        if all.len() > 1 {
+            for (light, number) in all.iter_mut().zip(1..) {
+                light.label = light.label.take().map(|label| format!("{label} {number}"));
+            }
+        }
+        all
+    }
+
+    /// Returns the segment of a light. `scene` is the scene in which it is the only light.
+    fn light(&self, scene: &Scene) -> Segment {
+        let depth = self.scene.path.first_hit() - scene.path.first_hit();
         let dot = 0.005 * scene.path.first_hit();
         let kind = match scene.light {
             Light::Environment { .. } => SegmentKind::Sky,
@@ -199,8 +213,8 @@ impl CuttingPlane<'_> {
         };
         Segment {
             kind,
-            start: [0.0, low],
-            end: [0.0, high],
+            start: [depth, low],
+            end: [depth, high],
             label: Some(
                 if kind == SegmentKind::Sky {
                     "sky"

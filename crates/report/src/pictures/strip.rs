@@ -190,7 +190,9 @@ impl BothSlices {
         // incidence.
         let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
         let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
-        if let [own, other] = shears[..] {
+        if let [own, other] = shears[..]
+            && other.is_across
+        {
             column
                 .guides
                 .retain(|guide| *guide != other || own == other);
@@ -204,7 +206,12 @@ impl BothSlices {
             },
             spectrum: other,
             finer: other_finer,
-            guides: shears.last().copied().into_iter().collect(),
+            // Behind parallel planes, each line belongs to a light, and to both pictures.
+            guides: if shears.iter().all(|guide| !guide.is_across) {
+                shears
+            } else {
+                shears.last().copied().into_iter().collect()
+            },
         });
     }
 }
@@ -232,11 +239,12 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
 
 /// Returns a description of the predicted lines of a strip.
 fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
-    let most = columns.iter().map(|column| column.guides.len()).max();
+    let mut guides = columns.iter().flat_map(|column| &column.guides);
+    let has_replicas = guides.clone().any(|guide| guide.through != [0.0, 0.0]);
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
-    match (most, is_exact) {
-        (None | Some(0), _) => "",
-        (Some(1), true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
+    match (guides.next(), is_exact) {
+        (None, _) => "",
+        (_, true) if !has_replicas => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
         (_, true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*, and its replicas.",
         (_, false) => {
             " Lines at the edges: the spectrum according to the chain, in the plane of incidence and orthogonal to it."
@@ -301,7 +309,18 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         off_chain: None,
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
-            (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
+            (Theory::Parallel(_), _) if compared.report.in_window > 0 => {
+                let lights = theory.of_lights(scene, plane);
+                let lights = lights.filter(|(.., of, _)| matches!(of.theory, Theory::Parallel(_)));
+                let mut all: Vec<Guide> = Vec::new();
+                for guide in lights.flat_map(|(of, seen, ..)| guides(of, seen)) {
+                    // Lights in one plane have the same lines.
+                    if !all.contains(&guide) {
+                        all.push(guide);
+                    }
+                }
+                all
+            }
             // After a mirror, the power of the spectrum lies along a line; after a lobe, it does
             // not.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),

@@ -10,13 +10,14 @@ impl Resolver<'_> {
     /// Adds a fault for each kind of object that is too numerous, and returns whether no fault
     /// was added.
     pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
-        let lobes = match &file.light {
+        let lobes = |light: &LightFile| match light {
             LightFile::Environment {
                 map: EnvironmentFile::Lobes(lobes),
                 ..
             } => lobes.len(),
             _ => 0,
         };
+        let others = &file.other_lights;
         let visits = file.path.visits.len();
         for (field, count, what, most) in [
             ("blockers", file.blockers.len(), "layers", limits::LAYERS),
@@ -28,7 +29,14 @@ impl Resolver<'_> {
             ),
             ("planes", file.planes.len(), "planes", limits::PLANES),
             ("path.visits", visits, "visits", limits::VISITS),
-            ("light.map", lobes, "lobes", limits::LOBES),
+            ("light.map", lobes(&file.light), "lobes", limits::LOBES),
+            ("other_lights", others.len(), "lights", limits::OTHER_LIGHTS),
+            (
+                "other_lights: lobes of all maps",
+                others.iter().map(lobes).sum(),
+                "lobes",
+                limits::LOBES,
+            ),
         ] {
             self.at_most(field, count as u64, what, most as u64);
         }

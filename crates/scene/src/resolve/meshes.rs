@@ -8,7 +8,9 @@ use crate::scene::{MeshObject, SmoothMesh};
 use crate::triangles::Triangles;
 use etendue_field::Frame;
 use etendue_scenefile::Fault;
-use etendue_scenefile::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
+use etendue_scenefile::{
+    BlockersFile, EventFile, FormFile, LightFile, MeshSource, SceneFile, SurfaceFile,
+};
 use glam::DVec3;
 use std::path::Path;
 
@@ -180,7 +182,8 @@ fn reach(file: &SceneFile) -> f64 {
         | SurfaceFile::Mesh { center, .. }
         | SurfaceFile::Smooth { center, .. } => *center,
     });
-    let centers = centers.chain([file.light.center()]);
+    let lights = std::iter::once(&file.light).chain(&file.other_lights);
+    let centers = centers.chain(lights.map(LightFile::center));
     let farthest = centers.map(|center| DVec3::from(center).length());
     farthest.fold(0.0, f64::max)
 }

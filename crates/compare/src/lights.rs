@@ -1,0 +1,110 @@
+//! Adds the predictions of several lights.
+
+use crate::prediction::{PredictedParameter, Prediction};
+use etendue_field::{Projection, Slices};
+
+impl Prediction {
+    /// Adds the prediction of another light. Errors that no replicates show add up. Parameters
+    /// with the same name are the same parameter, whose derivatives add up.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        let slices = sum(&self.slices, &other.slices);
+        let all = norm(&slices);
+        let share = |of: &Self, error: f64| {
+            let size = norm(&of.slices);
+            if size > 0.0 && all > 0.0 {
+                error * size / all
+            } else {
+                0.0
+            }
+        };
+        let added = |of: &dyn Fn(&Self) -> Option<f64>| {
+            let both = [&self, &other].into_iter();
+            both.filter_map(|one| Some(share(one, of(one)?)))
+                .reduce(|a, b| a + b)
+        };
+        let rule = |of: &Self| of.quadrature_error.filter(|_| !of.is_statistical());
+        let rules = added(&|of| match (rule(of), of.rule_error) {
+            (None, None) => None,
+            (a, b) => Some(a.unwrap_or(0.0) + b.unwrap_or(0.0)),
+        });
+        let mesh_error = added(&|of| of.mesh_error);
+        let replicates = replicates(&self, &other);
+        let (quadrature_error, rule_error) = if replicates.is_empty() {
+            (rules, None)
+        } else {
+            (Some(standard_error(&replicates, &slices)), rules)
+        };
+        let depths = self.depth.into_iter().chain(other.depth);
+        Self {
+            quadrature_error,
+            rule_error,
+            mesh_error,
+            first_order: None,
+            replicates,
+            unblocked: self.unblocked + other.unblocked,
+            projection: Projection {
+                values: &self.projection.values + &other.projection.values,
+                grid: self.projection.grid,
+            },
+            parameters: parameters(self.parameters, other.parameters),
+            depth: depths.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
+            slices,
+            class: self.class,
+            steps: self.steps,
+            cuts: self.cuts,
+        }
+    }
+}
+
+fn sum(a: &Slices, b: &Slices) -> Slices {
+    Slices {
+        half: &a.half + &b.half,
+        ..*a
+    }
+}
+
+fn norm(slices: &Slices) -> f64 {
+    let squares = slices.half.iter().map(|s| s.norm_sqr());
+    squares.sum::<f64>().sqrt()
+}
+
+/// Returns the replicates of a sum. A light without replicates has the same slices in each.
+fn replicates(a: &Prediction, b: &Prediction) -> Vec<Slices> {
+    let with = |of: &[Slices], all: &Slices| of.iter().map(|one| sum(one, all)).collect();
+    match (&a.replicates[..], &b.replicates[..]) {
+        ([], []) => Vec::new(),
+        ([], of) => with(of, &a.slices),
+        (of, []) => with(of, &b.slices),
+        (a, b) => a.iter().zip(b).map(|(a, b)| sum(a, b)).collect(),
+    }
+}
+
+/// Returns the standard error of the mean of replicates, relative to the mean. It is infinite if
+/// the mean is zero.
+fn standard_error(replicates: &[Slices], mean: &Slices) -> f64 {
+    let squares = replicates.iter().map(|one| {
+        let off = one.half.iter().zip(&mean.half);
+        off.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>()
+    });
+    let count = replicates.len() as f64;
+    let size = norm(mean);
+    if size > 0.0 {
+        (squares.sum::<f64>() / (count * (count - 1.0))).sqrt() / size
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn parameters(
+    mut all: Vec<PredictedParameter>,
+    more: Vec<PredictedParameter>,
+) -> Vec<PredictedParameter> {
+    for parameter in more {
+        let same = |known: &&mut PredictedParameter| known.name == parameter.name;
+        match all.iter_mut().find(same) {
+            Some(known) => known.derivative = sum(&known.derivative, &parameter.derivative),
+            None => all.push(parameter),
+        }
+    }
+    all
+}
