@@ -1,8 +1,8 @@
-//! Checks that photons aimed at the window of a plane reach it.
+//! Checks that the photons and rays of a failed plane are enough for its verdict.
 
 use crate::case::MeasuredScene;
 use crate::method::source;
-use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
+use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Crossing;
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
@@ -29,7 +29,7 @@ pub(crate) fn leave_open(
             continue;
         }
         let photons = case.scene.run.photons / count;
-        let reach = reached(&case.scene, plane, photons)?;
+        let reach = reached(&case.scene.seen_at(&[plane]), Method::Photons, photons)?;
         if (reach as f64) < MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches) {
             let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
                 chain.exact = Verdict::Undecided;
@@ -46,12 +46,51 @@ pub(crate) fn leave_open(
     Ok(())
 }
 
-/// Returns how many of `photons` photons reach the window of a plane if all of them are aimed at
-/// this window.
-fn reached(scene: &Scene, plane: usize, photons: u64) -> Result<u64, Failure> {
-    let mut alone = scene.seen_at(&[plane]);
+/// Makes a failed comparison of photons with backward rays undecided if too few of either find one of
+/// several lights. The light of the others would hide that this light is missing.
+pub(crate) fn leave_hidden_lights_open(
+    case: &MeasuredScene,
+    planes: &mut [PlaneComparison],
+) -> Result<(), Failure> {
+    let lights = case.scene.lights().count() as u64;
+    let is_open = |report: &PlaneReport| {
+        report.class == Class::Reference && report.exact_verdict() == Verdict::Fail
+    };
+    for compared in planes.iter_mut().filter(|_| lights > 1) {
+        let report = &mut compared.report;
+        if !is_open(report) {
+            continue;
+        }
+        let rays = case.scene.run.photons / lights;
+        for (number, light) in (1..).zip(case.scene.lights()) {
+            let Some(own) = light.plane_named(&report.name) else {
+                continue;
+            };
+            let alone = Scene {
+                other_lights: Vec::new(),
+                ..light.seen_at(&[own])
+            };
+            let found = [Method::Photons, Method::Backward].map(|by| reached(&alone, by, rays));
+            let [photons, back] = found;
+            let (photons, back) = (photons?, back?);
+            let least = MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches);
+            if photons.max(back) > 0 && (photons.min(back) as f64) < least {
+                report.verdict = Verdict::Undecided;
+                report.undecided = Some(format!(
+                    "{photons} photons and {back} backward rays find light {number}, which are too few to compare them. Use more photons"
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Returns how many of `photons` photons or rays of a scene with one plane reach the window of this
+/// plane.
+fn reached(alone: &Scene, method: Method, photons: u64) -> Result<u64, Failure> {
+    let mut alone = alone.clone();
     alone.run.photons = photons;
-    let source = source(&alone, Method::Photons)?;
+    let source = source(&alone, method)?;
     let window = &alone.planes[0].window;
     let of_batch = |batch: u32| {
         let mut inside = 0;

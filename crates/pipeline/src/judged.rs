@@ -46,5 +46,6 @@ pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>,
     });
     let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
     aim_check::leave_open(case, &mut planes)?;
+    aim_check::leave_hidden_lights_open(case, &mut planes)?;
     Ok(planes)
 }
