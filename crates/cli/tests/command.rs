@@ -208,7 +208,7 @@ fn a_target_error_is_reached() {
             .output();
         run.unwrap()
     };
-    let output = run("target", &["--target-error", "1.5%"]);
+    let output = run("target", &["--target-error", "0.7%"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(

@@ -2,7 +2,7 @@
 
 use crate::footprint_sampler::FootprintSampler;
 use crate::plane_on_leg::PlaneOnLeg;
-use crate::proposal::{Order, ProfileDensity, Proposal};
+use crate::proposal::{DrawOrder, ProfileDensity, Proposal};
 use crate::sky::Sky;
 use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
@@ -197,7 +197,7 @@ fn across(plane: &VirtualPlane, aimed: bool) -> Vec<SkyStrategy> {
             ProfileDensity::new(space[axis]),
             ProfileDensity::new(slope[axis]),
         );
-        Proposal::new(Order::Slope, distance, endless, space, slope)
+        Proposal::new(DrawOrder::Slope, distance, endless, space, slope)
     };
     let window = along(0).zip(along(1));
     let position = space.map(ProfileDensity::new);

@@ -8,7 +8,7 @@ use crate::lanes::lanes;
 use crate::lattice::{LatticeGroup, Lattices};
 use crate::photon_group::{ABREAST, PhotonColumn, PhotonGroup, ray};
 use crate::plane_on_leg::PlaneOnLeg;
-use crate::proposal::{Order, ProfileDensity, Proposal};
+use crate::proposal::{DrawOrder, ProfileDensity, Proposal};
 use crate::radiance::radiances;
 use crate::reach::{looks_at_surface, outline, reach};
 use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window};
@@ -87,7 +87,7 @@ impl Emitter {
                     };
                     let space = ProfileDensity::new(space);
                     return Proposal::new(
-                        Order::Position,
+                        DrawOrder::Position,
                         plane.distance,
                         extent[axis],
                         space,
@@ -102,7 +102,7 @@ impl Emitter {
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
                 let slope = ProfileDensity::cosine(steepest.min(seen));
                 let space = ProfileDensity::new(&Profile::Box(half));
-                Proposal::new(Order::Slope, length, extent[axis], space, slope)
+                Proposal::new(DrawOrder::Slope, length, extent[axis], space, slope)
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };

@@ -64,7 +64,7 @@ const COEFFICIENT: i32 = 3;
 
 /// The frequencies at which a virtual plane's slices are computed.
 #[derive(Debug, PartialEq)]
-struct Target {
+struct PlaneFrequencies {
     /// Distance of the plane from the light.
     distance: f64,
     /// Sine and cosine of each azimuth.
@@ -75,7 +75,7 @@ struct Target {
     widths: [f64; 2],
 }
 
-impl Target {
+impl PlaneFrequencies {
     /// Returns the frequencies of a virtual plane in coordinates of the first leg. Behind a surface,
     /// the angle at which light arrives has little influence, so only positions count.
     fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
@@ -126,8 +126,12 @@ impl Lattices {
         if is_point || points < MIN_POINTS || points > u64::from(u32::MAX) {
             return None;
         }
-        let mut targets: Vec<Target> = Vec::new();
-        for target in scene.planes.iter().map(|plane| Target::new(scene, plane)) {
+        let mut targets: Vec<PlaneFrequencies> = Vec::new();
+        for target in scene
+            .planes
+            .iter()
+            .map(|plane| PlaneFrequencies::new(scene, plane))
+        {
             if !targets.contains(&target) {
                 targets.push(target);
             }
@@ -284,11 +288,11 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
 }
 
 /// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
-/// [`Target::nearness`] over the shortest vectors of the dual lattice, around each part of the
+/// [`PlaneFrequencies::nearness`] over the shortest vectors of the dual lattice, around each part of the
 /// spectrum.
 fn badness(
     proposal: &[Proposal; 2],
-    targets: &[Target],
+    targets: &[PlaneFrequencies],
     replicas: &[Replica],
     points: u64,
     g: [u64; 4],

@@ -187,7 +187,7 @@ impl Aim {
 /// slope alone is drawn, and the density is that of the slope.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
-    order: Order,
+    order: DrawOrder,
     /// Distance of the window from the light.
     distance: f64,
     /// 1 / `distance`, or 0 at the light.
@@ -202,7 +202,7 @@ pub(crate) struct Proposal {
 
 /// The coordinate that is drawn first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Order {
+pub(crate) enum DrawOrder {
     /// The position in the window. It has a smooth window, so numbers that are evenly distributed
     /// have less noise than with the other order.
     Position,
@@ -217,15 +217,15 @@ impl Proposal {
     ///
     /// Returns `None` if no ray from the light crosses the window.
     pub(crate) fn new(
-        order: Order,
+        order: DrawOrder,
         distance: f64,
         extent: [f64; 2],
         space: ProfileDensity,
         slope: ProfileDensity,
     ) -> Option<Self> {
         let [low, high] = extent;
-        let order = if high > low { order } else { Order::Slope };
-        let range = if order == Order::Position {
+        let order = if high > low { order } else { DrawOrder::Slope };
+        let range = if order == DrawOrder::Position {
             let reach = distance.max(0.0) * slope.half;
             [low - reach, high + reach].map(|x| space.cumulative(x))
         } else if distance > 0.0 {
@@ -255,7 +255,7 @@ impl Proposal {
 
     /// Checks whether the position in the window is drawn first.
     pub(crate) fn begins_in_window(&self) -> bool {
-        self.order == Order::Position
+        self.order == DrawOrder::Position
     }
 
     /// Returns the cumulative densities at the two ends of the range of the second coordinate.
@@ -264,12 +264,12 @@ impl Proposal {
         let [low, high] = self.light;
         match self.order {
             // At the light, rays of all slopes have the same position.
-            Order::Position if self.nearness == 0.0 => [[0.0; N], [1.0; N]],
-            Order::Position => [high, low].map(|end| {
+            DrawOrder::Position if self.nearness == 0.0 => [[0.0; N], [1.0; N]],
+            DrawOrder::Position => [high, low].map(|end| {
                 let slopes: [f64; N] = lanes(|i| (first[i] - end) * self.nearness);
                 self.slope.each(slopes, ProfileDensity::cumulative)
             }),
-            Order::Slope => [low, high].map(|end| {
+            DrawOrder::Slope => [low, high].map(|end| {
                 let positions: [f64; N] = lanes(|i| end + self.distance * first[i]);
                 self.space.each(positions, ProfileDensity::cumulative)
             }),
@@ -297,8 +297,8 @@ impl Proposal {
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
         let ranges = (!self.is_point()).then(|| match self.order {
-            Order::Position => self.ranges(&lanes(|i| x[i] + self.distance * u[i])),
-            Order::Slope => self.ranges(u),
+            DrawOrder::Position => self.ranges(&lanes(|i| x[i] + self.distance * u[i])),
+            DrawOrder::Slope => self.ranges(u),
         });
         self.densities_of([x, u], ranges)
     }
@@ -311,8 +311,8 @@ impl Proposal {
     ) -> ([[f64; N]; 2], Option<[[f64; N]; 2]>) {
         let between = |low: f64, high: f64, r: f64| low + r * (high - low);
         let [first, second] = match self.order {
-            Order::Position => [&self.space, &self.slope],
-            Order::Slope => [&self.slope, &self.space],
+            DrawOrder::Position => [&self.space, &self.slope],
+            DrawOrder::Slope => [&self.slope, &self.space],
         };
         let [low, high] = self.range;
         let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
@@ -324,8 +324,8 @@ impl Proposal {
         let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
         let second = second.each(shares, ProfileDensity::quantile);
         let [seen, u] = match self.order {
-            Order::Position => [first, second],
-            Order::Slope => [second, first],
+            DrawOrder::Position => [first, second],
+            DrawOrder::Slope => [second, first],
         };
         let x = lanes(|i| seen[i] - self.distance * u[i]);
         ([x, u], Some([low, high]))
@@ -395,7 +395,7 @@ mod tests {
                 ProfileDensity::cosine(3.0),
             ),
         ] {
-            let [by_position, by_slope] = [Order::Position, Order::Slope].map(|order| {
+            let [by_position, by_slope] = [DrawOrder::Position, DrawOrder::Slope].map(|order| {
                 let space = ProfileDensity::new(&space);
                 Proposal::new(order, distance, light, space, slope).unwrap()
             });
@@ -415,7 +415,7 @@ mod tests {
     #[test]
     fn out_of_reach_is_none() {
         let hann = ProfileDensity::new(&Profile::Hann(0.1));
-        for order in [Order::Position, Order::Slope] {
+        for order in [DrawOrder::Position, DrawOrder::Slope] {
             let is_reached =
                 |distance, light| Proposal::new(order, distance, light, hann, hann).is_some();
             assert!(!is_reached(0.0, [0.2, 0.3]));
