@@ -7,7 +7,7 @@ use crate::flat_leg::FlatLeg;
 use crate::mesh_order::OrderMemory;
 use crate::numbers::Numbers;
 use crate::photon_group::{ABREAST, Hits, PhotonGroup};
-use fearless_simd::Level;
+use fearless_simd::{Level, dispatch};
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -90,10 +90,11 @@ pub(crate) fn emit_group(
     numbers: &Numbers,
 ) -> PhotonGroup {
     let mut group = match numbers {
-        Numbers::Lattice(points, ..) => emitter.emit_aimed(
-            points.group(range.start, || numbers.columns(level, range.start, 0)),
-            points.shares(),
-        ),
+        Numbers::Lattice(points, ..) => {
+            let net = || numbers.columns(level, range.start, 0);
+            let group = dispatch!(level, _simd => points.group(range.start, net));
+            emitter.emit_aimed(group, points.shares())
+        }
         _ => emitter.emit(|block| numbers.columns(level, range.start, block)),
     };
     group.end_at(range.end - range.start);

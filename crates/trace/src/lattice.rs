@@ -154,7 +154,9 @@ impl Lattices {
                 .take(SHORTLIST)
                 .map(|(_, g)| (badness(proposal, &targets, &replicas, points, *g), *g));
             let (_, best) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(best.map(|g| fraction(g, points)))
+            // Multiplied by the second number, the lattice has the same points in another order, in
+            // which photons of a group do not fall on the same cells.
+            Some(best.map(|g| fraction(g * best[1] % points, points)))
         });
         let steps: Vec<_> = steps.collect();
         let has_any = steps.iter().any(Option::is_some);
@@ -199,32 +201,40 @@ impl LatticePoints {
 
     /// Returns the random numbers of a group of photons that begins with `photon`. `net` returns the
     /// group's numbers from a net.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn group(&self, photon: u64, net: impl Fn() -> [[u32; ABREAST]; 4]) -> LatticeGroup {
         let number = self.lattices.len() as u64;
-        let index = |i: usize| (photon - self.first + i as u64).min(self.count - 1);
-        let proposal = |i: usize| (index(i) * number / self.count) as usize;
-        let (begin, end) = (proposal(0), proposal(ABREAST - 1));
+        let first = photon - self.first;
+        let proposal = |i: usize| {
+            let index = (first + i as u64).min(self.count - 1);
+            (index * number / self.count) as usize
+        };
         let word = |i: usize, k: usize, [steps, shift]: &[[u64; 4]; 2]| {
-            (index(i).wrapping_mul(steps[k]).wrapping_add(shift[k]) >> 32) as u32
+            let start = first.wrapping_mul(steps[k]).wrapping_add(shift[k]);
+            (start.wrapping_add((i as u64).wrapping_mul(steps[k])) >> 32) as u32
         };
-        let words = match (&self.lattices[begin], begin == end) {
-            (Some(lattice), true) => [0, 1, 2, 3].map(|k| lanes(|i| word(i, k, lattice))),
-            (None, true) => net(),
-            (_, false) => {
-                let net = net();
-                [0, 1, 2, 3].map(|k| {
-                    lanes(|i| match &self.lattices[proposal(i)] {
-                        Some(lattice) => word(i, k, lattice),
-                        None => net[k][i],
-                    })
-                })
-            }
-        };
-        LatticeGroup {
-            words,
-            proposals: lanes(proposal),
+        let (begin, end) = (proposal(0), proposal(ABREAST - 1));
+        if begin == end {
+            return LatticeGroup {
+                words: match &self.lattices[begin] {
+                    Some(lattice) => {
+                        let column = |k: usize| lanes(|i| word(i, k, lattice));
+                        [column(0), column(1), column(2), column(3)]
+                    }
+                    None => net(),
+                },
+                proposals: [begin; ABREAST],
+            };
         }
+        let proposals = lanes(proposal);
+        let net = net();
+        let words = [0, 1, 2, 3].map(|k| {
+            lanes(|i| match &self.lattices[proposals[i]] {
+                Some(lattice) => word(i, k, lattice),
+                None => net[k][i],
+            })
+        });
+        LatticeGroup { words, proposals }
     }
 }
 
