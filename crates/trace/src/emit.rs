@@ -57,59 +57,9 @@ impl Emitter {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light.clone();
-        let extent = match light {
-            Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
-            _ => [[0.0; 2]; 2],
-        };
-        let [[left, right], [low, high]] = extent;
-        let corners = [[left, low], [right, low], [left, high], [right, high]];
-        let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
-        let proposal = |(i, plane): (usize, &VirtualPlane)| {
-            let w = &plane.window;
-            let is_window = plane.leg == 0 && !looks_at_surface(plane);
-            let half = (!is_window)
-                .then(|| reach(scene, plane, 0, &corners))
-                .flatten();
-            // If a virtual plane lies on the surface at the end of the leg, it sees only some
-            // slopes. If it lies beyond this surface, it sees light of any slope.
-            let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
-            let slopes = slopes.filter(|_| plane.leg == 0);
-            let along = |axis: usize, space: &Profile, slope: &Profile| {
-                if is_window {
-                    let [low, high] = extent[axis];
-                    let half = slope.half_width();
-                    // If a position in the window sees the light under few of the window's slopes,
-                    // points on the light are drawn uniformly.
-                    let slope = if high - low <= plane.distance * half {
-                        ProfileDensity::constant(half)
-                    } else {
-                        ProfileDensity::new(slope)
-                    };
-                    let space = ProfileDensity::new(space);
-                    return Proposal::new(
-                        DrawOrder::Position,
-                        plane.distance,
-                        extent[axis],
-                        space,
-                        slope,
-                    );
-                }
-                let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // The bounds contain the slopes of all rays from the light to the region that the
-                // plane sees.
-                let [low, high] = extent[axis].map(f64::abs);
-                let steepest = (half + low.max(high)) / length;
-                let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
-                let slope = ProfileDensity::cosine(steepest.min(seen));
-                let space = ProfileDensity::new(&Profile::Box(half));
-                Proposal::new(DrawOrder::Slope, length, extent[axis], space, slope)
-            };
-            Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
-        };
         let aimed_or = |plain: Plain| {
-            let planes = scene.planes.iter().enumerate();
-            let proposals: Vec<_> = match scene.run.emission {
-                Emission::Aimed => planes.filter_map(proposal).collect(),
+            let proposals = match scene.run.emission {
+                Emission::Aimed => proposals(scene),
                 Emission::Plain => Vec::new(),
             };
             if proposals.is_empty() {
@@ -275,6 +225,69 @@ impl Emitter {
         };
         (TwoPlane { x, y, u, v }, density)
     }
+}
+
+/// Returns the proposals of aimed emission, in the order of the virtual planes whose windows the light
+/// reaches.
+fn proposals(scene: &Scene) -> Vec<[Proposal; 2]> {
+    let extent = match scene.light {
+        Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
+        _ => [[0.0; 2]; 2],
+    };
+    let [[left, right], [low, high]] = extent;
+    let corners = [[left, low], [right, low], [left, high], [right, high]];
+    let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+    let proposal = |(i, plane): (usize, &VirtualPlane)| {
+        let w = &plane.window;
+        if plane.leg == 0 && !looks_at_surface(plane) {
+            let along = |axis: usize, space, slope| {
+                window_proposal(plane.distance, extent[axis], space, slope)
+            };
+            return Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?]);
+        }
+        let half = reach(scene, plane, 0, &corners)?;
+        // If a virtual plane lies on the surface at the end of the leg, it sees only some slopes. If
+        // it lies beyond this surface, it sees light of any slope.
+        let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
+        let slopes = slopes.filter(|_| plane.leg == 0);
+        let along = |axis: usize| {
+            let (length, half) = (scene.path.first_hit(), half[axis]);
+            // The bounds contain the slopes of all rays from the light to the region that the plane
+            // sees.
+            let [low, high] = extent[axis].map(f64::abs);
+            let steepest = (half + low.max(high)) / length;
+            let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
+            let slope = ProfileDensity::cosine(steepest.min(seen));
+            let space = ProfileDensity::new(&Profile::Box(half));
+            Proposal::new(DrawOrder::Slope, length, extent[axis], space, slope)
+        };
+        Some([along(0)?, along(1)?])
+    };
+    scene
+        .planes
+        .iter()
+        .enumerate()
+        .filter_map(proposal)
+        .collect()
+}
+
+/// Returns a proposal aimed at the window of a virtual plane across the first leg.
+fn window_proposal(
+    distance: f64,
+    extent: [f64; 2],
+    space: &Profile,
+    slope: &Profile,
+) -> Option<Proposal> {
+    let half = slope.half_width();
+    // If a position in the window sees the light under few of the window's slopes, points on the light
+    // are drawn uniformly.
+    let slope = if extent[1] - extent[0] <= distance * half {
+        ProfileDensity::constant(half)
+    } else {
+        ProfileDensity::new(slope)
+    };
+    let space = ProfileDensity::new(space);
+    Proposal::new(DrawOrder::Position, distance, extent, space, slope)
 }
 
 /// Returns rays aimed at virtual planes, as columns of x, y, u and v, and their densities. The

@@ -207,7 +207,7 @@ impl LatticePoints {
         let first = photon - self.first;
         let proposal = |i: usize| {
             let index = (first + i as u64).min(self.count - 1);
-            (index * number / self.count) as usize
+            usize::try_from(index * number / self.count).unwrap_or(0)
         };
         let word = |i: usize, k: usize, [steps, shift]: &[[u64; 4]; 2]| {
             let start = first.wrapping_mul(steps[k]).wrapping_add(shift[k]);
@@ -337,6 +337,10 @@ fn badness(
 
 /// Returns a basis of short vectors of the dual lattice: multiples of one vector
 /// are subtracted from another until no vector becomes shorter.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a quotient of the lengths of short vectors"
+)]
 fn dual_basis(points: u64, [_, a, b, c]: [u64; 4]) -> [[i64; 4]; 4] {
     let [n, a, b, c] = [points, a, b, c].map(|number| i64::try_from(number).unwrap_or(i64::MAX));
     let mut basis = [[n, 0, 0, 0], [-a, 1, 0, 0], [-b, 0, 1, 0], [-c, 0, 0, 1]];

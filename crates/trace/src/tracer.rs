@@ -454,7 +454,7 @@ impl PhotonSource for Tracer {
             if (start - range.start).is_multiple_of(AHEAD as u64) {
                 let until = range.end.min(start + AHEAD as u64);
                 let flat = self.flat.as_ref();
-                ahead.refill(&self.emitter, flat, start..until, &numbers);
+                ahead.refill(&self.emitter, flat, start..until, numbers);
             }
             let numbers = numbers(start);
             self.emit_block(
