@@ -279,9 +279,10 @@ fn window_proposal(
     slope: &Profile,
 ) -> Option<Proposal> {
     let half = slope.half_width();
+    let width = extent[1] - extent[0];
     // If a position in the window sees the light under few of the window's slopes, points on the light
     // are drawn uniformly.
-    let slope = if extent[1] - extent[0] <= distance * half {
+    let slope = if width > 0.0 && width <= distance * half {
         ProfileDensity::constant(half)
     } else {
         ProfileDensity::new(slope)

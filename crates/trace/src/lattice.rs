@@ -50,10 +50,10 @@ const TRIALS: [u64; 2] = [8, 256];
 /// The number of photons for each lattice that is tried, and the largest number of azimuths of all
 /// planes for which all lattices are tried. So the choice takes a small part of the time of a run.
 const PHOTONS_PER_TRIAL: u64 = 4096;
-const AZIMUTHS: usize = 32;
+const AZIMUTHS: usize = 8;
 
 /// The number of lattices that are compared with the replicas of the spectrum behind blockers.
-const SHORTLIST: usize = 16;
+const SHORTLIST: usize = 8;
 
 /// The smallest number of points of a lattice.
 const MIN_POINTS: u64 = 64;
