@@ -85,6 +85,9 @@ impl PlaneTally {
 /// batch.
 ///
 /// A batch depends on its number alone, not on the thread or the order of requests.
+///
+/// A source implements [`Self::emit`], or [`Self::emit_part`] and [`Self::parts`] if it divides
+/// batches.
 pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
@@ -104,7 +107,13 @@ pub trait PhotonSource: Sync {
         batch: u32,
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
-    ) -> Ledger;
+    ) -> Ledger {
+        let mut total = Ledger::default();
+        for part in 0..self.parts(batch) {
+            total.add(&self.emit_part(batch, part, record, progress));
+        }
+        total
+    }
 
     /// Returns the number of parts into which a batch is divided, so that several threads can emit
     /// one batch. The number is at least one and depends only on the scene.

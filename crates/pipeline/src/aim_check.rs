@@ -2,7 +2,7 @@
 
 use crate::case::MeasuredScene;
 use crate::method::source;
-use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, PlaneReport, Verdict};
+use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
 use etendue_field::Crossing;
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
@@ -29,7 +29,7 @@ pub(crate) fn leave_open(
             continue;
         }
         let photons = case.scene.run.photons / count;
-        let reach = reached(&case.scene.seen_at(&[plane]), Method::Photons, photons)?;
+        let reach = reached(case.scene.seen_at(&[plane]), Method::Photons, photons)?;
         if (reach as f64) < MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches) {
             let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
                 chain.exact = Verdict::Undecided;
@@ -53,15 +53,15 @@ pub(crate) fn leave_hidden_lights_open(
     planes: &mut [PlaneComparison],
 ) -> Result<(), Failure> {
     let lights = case.scene.lights().count() as u64;
-    let is_open = |report: &PlaneReport| {
-        report.class == Class::Reference && report.exact_verdict() == Verdict::Fail
-    };
-    for compared in planes.iter_mut().filter(|_| lights > 1) {
-        let report = &mut compared.report;
-        if !is_open(report) {
+    if lights < 2 {
+        return Ok(());
+    }
+    let rays = case.scene.run.photons / lights;
+    let least = MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches);
+    for PlaneComparison { report, .. } in planes {
+        if report.class != Class::Reference || report.exact_verdict() != Verdict::Fail {
             continue;
         }
-        let rays = case.scene.run.photons / lights;
         for (number, light) in (1..).zip(case.scene.lights()) {
             let Some(own) = light.plane_named(&report.name) else {
                 continue;
@@ -70,10 +70,8 @@ pub(crate) fn leave_hidden_lights_open(
                 other_lights: Vec::new(),
                 ..light.seen_at(&[own])
             };
-            let found = [Method::Photons, Method::Backward].map(|by| reached(&alone, by, rays));
-            let [photons, back] = found;
-            let (photons, back) = (photons?, back?);
-            let least = MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches);
+            let photons = reached(alone.clone(), Method::Photons, rays)?;
+            let back = reached(alone, Method::Backward, rays)?;
             if photons.max(back) > 0 && (photons.min(back) as f64) < least {
                 report.verdict = Verdict::Undecided;
                 report.undecided = Some(format!(
@@ -87,8 +85,7 @@ pub(crate) fn leave_hidden_lights_open(
 
 /// Returns how many of `photons` photons or rays of a scene with one plane reach the window of this
 /// plane.
-fn reached(alone: &Scene, method: Method, photons: u64) -> Result<u64, Failure> {
-    let mut alone = alone.clone();
+fn reached(mut alone: Scene, method: Method, photons: u64) -> Result<u64, Failure> {
     alone.run.photons = photons;
     let source = source(&alone, method)?;
     let window = &alone.planes[0].window;

@@ -25,8 +25,6 @@ use plain::Plain;
 pub struct Emitter {
     light: Light,
     strategy: EmissionStrategy,
-    /// The lattices of aimed emission; `None` if nets or random numbers are used.
-    lattices: Option<Lattices>,
     level: Level,
 }
 
@@ -34,7 +32,11 @@ pub struct Emitter {
 #[derive(Debug)]
 enum EmissionStrategy {
     /// One proposal for each virtual plane, given by its factors over (x, u) and (y, v).
-    Aimed(Vec<[Proposal; 2]>),
+    Aimed {
+        proposals: Vec<[Proposal; 2]>,
+        /// Equal shares of the photons for all proposals.
+        equal: Vec<f64>,
+    },
     /// Light from an environment.
     Sky(FromSky),
     /// Light without extent. Its rays are drawn uniformly within one of several ranges, and all
@@ -65,7 +67,8 @@ impl Emitter {
             if proposals.is_empty() {
                 EmissionStrategy::Plain(plain)
             } else {
-                EmissionStrategy::Aimed(proposals)
+                let equal = vec![1.0 / proposals.len() as f64; proposals.len()];
+                EmissionStrategy::Aimed { proposals, equal }
             }
         };
         let strategy = match light {
@@ -82,17 +85,9 @@ impl Emitter {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
             }
         };
-        let lattices = match &strategy {
-            EmissionStrategy::Aimed(proposals) if scene.run.sampling == Sampling::Lattice => {
-                let batch = scene.run.photons / u64::from(scene.run.batches);
-                Lattices::new(scene, proposals, batch)
-            }
-            _ => None,
-        };
         Self {
             light,
             strategy,
-            lattices,
             level: Level::new(),
         }
     }
@@ -110,7 +105,6 @@ impl Emitter {
             even if even.is_empty() => plain,
             even => Self {
                 strategy: EmissionStrategy::Even(even),
-                lattices: None,
                 ..plain
             },
         }
@@ -127,15 +121,24 @@ impl Emitter {
         }
     }
 
-    /// Returns the lattices from which photons are drawn, if any.
-    pub(crate) fn lattices(&self) -> Option<&Lattices> {
-        self.lattices.as_ref()
+    /// Returns the lattices from which the photons of a scene are drawn; `None` if nets or random
+    /// numbers are used.
+    pub(crate) fn lattices(&self, scene: &Scene) -> Option<Lattices> {
+        match &self.strategy {
+            EmissionStrategy::Aimed { proposals, .. }
+                if scene.run.sampling == Sampling::Lattice =>
+            {
+                let batch = scene.run.photons / u64::from(scene.run.batches);
+                Lattices::new(scene, proposals, batch)
+            }
+            _ => None,
+        }
     }
 
     /// Emits photons of a lattice together. `shares` are the shares of the photons that each proposal
     /// has.
     pub(crate) fn emit_aimed(&self, group: LatticeGroup, shares: &[f64]) -> PhotonGroup {
-        let EmissionStrategy::Aimed(proposals) = &self.strategy else {
+        let EmissionStrategy::Aimed { proposals, .. } = &self.strategy else {
             return self.weighted([[0.0; ABREAST]; 4], [0.0; ABREAST]);
         };
         dispatch!(self.level, _simd => {
@@ -170,16 +173,15 @@ impl Emitter {
                 let ray = plain.sample(words.map(random::unit));
                 Some((ray, plain.density(&ray)))
             }),
-            EmissionStrategy::Aimed(proposals) => {
+            EmissionStrategy::Aimed { proposals, equal } => {
                 let numbers = words(0);
                 let count = proposals.len();
                 let chosen: [usize; ABREAST] = match count {
                     1 => [0; ABREAST],
                     _ => words(1)[3].map(|word| random::index(word, count)),
                 };
-                let shares = vec![1.0 / count as f64; count];
                 dispatch!(self.level, _simd => {
-                    let (rays, densities) = aimed(proposals, numbers, chosen, &shares);
+                    let (rays, densities) = aimed(proposals, numbers, chosen, equal);
                     self.weighted(rays, densities)
                 })
             }

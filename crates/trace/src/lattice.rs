@@ -145,14 +145,15 @@ impl Lattices {
             if !proposal.iter().all(Proposal::begins_in_window) {
                 return None;
             }
+            let frequencies = proposal.each_ref().map(Proposal::frequencies);
             let generators = (0..trials).filter_map(|i| generator(i, points));
-            let by_light = |g| (badness(proposal, &targets, &[DIRECT], points, g), g);
+            let by_light = |g| (badness(&frequencies, &targets, &[DIRECT], points, g), g);
             let mut tried: Vec<_> = generators.map(by_light).collect();
             tried.sort_by(|a, b| a.0.total_cmp(&b.0));
             let best = tried
                 .iter()
                 .take(SHORTLIST)
-                .map(|(_, g)| (badness(proposal, &targets, &replicas, points, *g), *g));
+                .map(|(_, g)| (badness(&frequencies, &targets, &replicas, points, *g), *g));
             let (_, best) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
             // Multiplied by the second number, the lattice has the same points in another order, in
             // which photons of a group do not fall on the same cells.
@@ -300,14 +301,15 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
 /// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
 /// [`PlaneFrequencies::nearness`] over the shortest vectors of the dual lattice, around each part of the
 /// spectrum.
+///
+/// `frequencies` are the matrices of [`Proposal::frequencies`] along x and y.
 fn badness(
-    proposal: &[Proposal; 2],
+    frequencies: &[[[f64; 2]; 2]; 2],
     targets: &[PlaneFrequencies],
     replicas: &[Replica],
     points: u64,
     g: [u64; 4],
 ) -> f64 {
-    let inverses = proposal.each_ref().map(Proposal::frequencies);
     let basis = dual_basis(points, g).map(|vector| vector.map(|h| h as f64));
     let coefficients = || -COEFFICIENT..=COEFFICIENT;
     let mut sum = 0.0;
@@ -320,7 +322,7 @@ fn badness(
             let factors = [a, b, c, d].map(f64::from);
             let h: [f64; 4] = lanes(|axis| (0..4).map(|i| factors[i] * basis[i][axis]).sum());
             let along = [0, 1].map(|i| {
-                let [[a, b], [c, d]] = inverses[i];
+                let [[a, b], [c, d]] = frequencies[i];
                 let (at, slope) = (h[2 * i], h[2 * i + 1]);
                 [a * at + b * slope, c * at + d * slope]
             });

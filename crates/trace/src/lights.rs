@@ -1,13 +1,11 @@
 //! Traces several lights, each by a tracer of its own.
 
-use crate::Backward;
-use crate::LightNotFound;
-use crate::Tracer;
 use crate::ahead::emit_group;
 use crate::emit::Emitter;
 use crate::numbers::Numbers;
 use crate::photon_group::ABREAST;
 use crate::tracer::MAX_REDUCED_PHOTONS;
+use crate::{Backward, LightNotFound, Tracer};
 use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_scene::{Run, Scene};
 use etendue_transform::random::{self, Stream};
@@ -206,19 +204,6 @@ impl<S: PhotonSource> PhotonSource for AllLights<S> {
 
     fn is_precise(&self) -> bool {
         self.is_precise
-    }
-
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let mut total = Ledger::default();
-        for part in 0..self.parts(batch) {
-            total.add(&self.emit_part(batch, part, record, progress));
-        }
-        total
     }
 
     fn parts(&self, batch: u32) -> u32 {

@@ -8,6 +8,7 @@ use crate::courses::{Both, rounding};
 use crate::emit::Emitter;
 use crate::flat_leg::FlatLeg;
 use crate::heading::Heading;
+use crate::lattice::Lattices;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
 use crate::photon_group::{ABREAST, PhotonGroup};
@@ -41,6 +42,8 @@ pub struct Tracer {
     planes: usize,
     shares: BatchRanges,
     numbers: PhotonNumbers,
+    /// The lattices of aimed emission; `None` if nets or random numbers are used.
+    lattices: Option<Lattices>,
     is_precise: bool,
     level: Level,
     /// The memory of finished parts, which later parts use again.
@@ -125,21 +128,23 @@ impl Tracer {
     /// Builds the tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        let streams = [Stream::Photon, Stream::Net, Stream::Lattice];
+        Self::with(scene, Emitter::new(scene), streams)
+    }
+
+    fn with(scene: &Scene, emitter: Emitter, streams: [Stream; 3]) -> Self {
         // Legs beyond the last virtual plane are not traced.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
         let legs: Vec<FlightLeg> = legs.collect();
         Self {
-            emitter: Emitter::new(scene),
+            lattices: emitter.lattices(scene),
+            emitter,
             flat: legs.first().and_then(FlightLeg::flat),
             planes: scene.planes.len(),
             is_precise: is_precise(scene),
             shares: BatchRanges::new(&scene.run),
-            numbers: PhotonNumbers::new(
-                &scene.run,
-                [Stream::Photon, Stream::Net, Stream::Lattice],
-                legs.len(),
-            ),
+            numbers: PhotonNumbers::new(&scene.run, streams, legs.len()),
             level: Level::new(),
             legs,
             ahead: AheadPool::default(),
@@ -155,16 +160,8 @@ impl Tracer {
     /// the same way as by the tracer of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
-        let plain = Self::new(scene);
-        Self {
-            emitter: Emitter::evenly(scene),
-            numbers: PhotonNumbers::new(
-                &scene.run,
-                [Stream::Even, Stream::EvenNet, Stream::EvenLattice],
-                plain.legs.len(),
-            ),
-            ..plain
-        }
+        let streams = [Stream::Even, Stream::EvenNet, Stream::EvenLattice];
+        Self::with(scene, Emitter::evenly(scene), streams)
     }
 
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the
@@ -416,19 +413,6 @@ impl PhotonSource for Tracer {
         self.is_precise
     }
 
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let mut total = Ledger::default();
-        for part in 0..self.parts(batch) {
-            total.add(&self.emit_part(batch, part, record, progress));
-        }
-        total
-    }
-
     fn parts(&self, batch: u32) -> u32 {
         self.shares.parts(batch)
     }
@@ -444,8 +428,7 @@ impl PhotonSource for Tracer {
         let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes];
         let mut total = Ledger::default();
         let all = self.shares.of(batch);
-        let lattices = self.emitter.lattices();
-        let numbers = |at| self.numbers.of(batch, &all, at, lattices);
+        let numbers = |at| self.numbers.of(batch, &all, at, self.lattices.as_ref());
         let range = self.shares.part(batch, part);
         let mut ahead = self.ahead.take();
         for start in range.clone().step_by(BLOCK) {

@@ -49,8 +49,9 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// A small scene with many numbers that inexact decimal conversion would change. Two runs of one seed
-/// share photons, because they use nets: lattices depend on the scene and on the number of photons.
+/// A small scene with many numbers that inexact decimal conversion would change. Two runs of one
+/// seed share photons, because they use nets; lattices depend on the scene and on the number of
+/// photons.
 pub const SCENE: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773)),
     blockers: [JitteredSquares(name: "blockers", center: (0.1234567890123456, 0.2, 1.3000000000000003),

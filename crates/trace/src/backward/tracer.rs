@@ -507,18 +507,6 @@ impl PhotonSource for Backward {
         self.shares.count(batch)
     }
 
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        for part in 0..self.parts(batch) {
-            self.emit_part(batch, part, record, progress);
-        }
-        Ledger::default()
-    }
-
     fn parts(&self, batch: u32) -> u32 {
         self.shares.parts(batch)
     }
