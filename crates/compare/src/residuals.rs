@@ -365,7 +365,7 @@ fn signed_sums(products: &Array2<f64>, signs: &[[f64; LANES]]) -> [f64; LANES] {
 fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
     let mut columns = vec![[0.0; LANES]; count];
     for (lane, round) in (first..).take(LANES).enumerate() {
-        for (column, sign) in columns.iter_mut().zip(signs(seed, round, count)) {
+        for (column, sign) in columns.iter_mut().zip(signs(seed, round)) {
             column[lane] = sign;
         }
     }
@@ -373,18 +373,9 @@ fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
 }
 
 /// Returns random signs for the batches of one round.
-pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
-    let mut signs = Vec::with_capacity(count + 128);
-    for block in 0.. {
-        if signs.len() >= count {
-            break;
-        }
-        for word in random::words(seed, Stream::Flip, round, block) {
-            signs.extend((0..32).map(|bit| if word >> bit & 1 == 0 { 1.0 } else { -1.0 }));
-        }
-    }
-    signs.truncate(count);
-    signs
+pub(crate) fn signs(seed: u64, round: u64) -> impl Iterator<Item = f64> {
+    let words = (0..).flat_map(move |block| random::words(seed, Stream::Flip, round, block));
+    words.flat_map(|word| (0..32).map(move |bit| 1.0 - 2.0 * f64::from(word >> bit & 1)))
 }
 
 /// Returns the largest modulus of some slices.

@@ -141,23 +141,30 @@ impl Lattices {
             .min(scene.run.photons / PHOTONS_PER_TRIAL)
             .clamp(TRIALS[0], TRIALS[1]);
         let replicas = replicas(scene);
-        let steps = proposals.iter().map(|proposal| {
-            if !proposal.iter().all(Proposal::begins_in_window) {
-                return None;
-            }
-            let frequencies = proposal.each_ref().map(Proposal::frequencies);
+        let best = |frequencies: &Frequencies| {
             let generators = (0..trials).filter_map(|i| generator(i, points));
-            let by_light = |g| (badness(&frequencies, &targets, &[DIRECT], points, g), g);
+            let by_light = |g| (badness(frequencies, &targets, &[DIRECT], points, g), g);
             let mut tried: Vec<_> = generators.map(by_light).collect();
             tried.sort_by(|a, b| a.0.total_cmp(&b.0));
             let best = tried
                 .iter()
                 .take(SHORTLIST)
-                .map(|(_, g)| (badness(&frequencies, &targets, &replicas, points, *g), *g));
+                .map(|(_, g)| (badness(frequencies, &targets, &replicas, points, *g), *g));
             let (_, best) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
             // Multiplied by the second number, the lattice has the same points in another order, in
             // which photons of a group do not fall on the same cells.
             Some(best.map(|g| fraction(g * best[1] % points, points)))
+        };
+        let mut chosen: Vec<(Frequencies, Option<[u64; 4]>)> = Vec::new();
+        let steps = proposals.iter().map(|proposal| {
+            if !proposal.iter().all(Proposal::begins_in_window) {
+                return None;
+            }
+            let frequencies = proposal.each_ref().map(Proposal::frequencies);
+            let known = chosen.iter().find(|(earlier, _)| *earlier == frequencies);
+            let steps = known.map_or_else(|| best(&frequencies), |(_, steps)| *steps);
+            chosen.push((frequencies, steps));
+            steps
         });
         let steps: Vec<_> = steps.collect();
         let has_any = steps.iter().any(Option::is_some);
@@ -298,13 +305,14 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
     all
 }
 
+/// The matrices of [`Proposal::frequencies`] along x and y.
+type Frequencies = [[[f64; 2]; 2]; 2];
+
 /// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
 /// [`PlaneFrequencies::nearness`] over the shortest vectors of the dual lattice, around each part of the
 /// spectrum.
-///
-/// `frequencies` are the matrices of [`Proposal::frequencies`] along x and y.
 fn badness(
-    frequencies: &[[[f64; 2]; 2]; 2],
+    frequencies: &Frequencies,
     targets: &[PlaneFrequencies],
     replicas: &[Replica],
     points: u64,

@@ -7,7 +7,7 @@
 //! frequencies of white noise that is multiplied by the window.
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
+use ndarray::{Array1, Array2, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
 
 /// If an axis has more cells than this number, single cells are not visible.
@@ -58,9 +58,9 @@ impl Finer {
         let full = slices.full();
         let each = finer.half.outer_iter_mut().zip(full.outer_iter());
         for ((mut finer, slice), [rows, columns]) in each.zip(&self.weights) {
-            let by_row = product(rows.view(), slice.t());
-            let values = product(columns.view(), by_row.view());
-            finer.assign(&values.t());
+            let by_row = product(rows.view(), slice);
+            let by_column = by_row.t().as_standard_layout().into_owned();
+            finer.assign(&product(columns.view(), by_column.view()).t());
         }
         finer
     }
@@ -115,18 +115,17 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 
 /// The covariance between frequencies of a slice, for white noise that is multiplied by a window.
 struct WindowCovariance {
-    /// For both profiles of the window, points along the slice; the weight of a point is the square
-    /// of the profile.
+    /// For both profiles of the window, points along half of the slice; the other half is its mirror
+    /// image. The weight of a point is the square of the profile.
     profiles: [Vec<(f64, f64)>; 2],
 }
 
 impl WindowCovariance {
     fn new(profiles: [Profile; 2], (sin, cos): (f64, f64)) -> Self {
-        const POINTS: u32 = 200;
+        const POINTS: u32 = 100;
         let points = |profile: Profile, toward: f64| {
             let all = (0..POINTS).map(|i| {
-                let t =
-                    profile.half_width() * ((2.0 * f64::from(i) + 1.0) / f64::from(POINTS) - 1.0);
+                let t = profile.half_width() * (f64::from(i) + 0.5) / f64::from(POINTS);
                 (toward * t, profile.value(t).powi(2))
             });
             let all: Vec<(f64, f64)> = all.collect();
@@ -171,20 +170,15 @@ fn weights(
     )]
     let parts = parts as usize;
     let factor = Cholesky::new(count, |i, j| apart[parts * i.abs_diff(j)]);
-    let mut weights = Array2::zeros((to.count(), count));
-    for (finer, mut row) in weights.outer_iter_mut().enumerate() {
-        // The given frequency i is the finer frequency number parts · i + (parts − 1)/2.
-        let known = |i: usize| apart[finer.abs_diff(parts * i + parts / 2)];
-        let known: Array1<f64> = (0..count).map(known).collect();
-        let solved = factor.solve(&known);
-        let explained: f64 = solved.iter().zip(&known).map(|(a, b)| a * b).sum();
-        let is_between = finer >= parts / 2 && finer < to.count() - parts / 2;
-        if is_between && explained < 1.0 - OPEN {
-            return None;
-        }
-        row.assign(&solved);
-    }
-    Some(weights)
+    // The given frequency i is the finer frequency number parts · i + (parts − 1)/2.
+    let known = Array2::from_shape_fn((count, to.count()), |(i, finer)| {
+        apart[finer.abs_diff(parts * i + parts / 2)]
+    });
+    let weights = factor.solve(known.clone());
+    let explained = (&weights * &known).sum_axis(Axis(0));
+    let mut between = explained.iter().skip(parts / 2).take(parts * (count - 1) + 1);
+    let is_determined = between.all(|explained| *explained >= 1.0 - OPEN);
+    is_determined.then(|| weights.reversed_axes().as_standard_layout().into_owned())
 }
 
 /// The factor L of a symmetric matrix A = L Lᵀ.
@@ -209,29 +203,39 @@ impl Cholesky {
         Self(l)
     }
 
-    fn solve(&self, right: &Array1<f64>) -> Array1<f64> {
-        let (l, count) = (&self.0, right.len());
-        let mut x = right.clone();
+    /// Returns A⁻¹ B for the matrix B, `right`.
+    fn solve(&self, mut right: Array2<f64>) -> Array2<f64> {
+        let (l, count) = (&self.0, right.nrows());
         for i in 0..count {
-            let sum: f64 = (0..i).map(|k| l[[i, k]] * x[k]).sum();
-            x[i] = (x[i] - sum) / l[[i, i]];
+            let (above, mut below) = right.view_mut().split_at(Axis(0), i);
+            let mut row = below.row_mut(0);
+            for (k, earlier) in above.outer_iter().enumerate() {
+                row.scaled_add(-l[[i, k]], &earlier);
+            }
+            row /= l[[i, i]];
         }
         for i in (0..count).rev() {
-            let sum: f64 = (i + 1..count).map(|k| l[[k, i]] * x[k]).sum();
-            x[i] = (x[i] - sum) / l[[i, i]];
+            let (mut above, below) = right.view_mut().split_at(Axis(0), i + 1);
+            let mut row = above.row_mut(i);
+            for (k, later) in (i + 1..).zip(below.outer_iter()) {
+                row.scaled_add(-l[[k, i]], &later);
+            }
+            row /= l[[i, i]];
         }
-        x
+        right
     }
 }
 
-/// Returns the product A Bᵀ. The sum is written out, because matrix products of the array library
+/// Returns the product A B. The sum is written out, because matrix products of the array library
 /// differ in their bits between processors.
 fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
-    let sum = |a: ArrayView1<'_, f64>, b: ArrayView1<'_, Complex>| {
-        let terms = a.iter().zip(b).map(|(a, b)| b * *a);
-        terms.fold(Complex::ZERO, |sum, term| sum + term)
-    };
-    Array2::from_shape_fn((a.nrows(), b.nrows()), |(i, j)| sum(a.row(i), b.row(j)))
+    let mut product = Array2::zeros((a.nrows(), b.ncols()));
+    for (mut sum, factors) in product.outer_iter_mut().zip(a.outer_iter()) {
+        for (row, factor) in b.outer_iter().zip(factors) {
+            sum.zip_mut_with(&row, |sum, value| *sum += value * *factor);
+        }
+    }
+    product
 }
 
 #[cfg(test)]
