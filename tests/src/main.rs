@@ -34,6 +34,7 @@ mod shading;
 mod statistics;
 mod suite;
 mod table1;
+mod transform;
 mod wild;
 mod worlds;
 
@@ -63,6 +64,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- small        20 minutes; small objects in the light of 2,000 random scenes
   cargo run --release -p etendue-validation -- assumptions  minutes; random scenes with the checks of theory switched off
   cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
+  cargo run --release -p etendue-validation -- transform    errors of the slice transform over 20 random scenes
   cargo run --release -p etendue-validation -- rows         an hour; table1, shading and every row of Table 1
   cargo run --release -p etendue-validation -- all          two hours; writes the whole of results/validation.md")]
 struct ValidationCli {
@@ -167,6 +169,9 @@ enum ValidationCommand {
     /// Measure pulls of parameters and slopes over random scenes, and the cost of predictions; exit
     /// code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
+    /// Compare the slice transform with plain sums over random scenes; exit code 1 if its error is
+    /// larger than stated.
+    Transform(transform::TransformOptions),
     /// Check the main scene: every plane, noise floors, calibration and planted faults; write results/validation.md.
     Main,
     /// Run `table1` and `shading`, and write a summary for every row of the paper's Table 1 to results/validation.md.
@@ -220,6 +225,9 @@ fn main() -> ExitCode {
     }
     if let ValidationCommand::Pulls(options) = &command {
         return printed(pulls::pulls(options));
+    }
+    if let ValidationCommand::Transform(options) = &command {
+        return printed(transform::transform(options).map(|section| vec![section]));
     }
     if matches!(command, ValidationCommand::Second) {
         return printed(second::second().map(|section| vec![section]));
@@ -389,6 +397,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
         | ValidationCommand::Several(_)
         | ValidationCommand::Assumptions(_)
         | ValidationCommand::Pulls(_)
+        | ValidationCommand::Transform(_)
         | ValidationCommand::Rows
         | ValidationCommand::All => Vec::new(),
         ValidationCommand::Noise { most } => noise(most),

@@ -209,7 +209,9 @@ fn report(
     let reached = || {
         let rounds = (0..ROUNDS).into_par_iter();
         rounds
-            .filter(|round| statistic(&signs(seed, *round).take(groups).collect::<Vec<_>>()) >= observed)
+            .filter(|round| {
+                statistic(&signs(seed, *round).take(groups).collect::<Vec<_>>()) >= observed
+            })
             .count()
     };
     let size: f64 = power.iter().map(|p| p * p).sum();

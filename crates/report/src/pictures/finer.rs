@@ -176,7 +176,10 @@ fn weights(
     });
     let weights = factor.solve(known.clone());
     let explained = (&weights * &known).sum_axis(Axis(0));
-    let mut between = explained.iter().skip(parts / 2).take(parts * (count - 1) + 1);
+    let mut between = explained
+        .iter()
+        .skip(parts / 2)
+        .take(parts * (count - 1) + 1);
     let is_determined = between.all(|explained| *explained >= 1.0 - OPEN);
     is_determined.then(|| weights.reversed_axes().as_standard_layout().into_owned())
 }

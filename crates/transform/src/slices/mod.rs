@@ -85,7 +85,8 @@ impl SliceTransform {
     ///
     /// A single ray reaches this bound. The error is that of the spreading kernel, which is
     /// 1.3·10⁻⁵ of the spectrum at frequencies beyond the grid. Light from a source with extent has
-    /// little power there, so its error is 1 to 3·10⁻⁷ Σw. Positions must be finite.
+    /// little power there, so its error is usually below 10⁻⁶ Σw, and in 40 random scenes at most
+    /// 0.004 standard errors of 10⁶ photons (results/performance.md). Positions must be finite.
     ///
     /// # Panics
     ///
