@@ -16,7 +16,7 @@ use etendue_pipeline::predicted;
 use etendue_pipeline::table::word;
 use etendue_pipeline::{field, limits, load, method, photons, target};
 use etendue_report::{OutputOptions, plan};
-use etendue_scene::Scene;
+use etendue_scene::{Color, Scene};
 use etendue_store::Failure;
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
@@ -26,7 +26,32 @@ use std::time::Instant;
 
 /// Runs `etendue run`; returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
-    run_with(args, None)
+    if args.rgb {
+        channels(args)
+    } else {
+        run_with(args, None)
+    }
+}
+
+/// Runs a scene once for each channel; returns the exit code of the worst verdict. The runs have
+/// the same seed, so they trace the same photons with different weights.
+fn channels(args: &RunArgs) -> Result<u8, Failure> {
+    let name = args.scene.path.file_stem().unwrap_or_default();
+    let folder = args.out.or_named(name);
+    let mut worst = 0;
+    for color in [Color::Red, Color::Green, Color::Blue] {
+        let mut one = args.clone();
+        one.scene.color = Some(color);
+        one.out.folder = Some(folder.join(color.name()));
+        let code = run_with(&one, None)?;
+        // A disagreement is worse than an undecided plane.
+        worst = if code == 1 || worst == 1 {
+            1
+        } else {
+            worst.max(code)
+        };
+    }
+    Ok(worst)
 }
 
 /// Runs [`run()`], and shares the measurement with other processes.

@@ -41,7 +41,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
 /// Returns the scene and the measurement options as words of a command line.
 fn scene_words(args: &SplitArgs) -> String {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
-    for (path, value) in &args.scene.set {
+    for (path, value) in &args.scene.source().set {
         words.extend(["--set".to_owned(), format!("{path}={value}")]);
     }
     let numbers = [

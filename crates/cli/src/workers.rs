@@ -26,7 +26,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         }
     };
     if !is_shared(&command) {
-        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error";
+        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error and --rgb";
         return ended(Err(Failure::bad_input(message)), !leads);
     }
     if !leads {
@@ -48,7 +48,9 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
 
 fn is_shared(command: &Command) -> bool {
     match command {
-        Command::Run(RunArgs { target_error, .. }) => target_error.is_none(),
+        Command::Run(RunArgs {
+            target_error, rgb, ..
+        }) => target_error.is_none() && !rgb,
         command => matches!(command, Command::Predict(_) | Command::Sweep(_)),
     }
 }

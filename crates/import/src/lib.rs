@@ -21,8 +21,9 @@ mod range;
 mod report;
 mod spectrum;
 
+pub use etendue_scene::Color;
 pub use note::{Imported, Note, Refused};
-pub use options::{Color, Options};
+pub use options::Options;
 
 use std::path::Path;
 

@@ -17,10 +17,11 @@ pub fn text(summary: &Summary) -> String {
         });
     let mut lines = vec![
         format!(
-            "{}: {} photons, seed {}{}",
+            "{}: {} photons, seed {}{}{}",
             summary.scene,
             grouped(summary.photons),
             summary.seed,
+            summary.color_words(),
             ledger.unwrap_or_default(),
         ),
         String::new(),

@@ -3,7 +3,8 @@
 use etendue_explorer::{SettingKey, Setup, scene};
 use etendue_field::Profile;
 use etendue_scene::{
-    BlockersFile, EventFile, FormFile, LightFile, LobeFile, SceneFile, ShapeFile, SurfaceFile,
+    BlockersFile, ColorFile, EventFile, FormFile, LightFile, LobeFile, SceneFile, ShapeFile,
+    SurfaceFile,
 };
 
 /// The file name of the page, among the results of a run.
@@ -156,9 +157,17 @@ fn place(surface: &SurfaceFile) -> [f64; 3] {
     }
 }
 
+/// Returns the number of a colour that has no hue; the explorer has no colours.
+fn grey(color: ColorFile) -> Option<f64> {
+    match color {
+        ColorFile::Grey(number) => Some(number),
+        ColorFile::Rgb(_) => None,
+    }
+}
+
 fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
     match surface {
-        SurfaceFile::Rectangle { albedo, .. } => setup.set(SettingKey::Albedo, *albedo),
+        SurfaceFile::Rectangle { albedo, .. } => setup.set(SettingKey::Albedo, grey(*albedo)?),
         SurfaceFile::Smooth {
             form,
             event: EventFile::Reflects { brdf, .. },
@@ -169,7 +178,7 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
             };
             setup.set(SettingKey::Glossy, 1.0);
             setup.set(SettingKey::Exponent, exponent);
-            setup.set(SettingKey::Albedo, brdf.albedo);
+            setup.set(SettingKey::Albedo, grey(brdf.albedo)?);
             let curvature = match form {
                 FormFile::Plane => 0.0,
                 FormFile::Sphere(curvature) => *curvature,
@@ -258,7 +267,7 @@ mod tests {
         let LightFile::Rectangle { radiance, .. } = &mut bright.light else {
             unreachable!()
         };
-        *radiance = 2.0;
+        *radiance = 2.0.into();
         let mut far = file;
         let SurfaceFile::Rectangle { center, .. } = &mut far.surfaces[0] else {
             unreachable!()

@@ -158,10 +158,11 @@ fn spectrum(
 /// Returns a line that states from which run a picture was made.
 pub fn made_from(summary: &Summary) -> String {
     format!(
-        "{}, {} photons, seed {}",
+        "{}, {} photons, seed {}{}",
         summary.scene,
         grouped(summary.photons),
-        summary.seed
+        summary.seed,
+        summary.color_words()
     )
 }
 

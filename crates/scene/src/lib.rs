@@ -30,11 +30,12 @@ mod triangles;
 mod warnings;
 
 pub use etendue_scenefile::{
-    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
-    Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, HoleFile, ImageFile,
-    LightFile, LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling,
-    SceneError, SceneFile, SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile,
-    WindowFile, limits, nearest, page, schema, shown, unit,
+    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Color, ColorFile, Emission,
+    EnvironmentFile, EventFile, Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile,
+    HalfName, HoleFile, ImageFile, LightFile, LobeFile, MeshSource, PathFile, PatternFile, Place,
+    PlaneFile, RunFile, Sampling, SceneError, SceneFile, SceneFormat, ShapeFile,
+    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, limits, nearest, page, schema, shown,
+    unit,
 };
 pub use mesh::{DetailedMesh, Mesh, MeshAttribute, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};

@@ -1,14 +1,11 @@
 //! Reads pictures from OpenEXR and PNG files, as one number for each pixel.
 
 use etendue_field::Raster;
-use etendue_scenefile::{Fault, fault};
+use etendue_scenefile::{Color, Fault, fault};
 use exr::meta::MetaData;
 use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
 use std::io::Cursor;
 use std::path::Path;
-
-/// Weights of red, green and blue in luminance (Rec. ITU-R BT.709).
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// The maximum number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MAX_NUMBERS: usize = 1 << 27;
@@ -50,28 +47,30 @@ impl Channels {
         };
         raster(self.width, self.height, values)
     }
-
-    fn luminance(&self) -> Result<Raster, Fault> {
-        match self.count {
-            1 => raster(self.width, self.height, self.values.clone()),
-            _ => self.raster(weigh),
-        }
-    }
 }
 
 /// Reads the bytes of a picture. The extension of `file`, in upper or lower case, determines the
 /// format.
 ///
-/// An OpenEXR file gives the luminance of the first layer with channels R, G and B, or the layer's
-/// channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits, with
+/// An OpenEXR file gives the number `color` of the first layer with channels R, G and B, or the
+/// layer's channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits, with
 /// levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
-pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
+pub(crate) fn parse(
+    file: &Path,
+    bytes: &[u8],
+    extensions: &[&str],
+    color: Color,
+) -> Result<Raster, Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
-    read_channels(file, bytes)?.luminance()
+    let channels = read_channels(file, bytes)?;
+    match channels.count {
+        1 => raster(channels.width, channels.height, channels.values),
+        _ => channels.raster(|rgb| color.of(rgb)),
+    }
 }
 
 /// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in upper or lower case,
@@ -183,11 +182,6 @@ fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let pixels = red.zip(green).zip(blue);
     let values = pixels.flat_map(|((r, g), b)| [r, g, b].map(f64::from));
     Some((3, values.collect()))
-}
-
-fn weigh(rgb: [f64; 3]) -> f64 {
-    let [r, g, b] = rgb;
-    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
 fn png(bytes: &[u8]) -> Result<Channels, Fault> {

@@ -29,7 +29,7 @@ use etendue_field::{Frame, tidy};
 use etendue_scenefile::SceneError;
 use etendue_scenefile::limits::INPUT_BYTES;
 use etendue_scenefile::number;
-use etendue_scenefile::{RunFile, SceneFile};
+use etendue_scenefile::{Color, RunFile, SceneFile};
 use faults::{Faults, show, vector};
 use glam::DVec3;
 use obstacles::Things;
@@ -52,6 +52,7 @@ pub fn resolve(
     let scene = Resolver {
         faults: &mut faults,
         folder,
+        color: file.run.color,
         inputs: BTreeMap::new(),
     }
     .scene(name, file, memory);
@@ -70,6 +71,8 @@ const SAME_PLANE: f64 = 1e-9;
 struct Resolver<'a> {
     faults: &'a mut Faults,
     folder: &'a Path,
+    /// The number of each colour that is measured.
+    color: Color,
     /// The BLAKE3 hashes of the files that were read, by the names of these files in the scene.
     inputs: BTreeMap<String, String>,
 }

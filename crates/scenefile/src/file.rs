@@ -2,11 +2,13 @@
 
 mod allowed;
 mod blockers;
+mod color;
 mod format;
 mod light;
 mod surface;
 
 pub use blockers::{BlockersFile, HalfName, HoleFile, ShapeFile};
+pub use color::{Color, ColorFile};
 pub use format::SceneFormat;
 pub use light::{
     BulbFile, EnvironmentFile, GratingFile, ImageFile, LightFile, SphericalGaussianFile,
@@ -235,6 +237,9 @@ pub struct RunFile {
     pub emission: Emission,
     /// The random numbers from which photons are drawn.
     pub sampling: Sampling,
+    /// The number of each colour that is measured. Runs that differ only in it trace the same
+    /// photons.
+    pub color: Color,
 }
 
 impl Default for RunFile {
@@ -247,6 +252,7 @@ impl Default for RunFile {
             resolution: 0.1,
             emission: Emission::Aimed,
             sampling: Sampling::Lattice,
+            color: Color::Luminance,
         }
     }
 }
@@ -317,16 +323,20 @@ fn one() -> f64 {
     1.0
 }
 
+fn white() -> ColorFile {
+    1.0.into()
+}
+
+fn grey() -> ColorFile {
+    0.5.into()
+}
+
 fn along_y() -> [f64; 3] {
     [0.0, 1.0, 0.0]
 }
 
 fn along_z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
-}
-
-fn half() -> f64 {
-    0.5
 }
 
 fn eight() -> u32 {

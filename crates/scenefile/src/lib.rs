@@ -23,10 +23,11 @@ mod whole_number;
 pub use display::{is_printable, number, shown};
 pub use fault::{Fault, SceneError, fault};
 pub use file::{
-    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
-    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, HoleFile, ImageFile, LightFile,
-    LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile,
-    SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Color, ColorFile, Emission,
+    EnvironmentFile, EventFile, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName,
+    HoleFile, ImageFile, LightFile, LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile,
+    RunFile, Sampling, SceneFile, SceneFormat, ShapeFile, SphericalGaussianFile, SurfaceFile,
+    TermFile, WindowFile,
 };
 pub use hints::unit;
 pub use page::page;

@@ -49,7 +49,7 @@ fn name_of_type(node: &Value) -> Option<&str> {
 }
 
 /// Checks whether the type of a node is a number; the type may be optional.
-fn is_number(node: &Value) -> bool {
+pub(crate) fn is_number(node: &Value) -> bool {
     let is = |name: &Value| name == "number" || name == "integer";
     let names = node.get("type");
     names.is_some_and(|name| is(name) || name.as_array().is_some_and(|names| names.iter().any(is)))

@@ -24,6 +24,8 @@ pub(super) enum SoughtFeature {
     Aperture,
     /// Further lights. They are drawn only if they are selected.
     Lights,
+    /// Colours instead of numbers. They are drawn only if they are selected.
+    Colors,
 }
 
 impl SoughtFeature {
@@ -32,7 +34,7 @@ impl SoughtFeature {
             Self::Bars => matches!(blockers, BlockersFile::Bars { .. }),
             Self::Picture => matches!(blockers, BlockersFile::Picture { .. }),
             Self::Aperture => matches!(blockers, BlockersFile::Aperture { .. }),
-            Self::Lights => false,
+            Self::Lights | Self::Colors => false,
         }
     }
 }

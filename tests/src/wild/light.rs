@@ -21,12 +21,12 @@ pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
         0..=3 => LightFile::Rectangle {
             center,
             size: sides(draw),
-            radiance: strength,
+            radiance: strength.into(),
         },
         4 | 5 => LightFile::Disc {
             center,
             radius: 0.5 * sides(draw)[0],
-            radiance: strength,
+            radiance: strength.into(),
         },
         6 | 7 => {
             let size = sides(draw)[0];
@@ -37,24 +37,24 @@ pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
                 } else {
                     BulbFile::Disc(0.5 * size)
                 },
-                radiance: strength,
+                radiance: strength.into(),
                 exponent: draw.value([1.0, 40.0], [0.01, 1e4]),
             }
         }
         8 => LightFile::Point {
             center,
-            intensity: strength,
+            intensity: strength.into(),
         },
         9 => LightFile::Projector {
             center,
-            intensity: strength,
+            intensity: strength.into(),
             image: image(draw, 1.0),
         },
         10 => {
             let unit = draw.unit;
             LightFile::Beam {
                 center,
-                irradiance: strength,
+                irradiance: strength.into(),
                 image: image(draw, unit),
             }
         }
@@ -123,6 +123,6 @@ fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     SphericalGaussianFile {
         from,
         width,
-        radiance: draw.value([0.3, 3.0], [1e-6, 1e6]),
+        radiance: draw.value([0.3, 3.0], [1e-6, 1e6]).into(),
     }
 }

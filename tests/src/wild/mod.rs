@@ -5,6 +5,7 @@
 //! as possible and saves the scene.
 
 mod blockers;
+mod colors;
 mod draw;
 mod judge;
 mod light;
@@ -141,7 +142,11 @@ fn one(
     if let Some(SoughtFeature::Lights) = options.with {
         lights::add_lights(&mut file, (options.seed, number), &runner.folder)?;
     }
+    if let Some(SoughtFeature::Colors) = options.with {
+        file = colors::add_colors(&file, (options.seed, number), &runner.folder)?;
+    }
     let has = |kind: SoughtFeature| match kind {
+        SoughtFeature::Colors => true,
         SoughtFeature::Lights => !file.other_lights.is_empty(),
         kind => file.blockers.iter().any(|blockers| kind.is_of(blockers)),
     };

@@ -34,8 +34,8 @@ fn brdf(draw: &mut SceneDraw) -> BrdfFile {
     let fresnel = match draw.below(6) {
         0 => FresnelFile::Dielectric(draw.value([1.2, 2.0], [0.06, 20.0])),
         1 => FresnelFile::Conductor {
-            n: draw.value([0.2, 3.0], [0.06, 20.0]),
-            k: draw.value([1.0, 7.0], [1e-3, 20.0]),
+            n: draw.value([0.2, 3.0], [0.06, 20.0]).into(),
+            k: draw.value([1.0, 7.0], [1e-3, 20.0]).into(),
         },
         _ => FresnelFile::White,
     };
@@ -46,7 +46,7 @@ fn brdf(draw: &mut SceneDraw) -> BrdfFile {
     };
     BrdfFile {
         lobe,
-        albedo,
+        albedo: albedo.into(),
         fresnel,
         incoming: None,
         outgoing: None,

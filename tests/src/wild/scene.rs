@@ -6,8 +6,8 @@ use super::surfaces::{passed, surface};
 use super::{blockers, light};
 use etendue_field::{Frame, Orientation, Quantity};
 use etendue_scene::{
-    CentralRay, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, Sampling, SceneFile,
-    SceneFormat, SurfaceFile, resolve,
+    CentralRay, Color, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, Sampling,
+    SceneFile, SceneFormat, SurfaceFile, resolve,
 };
 use glam::DVec3;
 use std::io;
@@ -86,6 +86,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
             resolution: 0.1,
             emission,
             sampling: Sampling::Lattice,
+            color: Color::Luminance,
         },
     })
 }

@@ -251,7 +251,7 @@ pub(super) fn object(
                 rings: 8,
             },
             scale: 1.0,
-            albedo: 0.0,
+            albedo: 0.0.into(),
             event: None,
         }),
         _ => file.surfaces.push(SurfaceFile::Rectangle {
@@ -259,7 +259,7 @@ pub(super) fn object(
             center,
             size: [2.0 * radius; 2],
             facing: Some(draw.along(towards_light(scene))),
-            albedo: 0.5,
+            albedo: 0.5.into(),
         }),
     }
     kind

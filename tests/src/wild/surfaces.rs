@@ -66,7 +66,7 @@ fn rectangle(
         center: draw.place(on_axis),
         size: [(); 2].map(|()| draw.length([1.0, 20.0], [0.05, 1e4])),
         facing: (!plain).then(|| draw.along(normal)),
-        albedo: albedo(draw),
+        albedo: albedo(draw).into(),
     }
 }
 
@@ -100,7 +100,7 @@ fn mesh(
         center: draw.place(on_axis),
         mesh,
         scale: 1.0,
-        albedo: albedo(draw),
+        albedo: albedo(draw).into(),
         event: match draw.below(4) {
             0 => Some(EventFile::Mirror),
             1 => Some(refraction(draw)),
@@ -191,6 +191,6 @@ pub(super) fn passed(draw: &mut SceneDraw, name: String, first: f64) -> SurfaceF
         center: draw.place(DVec3::new(x, 0.0, z)),
         size,
         facing: None,
-        albedo: 0.5,
+        albedo: 0.5.into(),
     }
 }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   etendue run scenes/fig9b.ron
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
@@ -19,6 +19,7 @@ use std::time::Duration;
   etendue run scenes/fig9b.ron --save mcpl,tm25                    rays for other programs
                                                                    (docs/rays.md)
   etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h   repeat until done
+  etendue run scenes/colors.ron --rgb                              one result for each channel
 
 Results are in out/NAME unless --out names another folder. Photon counts may be written as 10_000_000, 1e7 \
 or 2^23.
@@ -46,6 +47,11 @@ pub(crate) struct RunArgs {
     /// Begin no new batch after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
+
+    /// Run the scene once for each of red, green and blue, with the same photons; the results are
+    /// in folders of these names
+    #[arg(long, conflicts_with = "color")]
+    pub(crate) rgb: bool,
 
     /// Additional data to save
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]

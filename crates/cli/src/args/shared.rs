@@ -4,12 +4,12 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use etendue_field::tidy;
 use etendue_pipeline::load::SceneSource;
-use etendue_scene::RunFile;
+use etendue_scene::{Color, RunFile};
 use etendue_store::Method;
 use std::path::{Path, PathBuf};
 
 /// Options that override the measurement settings of the scene.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct PhotonArgs {
     /// Number of photons to emit [default: as in the scene]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
@@ -66,7 +66,7 @@ impl PhotonArgs {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct ForceArgs {
     /// Replace files that etendue did not write, or that were changed after etendue wrote them, and
     /// print the name of each replaced file
@@ -74,7 +74,7 @@ pub(crate) struct ForceArgs {
     pub(crate) force: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct ThreadArgs {
     /// Number of threads [default: one for each core]. The results do not depend on this
     /// number
@@ -83,7 +83,7 @@ pub(crate) struct ThreadArgs {
 }
 
 /// Options of commands that may take a long time.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) force: ForceArgs,
@@ -97,7 +97,7 @@ pub(crate) struct WorkArgs {
 }
 
 /// The folder for the results of a scene.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct FolderArgs {
     /// Folder for the results [default: a folder in out, named after the scene]
     #[arg(long = "out", value_name = "DIR")]
@@ -113,14 +113,14 @@ impl FolderArgs {
 }
 
 /// The folder for the results of a stage of `run`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct StageFolderArgs {
     /// Folder for the results
     #[arg(long = "out", value_name = "DIR")]
     pub(crate) folder: PathBuf,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArgs {
     /// Scene file, in RON
     #[arg(value_name = "SCENE.ron")]
@@ -129,13 +129,27 @@ pub(crate) struct SceneArgs {
     /// Set a field of the scene, such as blockers.0.fill=0.5; may be repeated
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
+
+    /// Which number of each colour to measure: its luminance, or one channel [default: as in the
+    /// scene, where it is `run.color`]
+    #[arg(long, value_name = "CHANNEL", value_parser = colors())]
+    pub(crate) color: Option<Color>,
 }
 
 impl SceneArgs {
     /// Returns the scene file and its overrides, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
-        SceneSource::file(&self.path, &self.set)
+        let mut source = SceneSource::file(&self.path, &self.set);
+        let color = self.color.map(|color| format!("{color:?}"));
+        let color = color.map(|color| ("run.color".to_owned(), color));
+        source.set.extend(color);
+        source
     }
+}
+
+/// Parses the name of a number of each colour.
+pub(super) fn colors() -> impl TypedValueParser<Value = Color> {
+    one_named(Color::ALL.map(|color| (color.name(), color)))
 }
 
 pub(super) fn assignment(text: &str) -> Result<(String, String), String> {

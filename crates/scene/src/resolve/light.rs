@@ -3,15 +3,16 @@
 use super::Resolver;
 use super::reflectance::grating_of;
 use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
-use etendue_scenefile::{BulbFile, ImageFile, LightFile};
+use etendue_scenefile::{BulbFile, ColorFile, ImageFile, LightFile};
 
 impl Resolver<'_> {
     /// Returns the light at the origin of the central ray, which is the origin of the frame at
     /// the light.
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
-        let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
+        let number = |color: ColorFile| color.number(self.color);
+        let area = |shape: Shape, radiance: ColorFile, exponent: f64| Light::Area {
             shape,
-            radiance,
+            radiance: number(radiance),
             exponent,
         };
         match *light {
@@ -19,13 +20,15 @@ impl Resolver<'_> {
             LightFile::Disc {
                 radius, radiance, ..
             } => area(disc(radius), radiance, 0.0),
-            LightFile::Point { intensity, .. } => Light::Point { intensity },
+            LightFile::Point { intensity, .. } => Light::Point {
+                intensity: number(intensity),
+            },
             LightFile::Projector {
                 intensity,
                 ref image,
                 ..
             } => Light::Projector {
-                intensity,
+                intensity: number(intensity),
                 image: image_of(image),
             },
             LightFile::Beam {
@@ -33,7 +36,7 @@ impl Resolver<'_> {
                 ref image,
                 ..
             } => Light::Beam {
-                irradiance,
+                irradiance: number(irradiance),
                 image: image_of(image),
             },
             LightFile::Environment {

@@ -67,7 +67,7 @@ impl Resolver<'_> {
                     center,
                     mesh,
                     scale: *scale,
-                    albedo: event.is_none().then_some(*albedo),
+                    albedo: event.is_none().then_some(albedo.number(self.color)),
                     event: event.as_ref(),
                 }),
                 SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,

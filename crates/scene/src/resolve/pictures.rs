@@ -47,7 +47,7 @@ impl Resolver<'_> {
                     let from = self.faults_of_direction(&format!("{of}.from"), lobe.from);
                     SphericalGaussian {
                         from,
-                        radiance: scale * lobe.radiance,
+                        radiance: scale * lobe.radiance.number(self.color),
                         width: lobe.width,
                     }
                 });
@@ -123,10 +123,11 @@ impl Resolver<'_> {
         most: f64,
     ) -> Option<Raster> {
         let bytes = self.named_file(of, path)?;
-        let raster = picture::parse(Path::new(path), &bytes, extensions).map_err(|fault| {
-            let field = format!("{of}, {path:?}: {}", fault.field);
-            self.faults.add(field, fault.value, fault.allowed);
-        });
+        let raster =
+            picture::parse(Path::new(path), &bytes, extensions, self.color).map_err(|fault| {
+                let field = format!("{of}, {path:?}: {}", fault.field);
+                self.faults.add(field, fault.value, fault.allowed);
+            });
         let raster = raster.ok()?;
         let mut values = raster.values().iter();
         if let Some(pixel) = values.position(|value| !(0.0..=most).contains(value)) {

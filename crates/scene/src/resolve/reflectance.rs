@@ -93,7 +93,10 @@ impl Resolver<'_> {
         let fresnel = match file.fresnel {
             FresnelFile::White => Fresnel::White,
             FresnelFile::Dielectric(index) => Fresnel::Dielectric { index },
-            FresnelFile::Conductor { n, k } => Fresnel::Conductor { n, k },
+            FresnelFile::Conductor { n, k } => Fresnel::Conductor {
+                n: n.number(self.color),
+                k: k.number(self.color),
+            },
         };
         let mut table =
             |field: &str, values: &Option<Vec<f64>>| self.table(&format!("{of}.{field}"), values);
@@ -101,7 +104,7 @@ impl Resolver<'_> {
         let outgoing = table("outgoing", &file.outgoing);
         Brdf {
             lobe,
-            albedo: file.albedo,
+            albedo: file.albedo.number(self.color),
             fresnel,
             incoming,
             outgoing,

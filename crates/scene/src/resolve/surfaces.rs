@@ -44,7 +44,7 @@ impl Resolver<'_> {
             name: name.clone(),
             frame,
             size: *size,
-            albedo: *albedo,
+            albedo: albedo.number(self.color),
         })
     }
 

@@ -4,6 +4,7 @@
 
 use crate::display::number;
 use crate::limits::MAX_NUMBER;
+use crate::schema::is_number;
 use schemars::Schema;
 use serde_json::Value;
 
@@ -73,12 +74,12 @@ shared! {
     sides: "side lengths along X and Y, in metres", "(0.2, 0.1)";
     length: "a length in metres", "0.2";
     factor: "a factor", "2";
-    radiance: "a radiance, in W m⁻² sr⁻¹", "1";
-    intensity: "an intensity, in W sr⁻¹", "1";
+    radiance: "a radiance, in W m⁻² sr⁻¹, or three for red, green and blue", "1";
+    intensity: "an intensity, in W sr⁻¹, or three for red, green and blue", "1";
     cycles: "cycles per metre", "5";
     modulation: "a contrast", "0.9", within(0.0, 1.0);
     phase: "an angle in radians", "0.3", any;
-    albedo: "a share of the light", "0.5", within(0.0, 1.0);
+    albedo: "a share of the light, or three for red, green and blue", "0.5", within(0.0, 1.0);
     factors_by_angle: "factors from 0 to 1, for angles from the normal to 90 degrees", "[1, 0.7, 0]", within(0.0, 1.0);
     profile_of_place: "a profile with its half-width in metres", "Hann(0.5)";
     profile_of_slope: "a profile with its half-width as a slope", "Hann(0.5)";
@@ -90,13 +91,18 @@ fn bound(node: &mut Value, least: f64, most: f64) {
     node["maximum"] = most.into();
 }
 
-/// Adds an attribute to a number, or to each number in a list or in a list of lists.
-fn numbers(schema: &mut Schema, tell: impl FnOnce(&mut Value)) {
+/// Adds an attribute to a number, or to each number in a list or in a list of lists. A colour is a
+/// number or a list.
+fn numbers(schema: &mut Schema, tell: impl Fn(&mut Value)) {
     let mut each = String::new();
-    while schema.pointer(&format!("{each}/items")).is_some() {
+    while let Some(node) = schema.pointer_mut(&each) {
+        let is_list = node.get("items").is_some();
+        if !is_list || is_number(node) {
+            tell(node);
+        }
+        if !is_list {
+            break;
+        }
         each += "/items";
-    }
-    if let Some(node) = schema.pointer_mut(&each) {
-        tell(node);
     }
 }

@@ -4,7 +4,7 @@ use super::allowed::{
     cycles, direction, factor, intensity, length, modulation, phase, place, radiance, sides, told,
     within,
 };
-use super::{AxisName, along_y, along_z, one};
+use super::{AxisName, ColorFile, along_y, along_z, one, white};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,9 +22,9 @@ pub enum LightFile {
         #[schemars(transform = sides)]
         size: [f64; 2],
         /// Radiance, in W m⁻² sr⁻¹.
-        #[serde(default = "one")]
+        #[serde(default = "white")]
         #[schemars(transform = radiance)]
-        radiance: f64,
+        radiance: ColorFile,
     },
     /// A Lambertian disc orthogonal to the central ray, with a dark back.
     Disc {
@@ -35,9 +35,9 @@ pub enum LightFile {
         #[schemars(transform = length)]
         radius: f64,
         /// Radiance, in W m⁻² sr⁻¹.
-        #[serde(default = "one")]
+        #[serde(default = "white")]
         #[schemars(transform = radiance)]
-        radiance: f64,
+        radiance: ColorFile,
     },
     /// A point that emits uniformly in all directions.
     Point {
@@ -45,9 +45,9 @@ pub enum LightFile {
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Intensity, in W sr⁻¹.
-        #[serde(default = "one")]
+        #[serde(default = "white")]
         #[schemars(transform = intensity)]
-        intensity: f64,
+        intensity: ColorFile,
     },
     /// A flat bulb whose radiance falls off as cosⁿθ, where θ is the angle to the central
     /// ray.
@@ -58,9 +58,9 @@ pub enum LightFile {
         /// Shape of the bulb.
         bulb: BulbFile,
         /// Radiance along the central ray, in W m⁻² sr⁻¹.
-        #[serde(default = "one")]
+        #[serde(default = "white")]
         #[schemars(transform = radiance)]
-        radiance: f64,
+        radiance: ColorFile,
         /// The exponent n.
         #[schemars(transform = told("an exponent", "20"), transform = within(0.0, 1e4))]
         exponent: f64,
@@ -71,9 +71,9 @@ pub enum LightFile {
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Intensity, in W sr⁻¹, where the picture has the value 1.
-        #[serde(default = "one")]
+        #[serde(default = "white")]
         #[schemars(transform = intensity)]
-        intensity: f64,
+        intensity: ColorFile,
         /// The picture, over slopes along X and along Y.
         image: ImageFile,
     },
@@ -83,9 +83,9 @@ pub enum LightFile {
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Irradiance, in W m⁻², where the picture has the value 1.
-        #[serde(default = "one")]
-        #[schemars(transform = told("an irradiance, in W m⁻²", "1"))]
-        irradiance: f64,
+        #[serde(default = "white")]
+        #[schemars(transform = told("an irradiance, in W m⁻², or three for red, green and blue", "1"))]
+        irradiance: ColorFile,
         /// The picture, in metres along X and along Y.
         image: ImageFile,
     },
@@ -180,9 +180,9 @@ pub struct SphericalGaussianFile {
     #[schemars(transform = told("an angle in radians", "0.3"), transform = within(1e-4, 1e3))]
     pub width: f64,
     /// Radiance from the direction `from`, in W m⁻² sr⁻¹.
-    #[serde(default = "one")]
+    #[serde(default = "white")]
     #[schemars(transform = radiance)]
-    pub radiance: f64,
+    pub radiance: ColorFile,
 }
 
 /// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t +

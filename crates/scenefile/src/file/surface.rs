@@ -4,7 +4,7 @@ use super::allowed::{
     albedo, cycles, depends, direction, factor, factors_by_angle, length, modulation, name, phase,
     place, sides, told, within,
 };
-use super::{AxisName, count, half, one};
+use super::{AxisName, ColorFile, count, grey, one, white};
 use crate::limits::CELLS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -71,9 +71,9 @@ pub enum SurfaceFile {
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: Option<[f64; 3]>,
         /// Albedo: the ratio of reflected to incident flux.
-        #[serde(default = "half")]
+        #[serde(default = "grey")]
         #[schemars(transform = albedo)]
-        albedo: f64,
+        albedo: ColorFile,
     },
     /// A triangle mesh, Lambertian on both sides unless it is smooth.
     Mesh {
@@ -90,9 +90,9 @@ pub enum SurfaceFile {
         #[schemars(transform = factor)]
         scale: f64,
         /// Albedo (the ratio of reflected to incident flux), if the mesh is Lambertian.
-        #[serde(default = "half")]
+        #[serde(default = "grey")]
         #[schemars(transform = albedo)]
-        albedo: f64,
+        albedo: ColorFile,
         /// Interaction with light as a smooth surface, with normals interpolated between vertices.
         #[serde(default)]
         event: Option<EventFile>,
@@ -167,7 +167,7 @@ pub enum EventFile {
         #[schemars(transform = told("an index of refraction", "1"), transform = within(0.1, 10.0))]
         front: f64,
         /// Index of refraction on the other side.
-        #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.1, 10.0))]
+        #[schemars(transform = told("an index of refraction, or three for red, green and blue", "1.5"), transform = within(0.1, 10.0))]
         back: f64,
     },
     /// A flat thin lens with this focal length.
@@ -222,9 +222,9 @@ pub struct BrdfFile {
     /// Lobe of the BRDF.
     pub lobe: LobeFile,
     /// Factor that multiplies the lobe, 0 to 1.
-    #[serde(default = "one")]
+    #[serde(default = "white")]
     #[schemars(transform = albedo)]
-    pub albedo: f64,
+    pub albedo: ColorFile,
     /// Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
@@ -267,11 +267,11 @@ pub enum FresnelFile {
     /// Reflection at a conductor with index n + i k.
     Conductor {
         /// Index of refraction n.
-        #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.05, 20.0))]
-        n: f64,
+        #[schemars(transform = told("an index of refraction, or three for red, green and blue", "1.5"), transform = within(0.05, 20.0))]
+        n: ColorFile,
         /// Index of absorption k.
-        #[schemars(transform = told("an index of absorption", "3"), transform = within(0.0, 20.0))]
-        k: f64,
+        #[schemars(transform = told("an index of absorption, or three for red, green and blue", "3"), transform = within(0.0, 20.0))]
+        k: ColorFile,
     },
 }
 
