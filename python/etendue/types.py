@@ -150,7 +150,7 @@ class BlockersShapesFields(TypedDict):
 class Brdf(TypedDict):
     """A BRDF."""
 
-    albedo: NotRequired[float]
+    albedo: NotRequired[Union[float, Sequence[float]]]
     """Factor that multiplies the lobe, 0 to 1. 0 to 1"""
     fresnel: NotRequired["Fresnel"]
     """Fresnel factor"""
@@ -276,9 +276,9 @@ class FresnelConductor(TypedDict):
 
 
 class FresnelConductorFields(TypedDict):
-    k: float
+    k: Union[float, Sequence[float]]
     """Index of absorption k. 0 to 20"""
-    n: float
+    n: Union[float, Sequence[float]]
     """Index of refraction n. 0.05 to 20"""
 
 
@@ -359,7 +359,7 @@ class LightBeamFields(TypedDict):
     """Start of the central ray, in world coordinates"""
     image: "Image"
     """The picture, in metres along X and along Y"""
-    irradiance: NotRequired[float]
+    irradiance: NotRequired[Union[float, Sequence[float]]]
     """Irradiance, in W m⁻², where the picture has the value 1. 1e-9 to 1e9"""
 
 
@@ -372,7 +372,7 @@ class LightDisc(TypedDict):
 class LightDiscFields(TypedDict):
     center: Sequence[float]
     """Centre, in world coordinates"""
-    radiance: NotRequired[float]
+    radiance: NotRequired[Union[float, Sequence[float]]]
     """Radiance, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
     radius: float
     """Radius. 1e-9 to 1e9"""
@@ -397,7 +397,7 @@ class LightEnvironmentFields(TypedDict):
     """Direction, of any length, of the top of the map"""
 
 
-LightLobe = TypedDict("LightLobe", {"from": "Sequence[float]", "radiance": "NotRequired[float]", "width": "float"})
+LightLobe = TypedDict("LightLobe", {"from": "Sequence[float]", "radiance": "NotRequired[Union[float, Sequence[float]]]", "width": "float"})
 
 
 class LightPoint(TypedDict):
@@ -409,7 +409,7 @@ class LightPoint(TypedDict):
 class LightPointFields(TypedDict):
     center: Sequence[float]
     """Position, in world coordinates"""
-    intensity: NotRequired[float]
+    intensity: NotRequired[Union[float, Sequence[float]]]
     """Intensity, in W sr⁻¹. 1e-9 to 1e9"""
 
 
@@ -424,7 +424,7 @@ class LightProjectorFields(TypedDict):
     """Position, in world coordinates"""
     image: "Image"
     """The picture, over slopes along X and along Y"""
-    intensity: NotRequired[float]
+    intensity: NotRequired[Union[float, Sequence[float]]]
     """Intensity, in W sr⁻¹, where the picture has the value 1. 1e-9 to 1e9"""
 
 
@@ -456,7 +456,7 @@ class LightRectangle(TypedDict):
 class LightRectangleFields(TypedDict):
     center: Sequence[float]
     """Centre, in world coordinates"""
-    radiance: NotRequired[float]
+    radiance: NotRequired[Union[float, Sequence[float]]]
     """Radiance, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
     size: Sequence[float]
     """Side lengths along X and Y"""
@@ -475,7 +475,7 @@ class LightSpotFields(TypedDict):
     """Centre, in world coordinates"""
     exponent: float
     """The exponent n. 0 to 10000"""
-    radiance: NotRequired[float]
+    radiance: NotRequired[Union[float, Sequence[float]]]
     """Radiance along the central ray, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
 
 
@@ -658,6 +658,8 @@ class Run(TypedDict):
     """Probability that the verdict rejects a correct scene, for all planes together. 1e-6 to 0.5"""
     batches: NotRequired[int]
     """Number of independent batches, from which errors are estimated. 32 to 1024: errors are estimated from the spread between batches"""
+    color: NotRequired["Color"]
+    """The number of each colour that is measured. Runs that differ only in it trace the same photons if there is one light, and it is no environment"""
     emission: NotRequired["Emission"]
     """How photons leave the light"""
     photons: NotRequired[int]
@@ -747,7 +749,7 @@ class SurfaceMesh(TypedDict):
 
 
 class SurfaceMeshFields(TypedDict):
-    albedo: NotRequired[float]
+    albedo: NotRequired[Union[float, Sequence[float]]]
     """Albedo (the ratio of reflected to incident flux), if the mesh is Lambertian. 0 to 1"""
     center: Sequence[float]
     """Position of the mesh's origin, in world coordinates"""
@@ -768,7 +770,7 @@ class SurfaceRectangle(TypedDict):
 
 
 class SurfaceRectangleFields(TypedDict):
-    albedo: NotRequired[float]
+    albedo: NotRequired[Union[float, Sequence[float]]]
     """Albedo: the ratio of reflected to incident flux. 0 to 1"""
     center: Sequence[float]
     """Centre, in world coordinates"""
@@ -832,6 +834,9 @@ Blockers = Union["BlockersJitteredSquares", "BlockersBars", "BlockersPicture", "
 
 Bulb = Union["BulbSquare", "BulbDisc"]
 """The flat bulb of a spot. The bulb is orthogonal to the central ray."""
+
+Color = Union[Literal["Luminance"], Literal["Red"], Literal["Green"], Literal["Blue"]]
+"""The number of each colour that is measured. Colours are linear sRGB."""
 
 Emission = Union[Literal["Aimed"], Literal["Plain"]]
 """How photons leave the light."""

@@ -182,6 +182,7 @@ def variance(
     samplers: Sequence[Points] | None = None,
     counts: int | str | Sequence[int] | NDArray[np.integer[Any]] | None = None,
     unshifted: bool = False,
+    light_points: bool = False,
     shifts: int | None = None,
     frequencies: int | None = None,
     set: Mapping[str, Value] | None = None,
@@ -208,6 +209,8 @@ def variance(
         A number of points N, several numbers, or text: "4..4096" (the default) stands for 4, 16, 64, ... up to 4096. Arrays and files have their own N.
     unshifted
         Whether variances of sets without shifts are predicted and found too.
+    light_points
+        Whether u and v are the point on the light from which a ray comes, instead of its slopes.
     shifts
         Number of sets of points with which each variance is found, by default 200.
     frequencies
@@ -242,6 +245,7 @@ def variance(
         samplers=samplers,
         counts=counts.tolist() if isinstance(counts, np.ndarray) else counts,
         unshifted=unshifted,
+        light_points=light_points,
         shifts=shifts,
         frequencies=frequencies,
     )

@@ -51,6 +51,7 @@ fn options(
     let [first, last] = [SETS.start(), SETS.end()].map(|n| u64::from(*n));
     arguments.whole("shifts", &(first..=last), &mut options.shifts)?;
     arguments.flag("unshifted", &mut options.unshifted)?;
+    arguments.flag("light_points", &mut options.light_points)?;
     if let Some(value) = arguments.get("counts")? {
         options.counts = counts(&value)?;
     }

@@ -35,6 +35,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("iris"),
     scene!("disc_light"),
     scene!("two_lights"),
+    scene!("colors"),
     scene!("mesh_blocker"),
     scene!("furnace"),
     scene!("diffuse"),

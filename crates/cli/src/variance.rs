@@ -36,6 +36,7 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
         counts: args.counts.clone(),
         shifts: args.shifts,
         unshifted: args.unshifted,
+        light_points: args.light_points,
         arguments: ArgumentStyle::Command,
     };
     let study = VarianceStudy::of_scene(&scene, (args.plane.as_deref(), method), options)?;

@@ -3,7 +3,7 @@
 use crate::case::MeasuredScene;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
-use etendue_scene::{Color, Emission, SceneFile};
+use etendue_scene::{Emission, SceneFile};
 use etendue_store::Method;
 use etendue_store::VERSION;
 use etendue_store::machine;
@@ -62,15 +62,6 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// Returns words for the channel of colours that was measured, to be appended to the seed.
-    #[must_use]
-    pub fn color_words(&self) -> String {
-        match self.scene_file.run.color {
-            Color::Luminance => String::new(),
-            color => format!(", {}", color.name()),
-        }
-    }
-
     /// Returns the settings that determine the arrays of the result.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({

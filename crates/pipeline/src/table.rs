@@ -21,7 +21,7 @@ pub fn text(summary: &Summary) -> String {
             summary.scene,
             grouped(summary.photons),
             summary.seed,
-            summary.color_words(),
+            summary.scene_file.run.color.suffix(),
             ledger.unwrap_or_default(),
         ),
         String::new(),

@@ -8,7 +8,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
 use etendue_store::{ArgumentStyle, Failure, Method, VERSION};
 use etendue_variance::{
-    AXES, AxisSetPower, DEFAULT_FREQUENCIES, DEFAULT_SETS, MeasuredPower, PointCounts,
+    AXES, AxisSetPower, DEFAULT_FREQUENCIES, DEFAULT_SETS, LightPoints, MeasuredPower, PointCounts,
     PowerEstimate, Sampler, SamplerReport, VarianceError, WindowMoments, WindowStudy, axis_sets,
     dyadic_power, field_options, with_box_window,
 };
@@ -71,6 +71,8 @@ pub struct VarianceOptions {
     pub shifts: u32,
     /// Whether variances of sets without shifts are predicted and found too.
     pub unshifted: bool,
+    /// Whether points on the light are coordinates, in the places of the slopes u and v.
+    pub light_points: bool,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }
@@ -89,6 +91,7 @@ impl VarianceOptions {
             counts: PointCounts::default(),
             shifts: DEFAULT_SETS,
             unshifted: false,
+            light_points: false,
             arguments,
         }
     }
@@ -140,8 +143,16 @@ impl<'a> VarianceStudy<'a> {
         options.check()?;
         limits::check_one_light(scene, "a prediction of Monte Carlo errors")?;
         let plane = planes::chosen(scene, plane, options.arguments)?;
-        let scene = with_box_window(scene, plane, options.frequencies);
-        let light = WindowLight {
+        let mut scene = with_box_window(scene, plane, options.frequencies);
+        let points = if options.light_points {
+            Some(LightPoints::new(&scene, options.frequencies).map_err(failure)?)
+        } else {
+            None
+        };
+        if let Some(points) = &points {
+            scene.planes = vec![points.seen.clone()];
+        }
+        let mut light = WindowLight {
             plane: scene.planes[0].clone(),
             source: method::source(&scene, method)?,
             batches: scene.run.batches,
@@ -149,6 +160,11 @@ impl<'a> VarianceStudy<'a> {
             radiance: WindowRadiance::new(&scene).map_err(failure)?,
             seed: scene.run.seed,
         };
+        if let Some(points) = points {
+            light.source = points.photons(light.source);
+            light.radiance = points.radiance(light.radiance);
+            light.plane = points.plane;
+        }
         Ok(Self { light, options })
     }
 
@@ -296,6 +312,7 @@ impl PlaneVariance {
             "plane": self.plane,
             "window": { "profile": "Box", "half_widths": self.half_widths },
             "axes": AXES,
+            "light_points": options.light_points,
             "frequencies": options.frequencies,
             "shifts": options.shifts,
             "mean_by_photons": self.mean_by_photons,

@@ -52,6 +52,10 @@ fn head(found: &PlaneVariance, options: &VarianceOptions) -> Vec<String> {
             options.frequencies
         ),
     ];
+    if options.light_points {
+        let words = "u and v are the point (x, y) on the light from which a ray comes, in metres";
+        lines.insert(1, words.to_owned());
+    }
     if moments.noise.value > 0.0 {
         let noise = shown(moments.noise);
         lines.push(format!(

@@ -162,7 +162,7 @@ pub fn made_from(summary: &Summary) -> String {
         summary.scene,
         grouped(summary.photons),
         summary.seed,
-        summary.color_words()
+        summary.scene_file.run.color.suffix()
     )
 }
 

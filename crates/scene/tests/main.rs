@@ -1,6 +1,7 @@
 //! The tests of `etendue-scene`, as one program.
 
 mod book;
+mod colors;
 mod detailed;
 mod json;
 mod limits;

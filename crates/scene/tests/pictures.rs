@@ -166,9 +166,20 @@ fn maps_come_back_as_they_were_written() {
     let EnvironmentMap::LatLong(found) = &environment(&scene).map else {
         panic!("{:?}", scene.light);
     };
-    for (value, weight) in found.raster().values().iter().zip([0.2126, 0.7152, 0.0722]) {
+    for (value, weight) in found
+        .raster()
+        .values()
+        .iter()
+        .zip([0.212_671, 0.715_160, 0.072_169])
+    {
         assert!((value - 3.0 * weight).abs() < 1e-15); // rounding of a product
     }
+    let green = text("File(\"sky.exr\")").replace("photons: 1000", "photons: 1000, color: Green");
+    let scene = resolved(&green, folder.path()).unwrap();
+    let EnvironmentMap::LatLong(found) = &environment(&scene).map else {
+        panic!("{:?}", scene.light);
+    };
+    assert_eq!(found.raster().values(), [0.0, 3.0, 0.0]);
 }
 
 #[test]
@@ -192,7 +203,7 @@ fn png_levels_are_read_as_they_are() {
             png::ColorType::Rgb,
             png::BitDepth::Eight,
             &red,
-            0.8 * 0.2126,
+            0.8 * 0.212_671,
         ),
         (png::ColorType::Rgba, png::BitDepth::Eight, &clear, 0.8),
     ] {

@@ -237,8 +237,9 @@ pub struct RunFile {
     pub emission: Emission,
     /// The random numbers from which photons are drawn.
     pub sampling: Sampling,
-    /// The number of each colour that is measured. Runs that differ only in it trace the same
-    /// photons.
+    /// The number of each colour that is measured. Runs that differ only in it trace the same photons
+    /// if there is one light, and it is no environment.
+    #[serde(skip_serializing_if = "Color::is_luminance")]
     pub color: Color,
 }
 

@@ -47,14 +47,15 @@ impl SceneFile {
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
 
-    /// Returns the file as a tree of values with all fields, which includes an empty list that a
-    /// file does not write.
+    /// Returns the file as a tree of values with all fields, which includes fields that a file does
+    /// not write because they were added later.
     fn tree(&self) -> serde_json::Result<Value> {
         let mut tree = serde_json::to_value(self)?;
         if let Value::Object(fields) = &mut tree {
             let lights = fields.entry("other_lights");
             lights.or_insert_with(|| Value::Array(Vec::new()));
         }
+        tree["run"]["color"] = serde_json::to_value(self.run.color)?;
         Ok(tree)
     }
 

@@ -11,6 +11,11 @@ pub enum VarianceError {
         "{0} sees a point, a projector or a beam directly, so its radiance is infinite along single rays; allowed: light with an area, an environment, or a plane after a surface that scatters"
     )]
     NoRadiance(String),
+    /// Points on the light cannot be coordinates.
+    #[error(
+        "{0}: points on the light cannot be coordinates of its rays; allowed: a light with an area, and a plane across the first leg, beyond the light and not after a surface"
+    )]
+    NoLightPoints(String),
     /// Rays traced back do not find the light.
     #[error(transparent)]
     LightNotFound(#[from] LightNotFound),

@@ -15,6 +15,7 @@ mod dyadic_power;
 mod error;
 mod expected_power;
 mod found;
+mod light_points;
 mod measured_power;
 mod point_counts;
 mod points;
@@ -32,6 +33,7 @@ pub use dyadic_power::dyadic_power;
 pub use error::VarianceError;
 pub use expected_power::ExpectedPower;
 pub use found::{DEFAULT_SETS, SETS, SetFamily, variance_of};
+pub use light_points::LightPoints;
 pub use measured_power::{
     DEFAULT_FREQUENCIES, FREQUENCIES, MeasuredPower, box_window, field_options, with_box_window,
 };

@@ -80,6 +80,11 @@ impl<'a> WindowRadiance<'a> {
         Self { window, rays }
     }
 
+    /// Returns the radiance along rays.
+    pub(crate) fn into_rays(self) -> Box<dyn RayRadiance + 'a> {
+        self.rays
+    }
+
     /// Returns the radiance at a point of the window, in the unit of the plane's quantity. `index`
     /// selects the random numbers of scattering.
     #[must_use]

@@ -13,6 +13,8 @@ const OWN: u64 = 0x636f_6c6f_7273;
 const COLORED: [&str; 6] = ["radiance", "intensity", "irradiance", "albedo", "n", "k"];
 /// The smallest number that is divided into colours.
 const LEAST: f64 = 1e-6;
+/// The smallest index of refraction of a scene file.
+const LEAST_INDEX: f64 = 0.05;
 
 /// Gives colours to the scene with this index for this seed, and selects a channel. No channel
 /// exceeds the number that it replaces.
@@ -35,7 +37,9 @@ fn colored(node: &mut Value, draw: &mut SceneDraw) {
             for (name, value) in fields {
                 match value.as_f64() {
                     Some(number) if COLORED.contains(&name.as_str()) && number > LEAST => {
-                        let of = [(); 3].map(|()| rounded(number * draw.between(0.1, 1.0)));
+                        let least = if name == "n" { LEAST_INDEX } else { 0.0 };
+                        let of =
+                            [(); 3].map(|()| rounded(number * draw.between(0.1, 1.0)).max(least));
                         *value = of.to_vec().into();
                     }
                     _ => colored(value, draw),

@@ -48,8 +48,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
-    /// Run the scene once for each of red, green and blue, with the same photons; the results are
-    /// in folders of these names
+    /// Run the scene once for each of red, green and blue, with the same seed; the results are in
+    /// folders of these names
     #[arg(long, conflicts_with = "color")]
     pub(crate) rgb: bool,
 

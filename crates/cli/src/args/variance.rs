@@ -17,6 +17,7 @@ pub(super) const SAMPLERS: &str = "independent,jitter,lhs,sobol,padded";
   etendue variance scenes/variance/soft_shadow.ron
   etendue variance scenes/variance/spot_disc.ron --plane receiver --samplers sobol,padded
   etendue variance scene.ron --plane receiver --samplers sobol,points.npy --counts 16..1024
+  etendue variance scenes/variance/soft_shadow.ron --light-points     points of the light, not slopes
 
 Predicts the error of the mean radiance over the window of a plane, for a renderer that estimates it \
 with N rays, and shows the error really made beside it. The windows of the plane are replaced by Box \
@@ -65,6 +66,11 @@ pub(crate) struct VarianceArgs {
     /// two
     #[arg(long)]
     pub(crate) unshifted: bool,
+
+    /// Use the point on the light from which a ray comes instead of its slopes, as renderers that
+    /// sample lights do. The light must have an area, and the plane must lie across the first leg
+    #[arg(long)]
+    pub(crate) light_points: bool,
 
     /// Number of sets of points from which each error is measured
     #[arg(long, value_name = "R", default_value_t = DEFAULT_SETS, value_parser = clap::value_parser!(u32).range(i64::from(*SETS.start())..=i64::from(*SETS.end())))]

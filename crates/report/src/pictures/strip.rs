@@ -86,9 +86,10 @@ pub fn strip_of(
             scene.name
         ),
         note: &format!(
-            "{} photons, seed {}; spectra are {shown}.{dashed}",
+            "{} photons, seed {}{}; spectra are {shown}.{dashed}",
             grouped(photons),
             scene.run.seed,
+            scene.file.run.color.suffix(),
         ),
         section: &section,
         columns,

@@ -26,6 +26,11 @@ impl Color {
     /// All numbers of a colour.
     pub const ALL: [Self; 4] = [Self::Luminance, Self::Red, Self::Green, Self::Blue];
 
+    /// Checks for the luminance, which a scene file need not state.
+    pub(super) fn is_luminance(&self) -> bool {
+        *self == Self::Luminance
+    }
+
     /// Returns the name of the number.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -34,6 +39,15 @@ impl Color {
             Self::Red => "red",
             Self::Green => "green",
             Self::Blue => "blue",
+        }
+    }
+
+    /// Returns words that a line about a run ends with: the channel, or nothing for the luminance.
+    #[must_use]
+    pub fn suffix(self) -> String {
+        match self {
+            Self::Luminance => String::new(),
+            channel => format!(", {}", channel.name()),
         }
     }
 

@@ -2,30 +2,41 @@
 
 use super::scene;
 use crate::{
-    MeasuredPower, Sampler, SamplerReport, VarianceError, WindowRadiance, WindowStudy,
+    LightPoints, MeasuredPower, Sampler, SamplerReport, VarianceError, WindowRadiance, WindowStudy,
     dyadic_power, with_box_window,
 };
+use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_trace::Tracer;
+
+/// The largest measured frequency.
+const MAX: usize = 8;
 
 const FEWER: (&str, &str) = ("photons: 4_194_304", "photons: 524_288");
 
 /// Returns the reports of samplers at plane `index`, and the mean, σ² and noise of the radiance.
 fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, [f64; 6]) {
-    let max = 8;
-    let scene = with_box_window(scene, index, max);
-    let tracer = Tracer::new(&scene);
-    let (plane, photons) = (&scene.planes[0], (&tracer as _, scene.run.batches));
-    let power = MeasuredPower::measure(plane, photons, max, &|_| ()).unwrap();
-    let bands = dyadic_power(plane, photons, &|_| ()).unwrap();
+    let scene = with_box_window(scene, index, MAX);
     let radiance = WindowRadiance::new(&scene).unwrap();
+    let photons = (&Tracer::new(&scene) as _, scene.run.batches);
+    study_of(&scene.planes[0], photons, &radiance, counts)
+}
+
+fn study_of(
+    plane: &VirtualPlane,
+    photons: (&dyn PhotonSource, u32),
+    radiance: &WindowRadiance<'_>,
+    counts: &[usize],
+) -> (Vec<SamplerReport>, [f64; 6]) {
+    let power = MeasuredPower::measure(plane, photons, MAX, &|_| ()).unwrap();
+    let bands = dyadic_power(plane, photons, &|_| ()).unwrap();
     let moments = radiance.moments(3, &|_| ());
     let off = power.mean.value - moments.mean.value;
     assert!(off.abs() < 4.0 * power.mean.error.hypot(moments.mean.error));
     let study = WindowStudy {
         power: &power,
         bands: Some(&bands),
-        radiance: &radiance,
+        radiance,
         moments: &moments,
         sets: 400,
         seed: 7,
@@ -75,6 +86,42 @@ fn a_soft_shadow_has_its_closed_form_and_its_error() {
     assert!(off.abs() < 4.0 * variance_error, "{variance} {exact}");
     assert!(noise.abs() < f64::MIN_POSITIVE);
     check(&reports);
+}
+
+/// A ray from the point s of the light to the point x of the floor passes the edge at 0.4 s + 0.6 x.
+/// Without d² in the weights of photons, means by photons and by rays would differ.
+#[test]
+fn points_on_the_light_take_the_places_of_slopes() {
+    let mut scene = with_box_window(&scene("soft_shadow.ron", &[FEWER]), 0, MAX);
+    let points = LightPoints::new(&scene, MAX).unwrap();
+    scene.planes = vec![points.seen.clone()];
+    let photons = points.photons(Box::new(Tracer::new(&scene)));
+    let radiance = points.radiance(WindowRadiance::new(&scene).unwrap());
+    let (reports, [mean, mean_error, ..]) = study_of(
+        &points.plane,
+        (&*photons, scene.run.batches),
+        &radiance,
+        &[16, 256],
+    );
+    let steps = 1000;
+    let place = |i: i32| 0.25 * (2.0 * (f64::from(i) + 0.5) / f64::from(steps) - 1.0);
+    let pairs = (0..steps).flat_map(|i| (0..steps).map(move |j| (place(i), place(j))));
+    let lit = pairs.filter(|(x, s)| 0.4 * s + 0.6 * x < 0.05).count();
+    let exact = lit as f64 / f64::from(steps).powi(2);
+    assert!((mean - exact).abs() < 4.0 * mean_error, "{mean} {exact}");
+    check(&reports);
+}
+
+#[test]
+fn points_on_the_light_need_an_area_and_the_first_leg() {
+    let beyond = with_box_window(&scene("spot_disc.ron", &[FEWER]), 1, MAX);
+    let point = with_box_window(&scene("glossy.ron", &[]), 0, MAX);
+    for scene in [beyond, point] {
+        assert!(matches!(
+            LightPoints::new(&scene, MAX),
+            Err(VarianceError::NoLightPoints(_))
+        ));
+    }
 }
 
 /// Light that leaves a diffuse floor has noisy radiances, which add their noise to the variance.

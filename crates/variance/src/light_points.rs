@@ -1,0 +1,158 @@
+//! Points on the light instead of slopes as coordinates of rays.
+//!
+//! A renderer that samples lights chooses a point (x, y) of the window and a point (s, t) of the
+//! light. At the distance d from the light, the ray has the slopes u = (x − s)/d and v = (y − t)/d.
+//! Studies of variance hold s and t in the places of u and v.
+
+use crate::measured_power::box_window;
+use crate::radiance::RayRadiance;
+use crate::{VarianceError, WindowRadiance};
+use etendue_field::{
+    Crossing, Ledger, Orientation, PhotonSource, Profile, Quantity, Side, TwoPlane, VirtualPlane,
+};
+use etendue_scene::Scene;
+
+/// The rays from points of the light to points of a plane.
+#[derive(Clone, Debug)]
+pub struct LightPoints {
+    /// The plane as the scene describes it, whose window holds the slopes of all these rays.
+    pub seen: VirtualPlane,
+    /// The plane with points on the light in the places of slopes.
+    pub plane: VirtualPlane,
+}
+
+/// A source of photons whose slopes are replaced by points on the light.
+struct PhotonsFromPoints<'a> {
+    source: Box<dyn PhotonSource + 'a>,
+    points: LightPoints,
+}
+
+/// The radiance along rays that are given by points on the light.
+#[derive(Debug)]
+struct RadianceFromPoints<'a> {
+    rays: Box<dyn RayRadiance + 'a>,
+    points: LightPoints,
+}
+
+impl LightPoints {
+    /// Returns the rays to the only plane of a scene, which has a Box window. `max` is the largest
+    /// measured frequency.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the light has no area, or if the plane does not lie across the first leg, beyond the
+    /// light.
+    pub fn new(scene: &Scene, max: usize) -> Result<Self, VarianceError> {
+        let seen = &scene.planes[0];
+        let half = [0, 1].map(|axis| {
+            let [low, high] = scene.light.extent(axis);
+            low.abs().max(high.abs())
+        });
+        let has_area = half.iter().all(|half| *half > 0.0 && half.is_finite());
+        let is_across = seen.leg == 0
+            && seen.distance > 0.0
+            && seen.orientation == Orientation::Orthogonal
+            && (seen.side == Side::Before || scene.path.first_hit() > seen.distance);
+        if !has_area || !is_across {
+            return Err(VarianceError::NoLightPoints(seen.name.clone()));
+        }
+        let mut points = Self {
+            seen: seen.clone(),
+            plane: seen.clone(),
+        };
+        let of_light = half.map(Profile::Box);
+        (points.plane.window.u, points.plane.window.v) = of_light.into();
+        // Photons carry the factor of the quantity.
+        points.plane.quantity = Quantity::Radiance;
+        points.plane = box_window(&points.plane, max);
+        let slope =
+            |place: Profile, half: f64| Profile::Box((place.half_width() + half) / seen.distance);
+        points.seen.window.u = slope(seen.window.x, half[0]);
+        points.seen.window.v = slope(seen.window.y, half[1]);
+        Ok(points)
+    }
+
+    /// Returns photons that have points on the light in the places of slopes.
+    #[must_use]
+    pub fn photons<'a>(&self, source: Box<dyn PhotonSource + 'a>) -> Box<dyn PhotonSource + 'a> {
+        Box::new(PhotonsFromPoints {
+            source,
+            points: self.clone(),
+        })
+    }
+
+    /// Returns the radiance at points of the window, which has points on the light in the places of
+    /// slopes.
+    #[must_use]
+    pub fn radiance<'a>(&self, of_slopes: WindowRadiance<'a>) -> WindowRadiance<'a> {
+        let rays = Box::new(RadianceFromPoints {
+            rays: of_slopes.into_rays(),
+            points: self.clone(),
+        });
+        WindowRadiance::of(self.plane.window, rays)
+    }
+
+    /// Returns a photon with a point on the light. Its weight grows with ds dt = d² du dv, so the
+    /// radiance of the light stays the same.
+    fn crossing(&self, Crossing { ray, weight }: &Crossing) -> Crossing {
+        let d = self.seen.distance;
+        Crossing {
+            ray: TwoPlane {
+                u: ray.x - d * ray.u,
+                v: ray.y - d * ray.v,
+                ..*ray
+            },
+            weight: weight * self.seen.factor(ray) * d * d,
+        }
+    }
+
+    /// Returns the ray from a point on the light.
+    fn ray(&self, point: &TwoPlane) -> TwoPlane {
+        let d = self.seen.distance;
+        TwoPlane {
+            u: (point.x - point.u) / d,
+            v: (point.y - point.v) / d,
+            ..*point
+        }
+    }
+}
+
+impl PhotonSource for PhotonsFromPoints<'_> {
+    fn emitted(&self, batch: u32) -> u64 {
+        self.source.emitted(batch)
+    }
+
+    fn is_precise(&self) -> bool {
+        self.source.is_precise()
+    }
+
+    fn parts(&self, batch: u32) -> u32 {
+        self.source.parts(batch)
+    }
+
+    fn emit_part(
+        &self,
+        batch: u32,
+        part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut moved = Vec::new();
+        let record = &mut |plane: usize, crossings: &[Crossing]| {
+            moved.clear();
+            moved.extend(
+                crossings
+                    .iter()
+                    .map(|crossing| self.points.crossing(crossing)),
+            );
+            record(plane, &moved);
+        };
+        self.source.emit_part(batch, part, record, progress)
+    }
+}
+
+impl RayRadiance for RadianceFromPoints<'_> {
+    fn along(&self, point: &TwoPlane, index: u64) -> f64 {
+        self.rays.along(&self.points.ray(point), index)
+    }
+}
