@@ -57,6 +57,17 @@ def test_predictions_are_found(found):
         found["halton"]
 
 
+def test_points_on_the_light_are_coordinates():
+    # The shadow of a half-plane depends on x and on the point of the light along x.
+    found = etendue.variance(SOFT, samplers=["sobol"], counts=[256], light_points=True, photons=2**18, shifts=100)
+    along, across = [sum(found.power[axes][0] for axes in ((a,), (b,), (a, b))) for a, b in ("xu", "yv")]
+    assert along > 0.85 and abs(across) < 0.01 and found.report["light_points"]
+    curve = found["sobol"].shifted
+    assert abs(curve.ratio[0] - 1) < 4.5 * curve.ratio_error[0]
+    with pytest.raises(etendue.SceneError, match="points on the light cannot be coordinates"):
+        etendue.variance(SPOT, plane="leaving", light_points=True)
+
+
 def test_results_are_pickled_and_drawn(found):
     again = pickle.loads(pickle.dumps(found))
     assert again.report == found.report and str(again) == str(found)

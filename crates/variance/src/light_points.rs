@@ -94,7 +94,7 @@ impl LightPoints {
 
     /// Returns a photon with a point on the light. Its weight grows with ds dt = d² du dv, so the
     /// radiance of the light stays the same.
-    fn crossing(&self, Crossing { ray, weight }: &Crossing) -> Crossing {
+    pub(crate) fn crossing(&self, Crossing { ray, weight }: &Crossing) -> Crossing {
         let d = self.seen.distance;
         Crossing {
             ray: TwoPlane {
@@ -107,7 +107,7 @@ impl LightPoints {
     }
 
     /// Returns the ray from a point on the light.
-    fn ray(&self, point: &TwoPlane) -> TwoPlane {
+    pub(crate) fn ray(&self, point: &TwoPlane) -> TwoPlane {
         let d = self.seen.distance;
         TwoPlane {
             u: (point.x - point.u) / d,

@@ -5,7 +5,7 @@ use crate::{
     LightPoints, MeasuredPower, Sampler, SamplerReport, VarianceError, WindowRadiance, WindowStudy,
     dyadic_power, with_box_window,
 };
-use etendue_field::{PhotonSource, VirtualPlane};
+use etendue_field::{Crossing, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_trace::Tracer;
 
@@ -95,6 +95,18 @@ fn points_on_the_light_take_the_places_of_slopes() {
     let mut scene = with_box_window(&scene("soft_shadow.ron", &[FEWER]), 0, MAX);
     let points = LightPoints::new(&scene, MAX).unwrap();
     scene.planes = vec![points.seen.clone()];
+    // The slopes of a ray follow from its point on the light.
+    let ray = TwoPlane {
+        x: 0.1,
+        y: -0.2,
+        u: 0.05,
+        v: -0.15,
+    };
+    let moved = points.crossing(&Crossing { ray, weight: 1.0 }).ray;
+    assert_eq!([moved.u, moved.v], [0.1 - 2.0 * 0.05, -0.2 + 2.0 * 0.15]);
+    let back = points.ray(&moved);
+    let off = [back.u - ray.u, back.v - ray.v];
+    assert!(off.iter().all(|off| off.abs() < 1e-15), "{off:?}"); // rounding
     let photons = points.photons(Box::new(Tracer::new(&scene)));
     let radiance = points.radiance(WindowRadiance::new(&scene).unwrap());
     let (reports, [mean, mean_error, ..]) = study_of(
