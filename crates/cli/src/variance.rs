@@ -9,13 +9,20 @@ use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
 use etendue_pipeline::{load, method, variance_table};
 use etendue_report::pictures::PictureFiles;
 use etendue_report::variance;
-use etendue_store::{ArgumentStyle, Failure, Plan, Results, VARIANCE};
+use etendue_store::{ArgumentStyle, Failure, PROBE, Plan, Results, VARIANCE};
 
 /// The exit code if a prediction is undecided.
 const UNDECIDED: u8 = 4;
 
 /// Runs `etendue variance`; returns the exit code.
 pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
+    let path = &args.scene.path;
+    if path.join(PROBE).is_file() {
+        return Err(Failure::bad_input(format!(
+            "{}: a saved probe has no rays; allowed: a scene file, or, for errors behind a pixel, `etendue probe SCENE --pixel X,Y --variance=sobol`",
+            path.display()
+        )));
+    }
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let method = args.photons.method;
     method::check(&scene, method)?;

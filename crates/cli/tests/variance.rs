@@ -194,6 +194,24 @@ fn bad_arguments_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
         assert!(message.contains(part), "{arguments}: {message}");
     }
+    refused(
+        path,
+        &format!("variance {spot} --plane leaving --light-points --out out"),
+        &[
+            "leaving: points on the light cannot be coordinates",
+            "allowed: a light with an area",
+        ],
+    );
+    fs::create_dir(path.join("probed")).unwrap();
+    fs::write(path.join("probed/probe.json"), "{}").unwrap();
+    refused(
+        path,
+        "variance probed --out out",
+        &[
+            "probed: a saved probe has no rays",
+            "etendue probe SCENE --pixel X,Y --variance=sobol",
+        ],
+    );
     let light = "light=Point(center:(0,0,0))";
     let line = format!("variance {spot} {plane} --set {light}");
     refused(
