@@ -84,7 +84,8 @@ impl Case {
         let scene = resolve(name, file, ".".as_ref(), u64::MAX).expect("a sound scene");
         let mut planes = scene.planes.iter();
         let index = planes.position(|plane| plane.name == self.plane);
-        scene.seen_at(&[index.expect("a plane of the scene")])
+        let scene = scene.seen_at(&[index.expect("a plane of the scene")]);
+        scene.on_grids()
     }
 }
 

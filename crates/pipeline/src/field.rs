@@ -136,13 +136,13 @@ fn on_grid(
     options: &FieldOptions,
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
-    let scene = case.scene.seen_at(&[index]);
-    // The tracer aims photons at all planes of a scene. The photons on the grid must be the photons
-    // of the measurement, so the scene is traced with all of its planes.
+    let scene = case.scene.on_grids();
+    // The tracer aims photons at all planes of a scene. Unless they are from lattices, the photons on
+    // the grid are the photons of the measurement, so the scene is traced with all of its planes.
     let (source, at) = if method == case.method {
-        (source(&case.scene, method)?, index)
+        (source(&scene, method)?, index)
     } else {
-        (source(&scene, method)?, 0)
+        (source(&scene.seen_at(&[index]), method)?, 0)
     };
     let passes = if options.keep { 1 } else { 2 };
     let bar = reporter.begin(Work::Photons(passes * case.measurement.emitted()));

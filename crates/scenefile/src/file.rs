@@ -311,7 +311,8 @@ pub enum Emission {
 #[schemars(transform = told("Lattice, Net or Random", "Lattice"))]
 pub enum Sampling {
     /// Rank-1 lattices for the rays that leave the light, chosen for the frequencies of the planes.
-    /// Light that is not aimed, and lights without area, use nets.
+    /// Light that is not aimed, lights without area, and measurements on 4D grids (`--save field`,
+    /// `variance`, `covariance`) use nets.
     Lattice,
     /// Scrambled Sobol' nets, one for each batch. They reduce noise, and most for batches of 2ᵐ
     /// photons.

@@ -31,10 +31,11 @@ pub struct MeasuredPower {
     pub mean: Uncertain,
 }
 
-/// Returns a scene that sees one plane, [with a Box window](box_window).
+/// Returns a scene that sees one plane, [with a Box window](box_window), by photons that suit
+/// [grids](Scene::on_grids).
 #[must_use]
 pub fn with_box_window(scene: &Scene, index: usize, max: usize) -> Scene {
-    let mut scene = scene.seen_at(&[index]);
+    let mut scene = scene.seen_at(&[index]).on_grids();
     for plane in &mut scene.planes {
         *plane = box_window(plane, max);
     }

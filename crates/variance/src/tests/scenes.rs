@@ -1,6 +1,7 @@
 //! Compares predicted and found variances at the planes of scenes.
 
 use super::scene;
+use crate::power_estimate::jackknife_error;
 use crate::{
     LightPoints, MeasuredPower, Sampler, SamplerReport, VarianceError, WindowRadiance, WindowStudy,
     dyadic_power, with_box_window,
@@ -31,6 +32,9 @@ fn study_of(
     let power = MeasuredPower::measure(plane, photons, MAX, &|_| ()).unwrap();
     let bands = dyadic_power(plane, photons, &|_| ()).unwrap();
     let moments = radiance.moments(3, &|_| ());
+    let (_, without) = power.spectrum.estimates(|power| power.iter().sum::<f64>());
+    // With photons from lattices, the error would be 20 %.
+    assert!(jackknife_error(&without) < 0.05 * moments.variance.value);
     let off = power.mean.value - moments.mean.value;
     assert!(off.abs() < 4.0 * power.mean.error.hypot(moments.mean.error));
     let study = WindowStudy {
