@@ -10,29 +10,29 @@ use std::path::{Path, PathBuf};
 
 /// Runs `etendue report`; returns the exit code.
 pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
-    let pages: Vec<PathBuf> = args
-        .folders
-        .iter()
-        .map(|folder| folder.join(NAME))
-        .collect();
-    let summaries = args.folders.iter().map(|folder| folder.join(SUMMARY));
-    let inputs: Vec<PathBuf> = pages.iter().cloned().chain(summaries).collect();
-    let blocks = args.folders.iter().map(|folder| stored_data(folder));
+    write(&args.folders, &args.out, args.force.force)?;
+    say(&format!("report in {}", args.out.display()));
+    Ok(0)
+}
+
+/// Writes a page that shows several results side by side.
+pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), Failure> {
+    let pages = folders.iter().map(|folder| folder.join(NAME));
+    let summaries = folders.iter().map(|folder| folder.join(SUMMARY));
+    let inputs: Vec<PathBuf> = pages.chain(summaries).collect();
+    let blocks = folders.iter().map(|folder| stored_data(folder));
     let blocks: Vec<String> = blocks.collect::<Result<_, _>>()?;
     let folder = |path: &PathBuf| {
         path.file_name()
             .map(|name| name.to_string_lossy().into_owned())
     };
-    let names: Vec<String> = args.folders.iter().filter_map(folder).collect();
-    let (force, kind) = (args.force.force, SealKind::Markup);
-    let out = OutputFile::claim_sealed(&args.out, force, &inputs, kind)?;
-    let parent = args.out.parent().filter(|path| *path != Path::new(""));
+    let names: Vec<String> = folders.iter().filter_map(folder).collect();
+    let file = OutputFile::claim_sealed(out, force, &inputs, SealKind::Markup)?;
+    let parent = out.parent().filter(|path| *path != Path::new(""));
     let parent = parent.unwrap_or(Path::new("."));
-    let beside = args.folders.iter().map(|folder| address(folder, parent));
+    let beside = folders.iter().map(|folder| address(folder, parent));
     let blocks: Vec<_> = beside.zip(blocks).collect();
-    out.write(page(&names.join(", "), &blocks).as_bytes())?;
-    say(&format!("report in {}", args.out.display()));
-    Ok(0)
+    file.write(page(&names.join(", "), &blocks).as_bytes())
 }
 
 /// Returns the relative path from the folder `from` to the folder `folder`, with a trailing /.

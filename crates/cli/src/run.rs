@@ -4,6 +4,7 @@ use crate::args::RunArgs;
 use crate::conclude::{Ending, code_of, conclude};
 use crate::print::say;
 use crate::progress::Terminal;
+use crate::report;
 use crate::threads::on_threads;
 use crate::warnings;
 use etendue_compare::{Applicability, Verdict};
@@ -38,11 +39,13 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 fn channels(args: &RunArgs) -> Result<u8, Failure> {
     let name = args.scene.path.file_stem().unwrap_or_default();
     let folder = args.out.or_named(name);
+    let colors = [Color::Red, Color::Green, Color::Blue];
+    let folders = colors.map(|color| folder.join(color.name()));
     let mut worst = 0;
-    for color in [Color::Red, Color::Green, Color::Blue] {
+    for (color, folder) in colors.into_iter().zip(&folders) {
         let mut one = args.clone();
         one.scene.color = Some(color);
-        one.out.folder = Some(folder.join(color.name()));
+        one.out.folder = Some(folder.clone());
         let code = run_with(&one, None)?;
         // A disagreement is worse than an undecided plane.
         worst = if code == 1 || worst == 1 {
@@ -50,6 +53,11 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
         } else {
             worst.max(code)
         };
+    }
+    let page = folder.join("report.html");
+    report::write(&folders, &page, args.work.force.force)?;
+    if !args.work.quiet {
+        say(&format!("all channels in {}", page.display()));
     }
     Ok(worst)
 }

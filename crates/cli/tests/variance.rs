@@ -199,7 +199,7 @@ fn bad_arguments_are_refused() {
         &format!("variance {spot} --plane leaving --light-points --out out"),
         &[
             "leaving: points on the light cannot be coordinates",
-            "allowed: a light with an area",
+            "allowed: a plane on the first leg",
         ],
     );
     fs::create_dir(path.join("probed")).unwrap();

@@ -119,7 +119,7 @@ fn impossible_lights_are_refused() {
         ),
         (
             "Disc(center: (0, 0, 0.2), radius: 0.1)",
-            "allowed: beside the plane of near",
+            "allowed: another depth than that of near",
         ),
         (
             "Disc(center: (0, 0, 0), radius: -1)",

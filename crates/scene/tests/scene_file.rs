@@ -220,6 +220,55 @@ fn a_grid_larger_than_memory_says_how_large() {
     }
 }
 
+/// A value on the command line has the notation of a file, lists of variants included.
+#[test]
+fn lists_are_set_as_they_are_written() {
+    let fields = [
+        ("light", "Point(center: (0, 0, 0))"),
+        ("other_lights", "[]"),
+        ("blockers", "[]"),
+    ];
+    let written = |path: &str, value: &str| {
+        let of = |(name, default): &(&str, &str)| {
+            let value = if *name == path { value } else { default };
+            format!("{name}: {value},")
+        };
+        SceneFile::parse(&format!(
+            "({} path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: []), planes: [],
+            window: (x: Hann(1), u: Hann(1)), frequencies: (rho: (max: 4), nu: (max: 4)))",
+            fields.iter().map(of).collect::<String>()
+        ))
+        .unwrap()
+    };
+    let file = written("", "");
+    for (path, value) in [
+        (
+            "other_lights",
+            "[Disc(center: (0.5, 0, 0), radius: 0.1), Point(center: (0, 0, 0))]",
+        ),
+        (
+            "light",
+            "Environment(center: (0, 0, 0), map: Lobes([(from: (0, 1, -1), width: 0.3), (from: (0, 0, -1), width: 1)]))",
+        ),
+        (
+            "blockers",
+            r#"[Shapes(name: "a", center: (0, 0, 1), shapes: [HalfPlane(axis: X, edge: 0.5, opaque: Above), Disc(center: (0, 0), radius: 1)])]"#,
+        ),
+    ] {
+        let set = file.clone().with(path, value).unwrap();
+        assert_eq!(set, written(path, value), "{value}");
+        assert_ne!(set, file);
+    }
+    for bad in [
+        "[Disc(center: (0, 0, 0), radius: 0.1)",
+        "[[[[",
+        "[Disc(]",
+        "[,]",
+    ] {
+        assert!(file.clone().with("other_lights", bad).is_err(), "{bad}");
+    }
+}
+
 #[test]
 fn overrides_reach_every_kind_of_field() {
     let file = SceneFile::parse(FIG9B).unwrap();

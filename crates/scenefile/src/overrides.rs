@@ -145,6 +145,12 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
             value => value,
         });
     }
+    let list = text.strip_prefix('[').and_then(|t| t.strip_suffix(']'));
+    if let Some(list) = list {
+        let items = separated(list).into_iter();
+        let items = items.map(|item| parsed(item, deepest.checked_sub(1)?));
+        return items.collect::<Option<_>>().map(Value::Array);
+    }
     let Some((name, inside)) = text.strip_suffix(')').and_then(|t| t.split_once('(')) else {
         return Some(Value::String(text.to_owned()));
     };
@@ -158,7 +164,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
 /// Parses the content of parentheses: named fields, several values, or one value.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
-    let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();
+    let named: Option<Vec<_>> = parts.iter().map(|part| named(part)).collect();
     match (named, parts.as_slice()) {
         (Some(named), [_, ..]) => {
             let fields = named.into_iter();
@@ -174,11 +180,18 @@ fn fields(text: &str, deepest: usize) -> Option<Value> {
     }
 }
 
-/// Returns the elements of a list, separated at the commas that are outside of parentheses.
+/// Returns the name and the value of a named field.
+fn named(text: &str) -> Option<(&str, &str)> {
+    let (name, value) = text.split_once(':')?;
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    name.trim().chars().all(is_name).then_some((name, value))
+}
+
+/// Returns the elements of a list, separated at the commas that are outside of brackets.
 fn separated(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;
     text.split(|c: char| {
-        depth += i32::from(c == '(') - i32::from(c == ')');
+        depth += i32::from("([".contains(c)) - i32::from(")]".contains(c));
         c == ',' && depth == 0
     })
     .filter(|part| !part.trim().is_empty())

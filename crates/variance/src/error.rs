@@ -12,10 +12,13 @@ pub enum VarianceError {
     )]
     NoRadiance(String),
     /// Points on the light cannot be coordinates.
-    #[error(
-        "{0}: points on the light cannot be coordinates of its rays; allowed: a light with an area, and a plane across the first leg, beyond the light and not after a surface"
-    )]
-    NoLightPoints(String),
+    #[error("{plane}: points on the light cannot be coordinates, because {because}")]
+    NoLightPoints {
+        /// Name of the plane.
+        plane: String,
+        /// The reason.
+        because: &'static str,
+    },
     /// Rays traced back do not find the light.
     #[error(transparent)]
     LightNotFound(#[from] LightNotFound),

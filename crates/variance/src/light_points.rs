@@ -48,13 +48,19 @@ impl LightPoints {
             let [low, high] = scene.light.extent(axis);
             low.abs().max(high.abs())
         });
-        let has_area = half.iter().all(|half| *half > 0.0 && half.is_finite());
-        let is_across = seen.leg == 0
-            && seen.distance > 0.0
-            && seen.orientation == Orientation::Orthogonal
-            && (seen.side == Side::Before || scene.path.first_hit() > seen.distance);
-        if !has_area || !is_across {
-            return Err(VarianceError::NoLightPoints(seen.name.clone()));
+        let is_before = seen.side == Side::Before || scene.path.first_hit() > seen.distance;
+        let refused = |because| {
+            let plane = seen.name.clone();
+            Err(VarianceError::NoLightPoints { plane, because })
+        };
+        if !half.iter().all(|half| *half > 0.0 && half.is_finite()) {
+            return refused("the light has no area; allowed: a Rectangle, a Disc or a Spot");
+        }
+        if seen.leg > 0 || !is_before {
+            return refused("light there comes from a surface; allowed: a plane on the first leg");
+        }
+        if seen.distance <= 0.0 || seen.orientation != Orientation::Orthogonal {
+            return refused("the plane does not lie across the path, beyond the light");
         }
         let mut points = Self {
             seen: seen.clone(),

@@ -22,8 +22,7 @@ use std::time::Duration;
   etendue run scenes/colors.ron --rgb                              one result for each channel
 
 Results are in out/NAME unless --out names another folder. Photon counts may be written as 10_000_000, 1e7 \
-or 2^23.
-Noise is lowest if the number of photons and the number of batches (such as 64) are powers of two.")]
+or 2^23.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -48,8 +47,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
-    /// Run the scene once for each of red, green and blue, with the same seed; the results are in
-    /// folders of these names
+    /// Run the scene once for each of red, green and blue, with the same seed. The results are in
+    /// folders of these names, beside a page that shows all three
     #[arg(long, conflicts_with = "color")]
     pub(crate) rgb: bool,
 

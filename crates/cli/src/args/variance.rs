@@ -68,7 +68,8 @@ pub(crate) struct VarianceArgs {
     pub(crate) unshifted: bool,
 
     /// Use the point on the light from which a ray comes instead of its slopes, as renderers that
-    /// sample lights do. The light must have an area, and the plane must lie across the first leg
+    /// sample lights do. The window then covers the light, and for a disc the square around it. The
+    /// light must have an area, and the plane must lie across the first leg
     #[arg(long)]
     pub(crate) light_points: bool,
 

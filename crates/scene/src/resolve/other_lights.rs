@@ -81,7 +81,7 @@ impl Resolver<'_> {
         } else if scene.path.first_hit() <= depth {
             refuse("in front of the first surface of the path".to_owned());
         } else if let Some(layer) = layers.find(|layer| beside(layer.distance)) {
-            refuse(format!("beside the plane of {}", layer.name));
+            refuse(format!("another depth than that of {}", layer.name));
         } else if scene.planes.iter().all(|plane| plane.distance < depth) {
             refuse("in front of at least one plane".to_owned());
         }

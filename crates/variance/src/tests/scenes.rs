@@ -135,7 +135,7 @@ fn points_on_the_light_need_an_area_and_the_first_leg() {
     for scene in [beyond, point] {
         assert!(matches!(
             LightPoints::new(&scene, MAX),
-            Err(VarianceError::NoLightPoints(_))
+            Err(VarianceError::NoLightPoints { .. })
         ));
     }
 }
