@@ -3,9 +3,13 @@
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
 use super::pictures::{mask, sheet};
-use etendue_scene::{AxisName, BlockersFile, HalfName, HoleFile, LightFile, MeshSource, ShapeFile};
+use etendue_scene::{
+    AxisName, BlockersFile, HalfName, HoleFile, LightFile, MeshSource, SceneFile, ShapeFile,
+    resolve,
+};
 use glam::DVec3;
 use std::io;
+use std::path::Path;
 
 /// The smallest size permitted in a scene file, metres.
 const LEAST: f64 = 1e-9;
@@ -15,6 +19,11 @@ const MOST: f64 = 3e4;
 const STRIPS: f64 = 64.0;
 /// The largest number of rectangles in a random picture of 9 × 9 pixels.
 const PIXELS: f64 = 41.0;
+
+/// Number of kinds of layers, some of which are the same.
+const KINDS: usize = 16;
+/// The seed of added layers is the seed of the search with these bits flipped.
+const OWN: u64 = 0x6c61_7965_7273;
 
 /// A feature of scenes that a search selects.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -61,13 +70,47 @@ pub(super) fn blockers(
         };
         // No two layers may lie in the same plane.
         let share = share * (1.0 + 1e-4 * i as f64 - 2e-4);
-        let layer = layer(draw, format!("mask {i}"), share * first)?;
+        let layer = layer(draw, None, format!("mask {i}"), share * first)?;
         products *= terms(&layer);
         if products < MOST {
             layers.push(layer);
         }
     }
     Ok(layers)
+}
+
+/// Adds a layer with the selected feature to the scene with this index for this seed, unless there
+/// is such a layer.
+pub(super) fn add_layer(
+    file: &mut SceneFile,
+    feature: SoughtFeature,
+    of: (u64, u64),
+    folder: &Path,
+) -> io::Result<()> {
+    let kind = match feature {
+        SoughtFeature::Bars => 11,
+        SoughtFeature::Picture => 12,
+        SoughtFeature::Aperture => 13,
+        SoughtFeature::Lights | SoughtFeature::Colors => return Ok(()),
+    };
+    if file.blockers.iter().any(|layer| feature.is_of(layer)) {
+        return Ok(());
+    }
+    let Ok(scene) = resolve("wild", file.clone(), folder, u64::MAX) else {
+        return Ok(());
+    };
+    let mut draw = SceneDraw::apart(OWN, of, folder);
+    let distance = scene.path.first_hit() * draw.between(0.1, 0.9);
+    let layer = layer(&mut draw, Some(kind), "added".into(), distance)?;
+    let products: f64 = file.blockers.iter().chain([&layer]).map(terms).product();
+    if products >= MOST {
+        file.blockers.clear();
+    }
+    file.blockers.push(layer);
+    if resolve("wild", file.clone(), folder, u64::MAX).is_err() {
+        file.blockers.pop();
+    }
+    Ok(())
 }
 
 fn terms(layer: &BlockersFile) -> f64 {
@@ -92,14 +135,20 @@ fn terms(layer: &BlockersFile) -> f64 {
     }
 }
 
-fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<BlockersFile> {
+/// Draws a layer. The kind is one of [`KINDS`] numbers; if none is given, it is drawn too.
+fn layer(
+    draw: &mut SceneDraw,
+    kind: Option<usize>,
+    name: String,
+    distance: f64,
+) -> io::Result<BlockersFile> {
     let aside = if draw.one_in(3) {
         [(); 2].map(|()| draw.unit * draw.between(-0.2, 0.2))
     } else {
         [0.0; 2]
     };
     let center = draw.place(DVec3::new(aside[0], aside[1], distance));
-    Ok(match draw.below(16) {
+    Ok(match kind.unwrap_or_else(|| draw.below(KINDS)) {
         0..=2 => squares(draw, name, center),
         3 | 4 => BlockersFile::Shapes {
             name,

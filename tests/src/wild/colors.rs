@@ -18,12 +18,8 @@ const LEAST_INDEX: f64 = 0.05;
 
 /// Gives colours to the scene with this index for this seed, and selects a channel. No channel
 /// exceeds the number that it replaces.
-pub(super) fn add_colors(
-    file: &SceneFile,
-    (seed, index): (u64, u64),
-    folder: &Path,
-) -> io::Result<SceneFile> {
-    let mut draw = SceneDraw::new(seed ^ OWN, index, folder);
+pub(super) fn add_colors(file: &SceneFile, of: (u64, u64), folder: &Path) -> io::Result<SceneFile> {
+    let mut draw = SceneDraw::apart(OWN, of, folder);
     let mut tree = serde_json::to_value(file)?;
     colored(&mut tree, &mut draw);
     let mut file: SceneFile = serde_json::from_value(tree)?;

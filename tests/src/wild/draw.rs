@@ -28,6 +28,9 @@ const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
 /// The range of lengths permitted in a scene file, metres.
 const LENGTHS: [f64; 2] = [1e-9, 1e9];
 
+/// The number of the first picture of added features. Pictures of the scene have smaller numbers.
+const ADDED: usize = 1000;
+
 impl SceneDraw {
     pub(super) fn new(seed: u64, index: u64, folder: &Path) -> Self {
         let mut draw = Self {
@@ -47,6 +50,18 @@ impl SceneDraw {
             draw.frame = draw.some_frame();
         }
         draw
+    }
+
+    /// Returns other random choices for the scene with this index for this seed: for features that
+    /// are added to it. `own` is different for each feature.
+    pub(super) fn apart(own: u64, (seed, index): (u64, u64), folder: &Path) -> Self {
+        let of_scene = Self::new(seed, index, folder);
+        Self {
+            unit: of_scene.unit,
+            frame: of_scene.frame,
+            inputs: ADDED,
+            ..Self::new(seed ^ own, index, folder)
+        }
     }
 
     fn some_frame(&mut self) -> Frame {

@@ -10,19 +10,10 @@ use std::path::Path;
 /// The seed of further lights is the seed of the search with these bits flipped, so further lights
 /// have their own random numbers.
 const OWN: u64 = 0x6c69_6768_7473;
-/// The number of the first picture of further lights. Pictures of the scene have smaller numbers.
-const PICTURES: usize = 1000;
 
 /// Adds one to three further lights to the scene with this index for this seed.
-pub(super) fn add_lights(
-    file: &mut SceneFile,
-    (seed, index): (u64, u64),
-    folder: &Path,
-) -> io::Result<()> {
-    let of_scene = SceneDraw::new(seed, index, folder);
-    let mut draw = SceneDraw::new(seed ^ OWN, index, folder);
-    (draw.unit, draw.frame) = (of_scene.unit, of_scene.frame);
-    draw.inputs = PICTURES;
+pub(super) fn add_lights(file: &mut SceneFile, of: (u64, u64), folder: &Path) -> io::Result<()> {
+    let mut draw = SceneDraw::apart(OWN, of, folder);
     let Ok(scene) = resolve("wild", file.clone(), folder, u64::MAX) else {
         return Ok(());
     };

@@ -70,7 +70,7 @@ pub(crate) struct WildOptions {
     /// Folder for scenes with a fault.
     #[arg(long, default_value = "target/wild")]
     out: PathBuf,
-    /// Run only scenes with this feature, and pass over all others.
+    /// Add this feature to each scene without it, and pass over scenes to which it cannot be added.
     #[arg(long, value_name = "KIND")]
     with: Option<SoughtFeature>,
     /// Only draw the scenes and save all of them, without running any.
@@ -139,11 +139,12 @@ fn one(
     let Ok(mut file) = scene(options.seed, number, options.photons, &runner.folder) else {
         return Ok(None);
     };
-    if let Some(SoughtFeature::Lights) = options.with {
-        lights::add_lights(&mut file, (options.seed, number), &runner.folder)?;
-    }
-    if let Some(SoughtFeature::Colors) = options.with {
-        file = colors::add_colors(&file, (options.seed, number), &runner.folder)?;
+    let of = (options.seed, number);
+    match options.with {
+        Some(SoughtFeature::Lights) => lights::add_lights(&mut file, of, &runner.folder)?,
+        Some(SoughtFeature::Colors) => file = colors::add_colors(&file, of, &runner.folder)?,
+        Some(feature) => blockers::add_layer(&mut file, feature, of, &runner.folder)?,
+        None => {}
     }
     let has = |kind: SoughtFeature| match kind {
         SoughtFeature::Colors => true,
