@@ -18,7 +18,7 @@ pub use surface::{
     TermFile,
 };
 
-pub(crate) use allowed::positive;
+pub(crate) use allowed::{is_number, positive};
 
 use crate::whole_number::whole;
 use allowed::{depends, direction, profile_of_place, profile_of_slope, seed, since, told, within};

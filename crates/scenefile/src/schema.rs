@@ -1,7 +1,7 @@
 //! Derives the JSON schema of scene files from their types.
 
 use crate::SceneFile;
-use crate::file::positive;
+use crate::file::{is_number, positive};
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
@@ -46,13 +46,6 @@ fn name_of_type(node: &Value) -> Option<&str> {
     let types = [node, node.get("anyOf").map_or(node, |any| &any[0])];
     let mut references = types.iter().filter_map(|node| node.get("$ref")?.as_str());
     references.next()?.rsplit('/').next()
-}
-
-/// Checks whether the type of a node is a number; the type may be optional.
-pub(crate) fn is_number(node: &Value) -> bool {
-    let is = |name: &Value| name == "number" || name == "integer";
-    let names = node.get("type");
-    names.is_some_and(|name| is(name) || name.as_array().is_some_and(|names| names.iter().any(is)))
 }
 
 /// Returns a node of the schema, with its reference resolved.

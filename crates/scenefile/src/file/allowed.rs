@@ -4,7 +4,6 @@
 
 use crate::display::number;
 use crate::limits::MAX_NUMBER;
-use crate::schema::is_number;
 use schemars::Schema;
 use serde_json::Value;
 
@@ -46,6 +45,13 @@ pub(super) fn any(schema: &mut Schema) {
 /// every number has this range.
 pub(crate) fn positive(node: &mut Value) {
     bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
+}
+
+/// Checks whether the type of a node is a number; the type may be optional.
+pub(crate) fn is_number(node: &Value) -> bool {
+    let is = |name: &Value| name == "number" || name == "integer";
+    let names = node.get("type");
+    names.is_some_and(|name| is(name) || name.as_array().is_some_and(|names| names.iter().any(is)))
 }
 
 /// Describes a direction of any length.
