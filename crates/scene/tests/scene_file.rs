@@ -259,12 +259,7 @@ fn lists_are_set_as_they_are_written() {
         assert_eq!(set, written(path, value), "{value}");
         assert_ne!(set, file);
     }
-    for bad in [
-        "[Disc(center: (0, 0, 0), radius: 0.1)",
-        "[[[[",
-        "[Disc(]",
-        "[,]",
-    ] {
+    for bad in ["[Disc(center: (0, 0, 0), radius: 0.1)", "[[[[", "[Disc(]"] {
         assert!(file.clone().with("other_lights", bad).is_err(), "{bad}");
     }
 }
