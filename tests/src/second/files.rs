@@ -33,7 +33,7 @@ const FILE: &str = "blend.png";
 
 /// Returns the luminance of red, green and blue (Rec. ITU-R BT.709).
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }
 
 const MASK: &[&str] = &[
