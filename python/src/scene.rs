@@ -37,6 +37,7 @@ impl SceneArgument {
             path,
             text,
             set: set.to_owned(),
+            color: None,
             arguments: ArgumentStyle::Python,
         })
     }

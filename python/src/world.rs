@@ -13,8 +13,7 @@ use std::path::PathBuf;
 pub(crate) fn source(path: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<WorldSource> {
     let mut source = WorldSource::new(path, ArgumentStyle::Python);
     arguments.path("root", &mut source.options.root)?;
-    let colors = Color::ALL.map(|color| (color.name(), color));
-    arguments.one_of("color", &colors, &mut source.options.color)?;
+    arguments.one_of("color", &Color::ALL, &mut source.options.color)?;
     if let Some(set) = arguments.get("set")? {
         source.options.set = set.extract()?;
     }

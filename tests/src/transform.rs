@@ -88,7 +88,7 @@ pub(crate) fn transform(options: &TransformOptions) -> io::Result<ReportSection>
     bar.end();
     let [full, reduced] = largest;
     let checks = vec![
-        Check::new("full", full.single, Below(1e-6), "the documented error"),
+        Check::new("full", full.single, Below(2e-7), "the documented error"),
         Check::new(
             "reduced",
             reduced.single,

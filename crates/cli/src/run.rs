@@ -16,6 +16,7 @@ use etendue_pipeline::photons::Save;
 use etendue_pipeline::predicted;
 use etendue_pipeline::table::word;
 use etendue_pipeline::{field, limits, load, method, photons, target};
+use etendue_report::page::NAME;
 use etendue_report::{OutputOptions, plan};
 use etendue_scene::{Color, Scene};
 use etendue_store::Failure;
@@ -41,25 +42,21 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
     let folder = args.out.or_named(name);
     let colors = [Color::Red, Color::Green, Color::Blue];
     let folders = colors.map(|color| folder.join(color.name()));
-    let mut worst = 0;
+    let mut codes = Vec::new();
     for (color, folder) in colors.into_iter().zip(&folders) {
         let mut one = args.clone();
         one.scene.color = Some(color);
         one.out.folder = Some(folder.clone());
-        let code = run_with(&one, None)?;
-        // A disagreement is worse than an undecided plane.
-        worst = if code == 1 || worst == 1 {
-            1
-        } else {
-            worst.max(code)
-        };
+        codes.push(run_with(&one, None)?);
     }
-    let page = folder.join("report.html");
+    let page = folder.join(NAME);
     report::write(&folders, &page, args.work.force.force)?;
     if !args.work.quiet {
         say(&format!("all channels in {}", page.display()));
     }
-    Ok(worst)
+    // A disagreement is worse than an undecided plane.
+    let worst = codes.iter().max().copied().unwrap_or_default();
+    Ok(if codes.contains(&1) { 1 } else { worst })
 }
 
 /// Runs [`run()`], and shares the measurement with other processes.

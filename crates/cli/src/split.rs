@@ -41,8 +41,11 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
 /// Returns the scene and the measurement options as words of a command line.
 fn scene_words(args: &SplitArgs) -> String {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
-    for (path, value) in &args.scene.source().set {
+    for (path, value) in &args.scene.set {
         words.extend(["--set".to_owned(), format!("{path}={value}")]);
+    }
+    if let Some(color) = args.scene.color {
+        words.extend(["--color", color.name()].map(str::to_owned));
     }
     let numbers = [
         ("--photons", args.photons.photons),

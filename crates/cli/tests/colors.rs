@@ -6,7 +6,8 @@ use crate::common::{array, call, json, refused, scene};
 use ndarray::Array2;
 use std::fs;
 
-const FEW: &str = "--photons 2^16 --set run.resolution=0.5";
+/// Options of a run of a second, whose noise is below the resolution.
+const SHORT_RUN: &str = "--photons 2^16 --set run.resolution=0.5";
 
 #[test]
 fn channels_share_their_photons() {
@@ -16,7 +17,7 @@ fn channels_share_their_photons() {
     let colors = colors.display();
     let output = call(
         path,
-        &format!("run {colors} {FEW} --rgb --save photons --out out"),
+        &format!("run {colors} {SHORT_RUN} --rgb --save photons --out out"),
     );
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     // Albedos of red and blue squares in each channel, times the radiance of the light.
@@ -46,7 +47,7 @@ fn channels_share_their_photons() {
         assert_eq!(color.to_lowercase(), channel);
     }
     // A run of one channel is the same run.
-    let line = format!("run {colors} {FEW} --color green --save photons --out one");
+    let line = format!("run {colors} {SHORT_RUN} --color green --save photons --out one");
     assert_eq!(call(path, &line).status.code(), Some(0));
     let slices = |of: &str| -> ndarray::Array3<f64> {
         array(&path.join(of).join("leaving/slices.npz"), "sigma")
@@ -79,6 +80,11 @@ fn colours_of_the_wrong_form_are_refused() {
             "albedo: (0.8, 0.25, 0.1)",
             "albedo: (0.8, -0.25, 0.1)",
             &["line 16", "albedo[1] is -0.25; allowed: 0 to 1"],
+        ),
+        (
+            "albedo: (0.8, 0.25, 0.1)",
+            "albedo: (0.8, NaN, 0.1)",
+            &["line 16", "albedo[1] is NaN; allowed: 0 to 1"],
         ),
         (
             "seed: 1",

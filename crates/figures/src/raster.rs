@@ -15,6 +15,8 @@ pub(crate) fn encoded(
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
+    // The default level takes 20 ms more for the pictures of five planes, and its files are 4 %
+    // smaller.
     encoder.set_deflate_compression(png::DeflateCompression::Level(3));
     encoder.set_pixel_dims(per_inch.map(|per_inch| {
         let per_metre = u32::try_from(whole(per_inch / METRES)).unwrap_or(u32::MAX);

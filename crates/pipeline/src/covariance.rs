@@ -54,7 +54,7 @@ impl<'a> CovarianceStudy<'a> {
         } = self;
         let measurement = measured(scene, *method, 0..scene.run.batches, reporter)?;
         let predictions = predicted(scene, theories, *method, None, reporter)?;
-        let source = method::source(&scene.on_grids(), *method)?;
+        let source = method::source(&(*scene).clone().on_grids(), *method)?;
         let planes = predictions.iter().enumerate();
         let reports = planes.map(|(index, prediction)| {
             of_plane(

@@ -136,9 +136,9 @@ fn on_grid(
     options: &FieldOptions,
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
-    let scene = case.scene.on_grids();
-    // The tracer aims photons at all planes of a scene. Unless they are from lattices, the photons on
-    // the grid are the photons of the measurement, so the scene is traced with all of its planes.
+    let scene = case.scene.clone().on_grids();
+    // The tracer aims photons at all planes of a scene. Unless they are from lattices, the photons
+    // on the grid are the photons of the measurement, so the scene is traced with all its planes.
     let (source, at) = if method == case.method {
         (source(&scene, method)?, index)
     } else {

@@ -1,7 +1,7 @@
 //! Reads and resolves scene files, and creates folders for the results of a stage.
 
 use etendue_scene::{
-    RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
+    Color, RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
 };
 use etendue_store::machine;
 use etendue_store::stored::copy_of;
@@ -20,6 +20,8 @@ pub struct SceneSource {
     pub text: Option<String>,
     /// Fields of the scene, with the values to which [`SceneFile::with`] sets them.
     pub set: Vec<(String, String)>,
+    /// The number of each colour, if it is not the number that the scene selects.
+    pub color: Option<Color>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }
@@ -32,6 +34,7 @@ impl SceneSource {
             path: path.to_owned(),
             text: None,
             set: set.to_owned(),
+            color: None,
             arguments: ArgumentStyle::Command,
         }
     }
@@ -79,6 +82,7 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
         SceneFile::parse(&text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
     let unset = |e| Failure::bad_input(format!("{shown}: {}", arguments.in_set(e)));
     file = file.with_all(&source.set).map_err(unset)?;
+    file.run.color = source.color.unwrap_or(file.run.color);
     let photons = file.run.photons;
     options(&mut file.run);
     let set = source.set.iter();

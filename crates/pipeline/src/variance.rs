@@ -144,11 +144,9 @@ impl<'a> VarianceStudy<'a> {
         limits::check_one_light(scene, "a prediction of Monte Carlo errors")?;
         let plane = planes::chosen(scene, plane, options.arguments)?;
         let mut scene = with_box_window(scene, plane, options.frequencies);
-        let points = if options.light_points {
-            Some(LightPoints::new(&scene, options.frequencies).map_err(failure)?)
-        } else {
-            None
-        };
+        let points = options.light_points;
+        let points = points.then(|| LightPoints::new(&scene, options.frequencies));
+        let points = points.transpose().map_err(failure)?;
         if let Some(points) = &points {
             scene.planes = vec![points.seen.clone()];
         }

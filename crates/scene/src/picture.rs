@@ -53,8 +53,8 @@ impl Channels {
 /// format.
 ///
 /// An OpenEXR file gives the number `color` of the first layer with channels R, G and B, or the
-/// layer's channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits, with
-/// levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
+/// layer's channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits,
+/// with levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
 pub(crate) fn parse(
     file: &Path,
     bytes: &[u8],

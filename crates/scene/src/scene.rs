@@ -290,15 +290,13 @@ impl Scene {
     /// chosen for the slices of planes: at other frequencies, they may have more noise than random
     /// numbers, up to 40 dB.
     #[must_use]
-    pub fn on_grids(&self) -> Self {
-        let mut scene = self.clone();
-        let others = &mut scene.other_lights;
-        for run in std::iter::once(&mut scene.run).chain(others.iter_mut().map(|s| &mut s.run)) {
-            if run.sampling == Sampling::Lattice {
-                run.sampling = Sampling::Net;
-            }
+    pub fn on_grids(mut self) -> Self {
+        if self.run.sampling == Sampling::Lattice {
+            self.run.sampling = Sampling::Net;
         }
-        scene
+        let others = self.other_lights.into_iter().map(Self::on_grids);
+        self.other_lights = others.collect();
+        self
     }
 
     /// Returns the index of the plane with a name.

@@ -23,7 +23,7 @@ pub(super) fn add_colors(file: &SceneFile, of: (u64, u64), folder: &Path) -> io:
     let mut tree = serde_json::to_value(file)?;
     colored(&mut tree, &mut draw);
     let mut file: SceneFile = serde_json::from_value(tree)?;
-    file.run.color = *draw.pick(&Color::ALL);
+    file.run.color = draw.pick(&Color::ALL).1;
     Ok(file)
 }
 

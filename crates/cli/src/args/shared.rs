@@ -113,7 +113,7 @@ impl FolderArgs {
 }
 
 /// The folder for the results of a stage of `run`.
-#[derive(Clone, Debug, Args)]
+#[derive(Debug, Args)]
 pub(crate) struct StageFolderArgs {
     /// Folder for the results
     #[arg(long = "out", value_name = "DIR")]
@@ -132,24 +132,18 @@ pub(crate) struct SceneArgs {
 
     /// Which number of each colour to measure: its luminance, or one channel [default: as in the
     /// scene, where it is `run.color`]
-    #[arg(long, value_name = "CHANNEL", value_parser = colors())]
+    #[arg(long, value_name = "CHANNEL", value_parser = one_named(Color::ALL))]
     pub(crate) color: Option<Color>,
 }
 
 impl SceneArgs {
     /// Returns the scene file and its overrides, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
-        let mut source = SceneSource::file(&self.path, &self.set);
-        let color = self.color.map(|color| format!("{color:?}"));
-        let color = color.map(|color| ("run.color".to_owned(), color));
-        source.set.extend(color);
-        source
+        SceneSource {
+            color: self.color,
+            ..SceneSource::file(&self.path, &self.set)
+        }
     }
-}
-
-/// Parses the name of a number of each colour.
-pub(super) fn colors() -> impl TypedValueParser<Value = Color> {
-    one_named(Color::ALL.map(|color| (color.name(), color)))
 }
 
 pub(super) fn assignment(text: &str) -> Result<(String, String), String> {

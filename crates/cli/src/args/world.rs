@@ -1,6 +1,6 @@
 //! Arguments of commands that read scenes of other programs.
 
-use super::shared::{FolderArgs, WorkArgs, assignment, colors, one_named, whole_number};
+use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number};
 use super::variance::{SAMPLERS, SamplerArg, sampler, samplers};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
@@ -35,7 +35,7 @@ pub(crate) struct WorldArgs {
     pub(crate) root: Option<PathBuf>,
 
     /// Which value of each colour to use: its luminance, or one channel
-    #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = colors())]
+    #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
     pub(crate) color: Color,
 
     /// Set a parameter of the file, such as Mitsuba's $res; may be repeated

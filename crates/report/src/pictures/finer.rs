@@ -115,8 +115,8 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 
 /// The covariance between frequencies of a slice, for white noise that is multiplied by a window.
 struct WindowCovariance {
-    /// For both profiles of the window, points along half of the slice; the other half is its mirror
-    /// image. The weight of a point is the square of the profile.
+    /// For both profiles of the window, points along half of the slice; the other half is its
+    /// mirror image. The weight of a point is the square of the profile.
     profiles: [Vec<(f64, f64)>; 2],
 }
 

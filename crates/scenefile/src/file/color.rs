@@ -23,8 +23,13 @@ pub enum Color {
 }
 
 impl Color {
-    /// All numbers of a colour.
-    pub const ALL: [Self; 4] = [Self::Luminance, Self::Red, Self::Green, Self::Blue];
+    /// All numbers of a colour by name, in the order of their definition.
+    pub const ALL: [(&str, Self); 4] = [
+        ("luminance", Self::Luminance),
+        ("red", Self::Red),
+        ("green", Self::Green),
+        ("blue", Self::Blue),
+    ];
 
     /// Checks for the luminance, which a scene file need not state.
     pub(super) fn is_luminance(&self) -> bool {
@@ -34,12 +39,7 @@ impl Color {
     /// Returns the name of the number.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Luminance => "luminance",
-            Self::Red => "red",
-            Self::Green => "green",
-            Self::Blue => "blue",
-        }
+        Self::ALL[self as usize].0
     }
 
     /// Returns words that a line about a run ends with: the channel, or nothing for the luminance.
@@ -181,9 +181,10 @@ mod tests {
         let written = serde_json::to_string(&[rgb, ColorFile::Grey(0.5)]).unwrap();
         assert_eq!(written, "[[0.5,1.0,2.0],0.5]");
         let luminance = 0.212_671 * 0.5 + 0.715_160 + 2.0 * 0.072_169;
-        for (color, wanted) in Color::ALL.into_iter().zip([luminance, 0.5, 1.0, 2.0]) {
+        for ((name, color), wanted) in Color::ALL.into_iter().zip([luminance, 0.5, 1.0, 2.0]) {
             let off = rgb.number(color) - wanted;
             assert!(off.abs() < 1e-15, "{color:?} {off}"); // rounding
+            assert_eq!(color.name(), name);
         }
     }
 }

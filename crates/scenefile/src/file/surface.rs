@@ -167,7 +167,7 @@ pub enum EventFile {
         #[schemars(transform = told("an index of refraction", "1"), transform = within(0.1, 10.0))]
         front: f64,
         /// Index of refraction on the other side.
-        #[schemars(transform = told("an index of refraction, or three for red, green and blue", "1.5"), transform = within(0.1, 10.0))]
+        #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.1, 10.0))]
         back: f64,
     },
     /// A flat thin lens with this focal length.
