@@ -340,7 +340,7 @@ class HoleRectangleFields(TypedDict):
 
 
 class Image(TypedDict):
-    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t + p))."""
+    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t + p)). It is 0 beyond 3.6 widths, where the exponential is 2·10⁻¹⁸."""
 
     grating: NotRequired[Union["Grating", None]]
     """Grating of the picture"""

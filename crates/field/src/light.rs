@@ -4,10 +4,6 @@ use crate::{Environment, Image, RayLight, Shape};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// The distance from the centre, in widths, at which a Gaussian picture is cut off for photons.
-/// Beyond this distance the picture is below 10⁻¹² of its peak.
-const PICTURE: f64 = 3.0;
-
 /// A light in a plane that is perpendicular to the central ray; the light shines along the ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Light {
@@ -103,7 +99,7 @@ impl Light {
         let half = match self {
             Self::Area { shape, .. } => return shape.bounds().extent(axis),
             Self::Point { .. } | Self::Projector { .. } => 0.0,
-            Self::Beam { image, .. } => PICTURE * image.width[axis],
+            Self::Beam { image, .. } => image.reach()[axis],
             Self::Environment { .. } => f64::INFINITY,
             Self::Rays { rays } => return rays.extent(axis),
         };
@@ -115,7 +111,7 @@ impl Light {
     #[must_use]
     pub fn steepest(&self, axis: usize) -> f64 {
         match self {
-            Self::Projector { image, .. } => PICTURE * image.width[axis],
+            Self::Projector { image, .. } => image.reach()[axis],
             Self::Beam { .. } => 0.0,
             Self::Rays { rays } => rays.steepest(axis),
             Self::Area { .. } | Self::Point { .. } | Self::Environment { .. } => f64::INFINITY,

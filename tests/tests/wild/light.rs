@@ -134,6 +134,16 @@ fn a_box_before_a_projector_is_decided() {
     );
 }
 
+/// Only the tail of a projector's picture passes an edge: theory and backward rays find it.
+#[test]
+fn the_tail_of_a_projector_is_decided() {
+    let scene = scene("tail_of_a_projector");
+    let rays = backward(&scene);
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    assert!(prediction.slices.at_zero() > 0.0, "theory finds the tail");
+    assert_eq!(verdict(&scene, &rays, &prediction), Verdict::Pass);
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

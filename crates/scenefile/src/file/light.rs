@@ -186,7 +186,7 @@ pub struct SphericalGaussianFile {
 }
 
 /// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t +
-/// p)).
+/// p)). It is 0 beyond 3.6 widths, where the exponential is 2·10⁻¹⁸.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Image", deny_unknown_fields)]
 #[schemars(transform = told("a picture", "(width: (0.2, 0.2))"))]

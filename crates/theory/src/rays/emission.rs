@@ -18,9 +18,6 @@ pub(super) struct EmissionMeasure {
     pub(super) cycles: [f64; 2],
 }
 
-/// Half-width outside which a Gaussian picture is treated as dark, in units of the picture's width.
-/// At this half-width, the picture is exp(−π 3.6²) = 2·10⁻¹⁸.
-const GAUSSIAN: f64 = 3.6;
 /// The largest slope for which rays are sought, if the light has no picture.
 const STEEPEST: f64 = 30.0;
 
@@ -56,7 +53,7 @@ impl SpecularSystem {
         }
         EmissionMeasure {
             inner,
-            reach: image.map_or([STEEPEST; 2], |image| image.width.map(|w| GAUSSIAN * w)),
+            reach: image.map_or([STEEPEST; 2], etendue_field::Image::reach),
             cycles,
         }
     }
@@ -68,7 +65,7 @@ impl SpecularSystem {
         let along = |axis: usize| {
             let width = image.width[axis];
             let grating = image.grating.filter(|g| g.axis == axis);
-            let reach = GAUSSIAN * width;
+            let reach = image.reach()[axis];
             LinearDensity::new([-reach, reach], |t| {
                 let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
                 let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
