@@ -32,7 +32,6 @@ mod variation;
 
 pub use batch::{Batch, PartialBatch, PlaneBatch};
 pub use covariance::{CovarianceEstimate, covariance};
-pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;
 pub use measure::{Watch, measure, measure_watched};
 pub use measurement::{Measurement, MergeError};

@@ -41,20 +41,19 @@ impl MomentSums {
     /// multiple of [`LANES`], must be zero.
     #[inline(always)]
     pub(crate) fn deposit<const N: usize>(&mut self, columns: &[[f64; N]; 5], count: usize) {
-        let columns = columns
+        let [x, y, u, v, weight] = columns
             .each_ref()
             .map(|column| column.as_chunks::<LANES>().0);
         const { assert!(N.is_multiple_of(LANES)) };
         let mut sums = self.0;
         for i in 0..count.div_ceil(LANES) {
-            let [x, y, u, v, weight] = columns.map(|column| column[i]);
-            let z = [x, y, u, v];
-            add(&mut sums[0], &weight, &[1.0; LANES]);
+            let (z, weight) = ([&x[i], &y[i], &u[i], &v[i]], &weight[i]);
+            add(&mut sums[0], weight, &[1.0; LANES]);
             let mut next = 5;
             for i in 0..4 {
-                add(&mut sums[1 + i], &weight, &z[i]);
+                add(&mut sums[1 + i], weight, z[i]);
                 let mut first = [0.0; LANES];
-                add(&mut first, &weight, &z[i]);
+                add(&mut first, weight, z[i]);
                 for other in &z[i..] {
                     add(&mut sums[next], &first, other);
                     next += 1;

@@ -55,13 +55,11 @@ impl<'plan> Recorder<'plan> {
             dispatch!(self.level, _simd => {
                 weigh(self.plane, columns, *count);
                 self.moments.deposit(columns, *count);
+                let [x, _, u, _, weights] = &*columns;
+                self.projection.deposit([x, u, weights], *count);
             });
             let columns = columns.each_ref().map(|column| &column[..*count]);
             self.slices.deposit_columns(columns);
-            let [x, _, u, _, weight] = columns;
-            for ((x, u), weight) in x.iter().zip(u).zip(weight) {
-                self.projection.deposit([*x, *u], *weight);
-            }
         }
     }
 
@@ -106,17 +104,17 @@ fn weigh(plane: &VirtualPlane, columns: &mut [[f64; GROUP]; 5], count: usize) {
         column[count..full].fill(0.0);
     }
     let [x, y, u, v, weights] = columns;
-    let columns = [x, y, u, v].map(|column| column.as_chunks::<LANES>().0);
+    let [x, y, u, v] = [&*x, y, u, v].map(|column| column.as_chunks::<LANES>().0);
     let weights = weights.as_chunks_mut::<LANES>().0;
     for (i, weights) in weights.iter_mut().enumerate().take(full / LANES) {
-        let rays = columns.map(|column| column[i]);
+        let rays = [x[i], y[i], u[i], v[i]];
         let window = plane.window.values(&rays);
         for (weight, window) in weights.iter_mut().zip(window) {
             *weight *= window;
         }
         if plane.quantity != Quantity::Radiance {
             for (j, weight) in weights.iter_mut().enumerate() {
-                let [x, y, u, v] = rays.map(|column| column[j]);
+                let [x, y, u, v] = rays.each_ref().map(|column| column[j]);
                 *weight *= plane.factor(&TwoPlane { x, y, u, v });
             }
         }
