@@ -14,6 +14,7 @@ use crate::proposal::Proposal;
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 use etendue_transform::random::{self, Stream};
+use fearless_simd::{Level, dispatch};
 use std::ops::Range;
 
 /// One lattice for each proposal of an emission that is aimed at a window. Proposals that are aimed at
@@ -99,21 +100,25 @@ impl PlaneFrequencies {
         }
     }
 
-    /// Returns how near a frequency (ρ, ν) along x and y, of light at the light, is to a frequency
-    /// of the slices: between 0 and the number of azimuths.
-    fn nearness(&self, [along_x, along_y]: [[f64; 2]; 2]) -> f64 {
-        let at = |[rho, nu]: [f64; 2]| [rho, nu - rho * self.distance];
-        let ([rho_x, nu_x], [rho_y, nu_y]) = (at(along_x), at(along_y));
+    /// Returns how near each of several frequencies (ρ, ν) along x and y, of light at the light, is to
+    /// a frequency of the slices: between 0 and the number of azimuths.
+    #[inline(always)]
+    fn nearness(&self, [along_x, along_y]: &[[Lanes; 2]; 2]) -> Lanes {
+        let at = |[rho, nu]: &[Lanes; 2]| lanes(|i| nu[i] - rho[i] * self.distance);
+        let (rho, nu) = ([along_x[0], along_y[0]], [at(along_x), at(along_y)]);
         let squared = |axis: usize, along: f64, across: f64| {
             let beyond = (along.abs() - self.largest[axis]).max(0.0);
             (across * across + beyond * beyond) / (self.widths[axis] * self.widths[axis])
         };
-        let near = |&(sin, cos): &(f64, f64)| {
-            let rho = squared(0, rho_x * cos + rho_y * sin, rho_y * cos - rho_x * sin);
-            let nu = squared(1, nu_x * cos + nu_y * sin, nu_y * cos - nu_x * sin);
-            1.0 / ((1.0 + rho) * (1.0 + nu))
-        };
-        self.azimuths.iter().map(near).sum()
+        let mut sum = [0.0; ABREAST];
+        for &(sin, cos) in &self.azimuths {
+            let turned = |axis: usize, [x, y]: &[Lanes; 2], i: usize| {
+                squared(axis, x[i] * cos + y[i] * sin, y[i] * cos - x[i] * sin)
+            };
+            sum =
+                lanes(|i| sum[i] + 1.0 / ((1.0 + turned(0, &rho, i)) * (1.0 + turned(1, &nu, i))));
+        }
+        sum
     }
 }
 
@@ -141,15 +146,19 @@ impl Lattices {
             .min(scene.run.photons / PHOTONS_PER_TRIAL)
             .clamp(TRIALS[0], TRIALS[1]);
         let replicas = replicas(scene);
+        let (all, level) = (coefficients(), Level::new());
         let best = |frequencies: &Frequencies| {
             let generators = (0..trials).filter_map(|i| generator(i, points));
-            let by_light = |g| (badness(frequencies, &targets, &[DIRECT], points, g), g);
-            let mut tried: Vec<_> = generators.map(by_light).collect();
+            let rated = |replicas: &[Replica], g| {
+                let over = (&targets[..], replicas);
+                let rated =
+                    dispatch!(level, _simd => badness(&all, frequencies, over, (points, g)));
+                (rated, g)
+            };
+            let mut tried: Vec<_> = generators.map(|g| rated(&[DIRECT], g)).collect();
             tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let best = tried
-                .iter()
-                .take(SHORTLIST)
-                .map(|(_, g)| (badness(frequencies, &targets, &replicas, points, *g), *g));
+            let shortlist = tried.iter().take(SHORTLIST);
+            let best = shortlist.map(|(_, g)| rated(&replicas, *g));
             let (_, best) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
             // Multiplied by the second number, the lattice has the same points in another order, in
             // which photons of a group do not fall on the same cells.
@@ -308,37 +317,46 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
 /// The matrices of [`Proposal::frequencies`] along x and y.
 type Frequencies = [[[f64; 2]; 2]; 2];
 
+/// One value for each of several vectors of a dual lattice.
+type Lanes = [f64; ABREAST];
+
+/// Returns the coefficients of all sums of basis vectors, except that opposite sums are the same.
+fn coefficients() -> Vec<[f64; 4]> {
+    let each = || -COEFFICIENT..=COEFFICIENT;
+    let pairs = || each().flat_map(move |a| each().map(move |b| [a, b]));
+    let all = pairs().flat_map(|[a, b]| pairs().map(move |[c, d]| [a, b, c, d]));
+    all.filter(|all| *all > [0; 4])
+        .map(|all| all.map(f64::from))
+        .collect()
+}
+
 /// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
 /// [`PlaneFrequencies::nearness`] over the shortest vectors of the dual lattice, around each part of the
-/// spectrum.
+/// spectrum. `coefficients` are those of [`coefficients()`].
+#[inline(always)]
 fn badness(
+    coefficients: &[[f64; 4]],
     frequencies: &Frequencies,
-    targets: &[PlaneFrequencies],
-    replicas: &[Replica],
-    points: u64,
-    g: [u64; 4],
+    (targets, replicas): (&[PlaneFrequencies], &[Replica]),
+    (points, g): (u64, [u64; 4]),
 ) -> f64 {
     let basis = dual_basis(points, g).map(|vector| vector.map(|h| h as f64));
-    let coefficients = || -COEFFICIENT..=COEFFICIENT;
     let mut sum = 0.0;
-    for (a, b) in coefficients().flat_map(|a| coefficients().map(move |b| (a, b))) {
-        for (c, d) in coefficients().flat_map(|c| coefficients().map(move |d| (c, d))) {
-            // Opposite vectors have the same value, so half of them is enough.
-            if [a, b, c, d] <= [0; 4] {
-                continue;
+    for group in coefficients.chunks(ABREAST) {
+        let factors = |i: usize, k: usize| group.get(i).map_or(0.0, |factors| factors[k]);
+        let h: [Lanes; 4] = [0, 1, 2, 3]
+            .map(|axis| lanes(|i| (0..4).map(|k| factors(i, k) * basis[k][axis]).sum()));
+        let along = [0, 1]
+            .map(|i| frequencies[i].map(|[a, b]| lanes(|k| a * h[2 * i][k] + b * h[2 * i + 1][k])));
+        for replica in replicas {
+            let from = [0, 1].map(|i| [0, 1].map(|k| along[i][k].map(|f| f + replica.along[i][k])));
+            let mut near = [0.0; ABREAST];
+            for target in targets {
+                let target = target.nearness(&from);
+                near = lanes(|i| near[i] + target[i]);
             }
-            let factors = [a, b, c, d].map(f64::from);
-            let h: [f64; 4] = lanes(|axis| (0..4).map(|i| factors[i] * basis[i][axis]).sum());
-            let along = [0, 1].map(|i| {
-                let [[a, b], [c, d]] = frequencies[i];
-                let (at, slope) = (h[2 * i], h[2 * i + 1]);
-                [a * at + b * slope, c * at + d * slope]
-            });
-            for replica in replicas {
-                let from = |i: usize| [0, 1].map(|k| along[i][k] + replica.along[i][k]);
-                let from = [from(0), from(1)];
-                let all = targets.iter().map(|target| target.nearness(from));
-                sum += replica.power * all.sum::<f64>();
+            for near in near.iter().take(group.len()) {
+                sum += replica.power * near;
             }
         }
     }
