@@ -15,8 +15,8 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 pub trait Number: Copy {
     /// The type in NumPy's notation, with the lowest byte first.
     const DESCR: &'static str;
-    /// Appends the bytes of the number.
-    fn write(self, bytes: &mut Vec<u8>);
+    /// Writes the bytes of the number to a slice of their length.
+    fn write(self, bytes: &mut [u8]);
     /// Decodes a number. Returns `None` unless the number of bytes is exactly right.
     fn read(bytes: &[u8]) -> Option<Self>;
     /// Checks whether the number is finite, so not infinite and not NaN.
@@ -29,8 +29,8 @@ macro_rules! plain_number {
         impl Number for $type {
             const DESCR: &'static str = $descr;
 
-            fn write(self, bytes: &mut Vec<u8>) {
-                bytes.extend(self.to_le_bytes());
+            fn write(self, bytes: &mut [u8]) {
+                bytes.copy_from_slice(&self.to_le_bytes());
             }
 
             fn read(bytes: &[u8]) -> Option<Self> {
@@ -52,9 +52,10 @@ plain_number!(u64, "<u8", |_| true);
 impl Number for Complex {
     const DESCR: &'static str = "<c16";
 
-    fn write(self, bytes: &mut Vec<u8>) {
-        self.re.write(bytes);
-        self.im.write(bytes);
+    fn write(self, bytes: &mut [u8]) {
+        let (re, im) = bytes.split_at_mut(size_of::<f64>());
+        self.re.write(re);
+        self.im.write(im);
     }
 
     fn read(bytes: &[u8]) -> Option<Self> {
@@ -78,15 +79,16 @@ where
     const BLOCK: usize = 1 << 13;
     let shape: Vec<u64> = array.shape().iter().map(|length| *length as u64).collect();
     file.write_all(&NpyHeader::new(A::DESCR, &shape).bytes())?;
-    let mut bytes = Vec::with_capacity(BLOCK * size_of::<A>());
-    for number in array {
-        number.write(&mut bytes);
-        if bytes.len() >= BLOCK * size_of::<A>() {
-            file.write_all(&bytes)?;
-            bytes.clear();
+    let mut bytes = vec![0; BLOCK * size_of::<A>()];
+    let mut numbers = array.iter();
+    while numbers.len() > 0 {
+        let full = numbers.len().min(BLOCK) * size_of::<A>();
+        for (bytes, number) in bytes.chunks_exact_mut(size_of::<A>()).zip(&mut numbers) {
+            number.write(bytes);
         }
+        file.write_all(&bytes[..full])?;
     }
-    file.write_all(&bytes)
+    Ok(())
 }
 
 /// A file of named arrays that is being written.
