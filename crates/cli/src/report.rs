@@ -15,11 +15,16 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Writes a page that shows several results side by side.
-pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), Failure> {
+/// Checks that the page of several results can be written.
+pub(crate) fn claim(folders: &[PathBuf], out: &Path, force: bool) -> Result<OutputFile, Failure> {
     let pages = folders.iter().map(|folder| folder.join(NAME));
     let summaries = folders.iter().map(|folder| folder.join(SUMMARY));
     let inputs: Vec<PathBuf> = pages.chain(summaries).collect();
+    OutputFile::claim_sealed(out, force, &inputs, SealKind::Markup)
+}
+
+/// Writes a page that shows several results side by side.
+pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), Failure> {
     let blocks = folders.iter().map(|folder| stored_data(folder));
     let blocks: Vec<String> = blocks.collect::<Result<_, _>>()?;
     let folder = |path: &PathBuf| {
@@ -27,7 +32,7 @@ pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), 
             .map(|name| name.to_string_lossy().into_owned())
     };
     let names: Vec<String> = folders.iter().filter_map(folder).collect();
-    let file = OutputFile::claim_sealed(out, force, &inputs, SealKind::Markup)?;
+    let file = claim(folders, out, force)?;
     let parent = out.parent().filter(|path| *path != Path::new(""));
     let parent = parent.unwrap_or(Path::new("."));
     let beside = folders.iter().map(|folder| address(folder, parent));

@@ -42,6 +42,11 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
     let folder = args.out.or_named(name);
     let colors = [Color::Red, Color::Green, Color::Blue];
     let folders = colors.map(|color| folder.join(color.name()));
+    let page = folder.join(NAME);
+    if page.exists() {
+        // A page that cannot be replaced is refused before the runs.
+        report::claim(&folders, &page, args.work.force.force)?;
+    }
     let mut codes = Vec::new();
     for (color, folder) in colors.into_iter().zip(&folders) {
         let mut one = args.clone();
@@ -49,7 +54,6 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
         one.out.folder = Some(folder.clone());
         codes.push(run_with(&one, None)?);
     }
-    let page = folder.join(NAME);
     report::write(&folders, &page, args.work.force.force)?;
     if !args.work.quiet {
         say(&format!("all channels in {}", page.display()));

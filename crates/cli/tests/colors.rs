@@ -56,6 +56,24 @@ fn channels_share_their_photons() {
     assert_ne!(slices("one"), slices("out/red"));
 }
 
+/// A page of another program is refused before the runs.
+#[test]
+fn a_foreign_page_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::create_dir(path.join("out")).unwrap();
+    fs::write(path.join("out/report.html"), "mine").unwrap();
+    let line = format!("run {} --rgb --out out", scene("colors.ron").display());
+    let output = call(path, &line);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let files: Vec<_> = fs::read_dir(path.join("out")).unwrap().collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    assert_eq!(
+        fs::read_to_string(path.join("out/report.html")).unwrap(),
+        "mine"
+    );
+}
+
 #[test]
 fn colours_of_the_wrong_form_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -139,6 +139,29 @@ fn variances_have_the_same_bytes_on_any_threads() {
     assert_eq!(of("v1"), of("v2"));
 }
 
+/// If the noise hides the last octave, the tail counts as for independent points, and the table says
+/// so.
+#[test]
+fn an_unknown_tail_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = scene("variance/soft_shadow.ron");
+    for (photons, is_known) in [(10_000, false), (262_144, true)] {
+        let line = format!(
+            "variance {} --photons {photons} --counts 4 --shifts 20 --samplers sobol --out v{photons}",
+            soft.display()
+        );
+        let output = etendue()
+            .current_dir(folder.path())
+            .args(line.split(' '))
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(said.contains("use more photons"), !is_known, "{said}");
+        let index = json(&folder.path().join(format!("v{photons}/variance.json")));
+        assert_eq!(index["has_last_octave"], is_known);
+    }
+}
+
 #[test]
 fn bad_arguments_are_refused() {
     let folder = tempfile::tempdir().unwrap();

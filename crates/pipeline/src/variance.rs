@@ -127,6 +127,9 @@ pub struct PlaneVariance {
     pub moments: WindowMoments,
     /// The power at the measured frequencies, as a share of σ².
     pub inside: f64,
+    /// Whether the power of the last measured octave is above its noise. Otherwise the tail counts as
+    /// for independent points.
+    pub has_last_octave: bool,
     /// The power by set of nonzero axes.
     pub axis_sets: Vec<AxisSetPower>,
     /// The variances of each sampler.
@@ -233,6 +236,7 @@ impl<'a> VarianceStudy<'a> {
             half_widths: self.half_widths(),
             mean_by_photons: power.mean,
             inside: power.spectrum.total() / moments.variance.value,
+            has_last_octave: power.spectrum.has_last_octave(),
             axis_sets: axis_sets(&power, &moments),
             samplers: reports.collect(),
             moments,
@@ -318,6 +322,7 @@ impl PlaneVariance {
             "variance": self.moments.variance,
             "noise": self.moments.noise,
             "inside": self.inside,
+            "has_last_octave": self.has_last_octave,
             "axis_sets": self.axis_sets,
             "samplers": self.samplers,
         })

@@ -67,6 +67,12 @@ fn head(found: &PlaneVariance, options: &VarianceOptions) -> Vec<String> {
     if (photons.value - rays.value).abs() > MAX_DIFFERENCE * error {
         lines.push("warning: the means differ by more than their errors".to_owned());
     }
+    if !found.has_last_octave {
+        lines.push(
+            "warning: the highest frequencies have no power above their noise, so the tail counts as for independent points; use more photons, or lower --frequencies"
+                .to_owned(),
+        );
+    }
     lines
 }
 

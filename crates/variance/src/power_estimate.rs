@@ -1,5 +1,8 @@
 //! Estimates of the power of a field, part by part, from independent groups of photons.
 
+/// The power of the last octave must be larger than this number of standard errors.
+const MIN_OCTAVE: f64 = 4.0;
+
 /// The power of a field in each of its parts: at each frequency, or in each dyadic band.
 ///
 /// The power is estimated from products of independent groups of photons. Therefore it contains no
@@ -49,6 +52,21 @@ impl PowerEstimate {
     #[must_use]
     pub fn total(&self) -> f64 {
         self.power.iter().sum()
+    }
+
+    /// Checks whether the last octave has power above its noise. Otherwise the tail has an unknown
+    /// shape, and counts as for independent points.
+    #[must_use]
+    pub fn has_last_octave(&self) -> bool {
+        let (octave, without) = self.estimates(|power| self.last_octave(power));
+        octave > MIN_OCTAVE * jackknife_error(&without)
+    }
+
+    /// Returns the sum of the parts of `power` that belong to the last octave.
+    pub(crate) fn last_octave(&self, power: &[f64]) -> f64 {
+        let of_last = power.iter().zip(&self.is_last);
+        let of_last = of_last.filter(|(_, is_last)| **is_last);
+        of_last.map(|(p, _)| p).sum()
     }
 
     /// Returns a function of the power, and its estimates without one group.

@@ -9,9 +9,6 @@ use etendue_spectrum::Uncertain;
 /// prediction is undecided, because a fixed set has peaks beyond the box.
 pub const MAX_FILE_TAIL: f64 = 0.2;
 
-/// The power of the last octave must be larger than this number of standard errors.
-const MIN_OCTAVE: f64 = 4.0;
-
 /// The predicted variance of the mean of the radiance at N points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictedVariance {
@@ -38,18 +35,12 @@ impl PredictedVariance {
         moments: &WindowMoments,
         count: usize,
     ) -> Self {
-        let last = &power.is_last;
-        let of_last = |power: &[f64]| {
-            let of_last = power.iter().zip(last).filter(|(_, is_last)| **is_last);
-            of_last.map(|(p, _)| p).sum::<f64>()
-        };
         // If the last octave has no power above its noise, its shape is unknown. The power beyond the
         // box, which is then small, counts as for independent points.
-        let (octave, without) = power.estimates(of_last);
-        let is_known = octave > MIN_OCTAVE * jackknife_error(&without);
-        let of_tail = |power: &[f64]| {
+        let is_known = power.has_last_octave();
+        let of_tail = |parts: &[f64]| {
             if is_known {
-                dot(power, &response.tail) / of_last(power)
+                dot(parts, &response.tail) / power.last_octave(parts)
             } else {
                 1.0 / count as f64
             }
