@@ -87,7 +87,7 @@ impl Space {
     /// Returns the distance along a ray at which the traversal begins. This is usually the distance
     /// `from`. If the point at `from` is far from all boxes, the traversal begins where the ray
     /// comes near the boxes, because f32 would lose precision over a longer distance.
-    #[inline]
+    #[inline(always)]
     fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
         let at = start + from * direction;
@@ -104,7 +104,7 @@ impl Space {
 
     /// Returns where the traversal of a ray begins and ends. The ray begins at `from`, and before
     /// the first hit it ends at `until`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn stretch(
         &self,
         start: DVec3,
