@@ -26,7 +26,8 @@ impl Plane {
 
     /// Returns the distance along a ray of the last leg to the plane, or to the plane's surface if
     /// it has one. The distance is zero for a plane on a surface that light leaves. Returns `None`
-    /// if the ray misses the plane or its surface.
+    /// if the ray misses the plane or its surface, or if the plane lies on the next surface and the
+    /// ray's start lies behind it.
     pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
         if self.orientation != Orientation::Orthogonal && !self.arriving {
             return Some(0.0);
@@ -35,7 +36,8 @@ impl Plane {
             return Some(self.arrives_on(patch, ray)?.0);
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
-        t.is_finite().then_some(t)
+        let is_behind = self.orientation != Orientation::Orthogonal && t < 0.0;
+        (t.is_finite() && !is_behind).then_some(t)
     }
 
     /// Returns the ray that has the given coordinates on the plane or on the plane's surface, in

@@ -60,7 +60,7 @@ impl PlaneSampler {
             let end = plane_on_leg.crossing(&ray, f64::NEG_INFINITY)?;
             let leg = self.leg;
             let incoming = IncomingRay { leg, heading, ray };
-            Some((incoming, End::Plane(end, plane_on_leg.side), area))
+            Some((incoming, End::at_plane(plane_on_leg, end), area))
         })
     }
 }

@@ -203,6 +203,9 @@ impl Backward {
             return 0.0;
         };
         let from = begin + leaves.rounding;
+        if matches!(end, End::OnSurface(_)) && distance <= from {
+            return 0.0;
+        }
         let ignored = |object| Some(object) == this.ends || object == leaves.object;
         let visible = obstacles.visibility(ray, from, distance, side, |what| {
             what.object().is_some_and(ignored)
@@ -494,7 +497,7 @@ impl Backward {
         let nothing = |_| [0.0; 4];
         // A virtual plane on a surface records all light that arrives at the surface, in the
         // backward tracer as in the forward tracer.
-        let end = End::Plane(point.z, plane_on_leg.side);
+        let end = End::at_plane(plane_on_leg, point.z);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = plane_on_leg.at_plane(&at_light, weight)?;
