@@ -214,7 +214,7 @@ fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
         orientation: plane.orientation,
         longitude: plane.longitude,
         patch,
-        arriving: plane.side == Side::Before && plane.orientation != Orientation::Orthogonal,
+        side: plane.side,
         quantity: plane.quantity,
     }
 }

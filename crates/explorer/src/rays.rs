@@ -6,7 +6,7 @@ use crate::plane::PathPlace;
 use crate::setup::{SettingKey, Setup};
 use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
-    SliceGrid,
+    Side, SliceGrid,
 };
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
@@ -43,7 +43,7 @@ pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
                 obstacles: Vec::new(),
                 elements: Vec::new(),
             };
-            let plane = seen(&patch, Orientation::LocalNormals, true);
+            let plane = seen(&patch, Orientation::LocalNormals, Side::Before);
             Some(Observed { system, plane }.predict(&[], over, BUDGET))
         }
         PathPlace::Blurred | PathPlace::Glossy => {
@@ -60,7 +60,7 @@ pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
                 patch,
                 reflectance: reflectance(setup),
             };
-            let plane = seen(&patch, orientation, false);
+            let plane = seen(&patch, orientation, Side::After);
             Some(Observed { system, plane }.predict(&[], over, BUDGET))
         }
         _ => None,
@@ -96,14 +96,14 @@ fn reflectance(setup: &Setup) -> Reflectance {
 
 /// Returns a plane where the central ray meets the receiver. The ray goes straight back, so X is
 /// reversed.
-fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
+fn seen(patch: &Patch, orientation: Orientation, side: Side) -> rays::Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
     rays::Plane {
         frame: frame.expect("axes at right angles"),
         orientation,
         longitude: 0.0,
         patch: orientation.is_local().then_some(*patch),
-        arriving,
+        side,
         quantity: Quantity::Radiance,
     }
 }

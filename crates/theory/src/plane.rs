@@ -1,6 +1,6 @@
 //! The plane at which a light field is observed.
 
-use etendue_field::{Frame, Orientation, Patch, Quantity};
+use etendue_field::{Frame, Orientation, Patch, Quantity, Side};
 
 /// The plane at which the light field is observed, behind all surfaces that light meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,10 +16,10 @@ pub struct Plane {
     pub longitude: f64,
     /// The surface that gives the local normals. If it is `None`, all normals are along D.
     pub patch: Option<Patch>,
-    /// Whether the plane observes light that arrives at a surface, for which directions are
-    /// reversed. If light arrives at the plane's surface, this surface is not among the system's
-    /// elements. If light leaves the plane's surface, this surface is the last element.
-    pub arriving: bool,
+    /// Whether the plane lies before or after the objects at its distance. If light arrives at the
+    /// plane's surface, this surface is not among the system's elements. If light leaves the plane's
+    /// surface, this surface is the last element.
+    pub side: Side,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,
 }
@@ -34,8 +34,15 @@ impl Plane {
             orientation: Orientation::Orthogonal,
             longitude: 0.0,
             patch: None,
-            arriving: false,
+            side: Side::Before,
             quantity: Quantity::Radiance,
         }
+    }
+
+    /// Checks whether the plane observes light that arrives at a surface, for which directions are
+    /// reversed.
+    #[must_use]
+    pub fn is_arriving(&self) -> bool {
+        self.orientation != Orientation::Orthogonal && self.side == Side::Before
     }
 }

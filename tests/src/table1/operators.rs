@@ -142,7 +142,7 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
 fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
-    if plane.arriving {
+    if plane.is_arriving() {
         return match plane.orientation {
             Orientation::LocalNormals => ("curvature", Some(Line::Curvature)),
             Orientation::Mirrored => ("mirror", Some(Line::Mirror)),
@@ -173,7 +173,7 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
-    let arriving = plane.arriving || system.elements.is_empty();
+    let arriving = plane.is_arriving() || system.elements.is_empty();
     let before = value(Parameter::Travel(0))?;
     if arriving && plane.orientation == Orientation::Orthogonal {
         let path = MirrorPath {

@@ -210,7 +210,7 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
         for (name, tamper) in numbers() {
             let p_value = |i: usize| {
                 let view = outcome.system(i);
-                if view.plane.arriving {
+                if view.plane.is_arriving() {
                     return None;
                 }
                 let view = tamper(&view)?;

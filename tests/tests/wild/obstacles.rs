@@ -164,3 +164,17 @@ fn only_the_chain_is_wrong(name: &str, class: Class) {
         replaced(reference, slices, Vec::new())
     });
 }
+
+/// A flat mesh stops the light of a plane directly after it, but not of a plane directly before it.
+#[test]
+fn planes_at_a_square_are_decided() {
+    let scene = scene("planes_at_a_square");
+    let photons = photons(&scene);
+    for (i, plane) in scene.planes.iter().enumerate() {
+        let prediction = by_theory(&scene, plane);
+        assert_eq!(
+            report(&scene, &photons, i, &prediction).verdict,
+            Verdict::Pass
+        );
+    }
+}

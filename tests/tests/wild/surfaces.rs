@@ -199,3 +199,14 @@ fn a_plane_that_cuts_the_surface_before_it_is_decided() {
     ];
     the_tracers_agree(&edited("through_the_wall_before", &mirror));
 }
+
+/// A plane cuts the wall that light leaves. Paths that are aimed at the plane miss the part of the wall
+/// beyond it, which also counts.
+#[test]
+fn a_wall_beyond_the_plane_is_decided() {
+    let scene = scene("wall_beyond_the_plane");
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    for measured in [photons(&scene), backward(&scene)] {
+        assert_eq!(verdict(&scene, &measured, &prediction), Verdict::Pass);
+    }
+}

@@ -46,7 +46,7 @@ pub(super) fn coordinates(
         Some([point, normal]) => (plane.frame.to_local(point), local(plane, normal)),
         None => (foot, plane.frame),
     };
-    let away = if plane.arriving {
+    let away = if plane.is_arriving() {
         -ray.direction
     } else {
         ray.direction
@@ -96,6 +96,6 @@ pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<CheckRay> {
         normal = patch.normal(point);
     }
     let away = direction(plane, normal, [u, v]);
-    let direction = if plane.arriving { -away } else { away };
+    let direction = if plane.is_arriving() { -away } else { away };
     Some(CheckRay { point, direction })
 }

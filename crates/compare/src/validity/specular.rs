@@ -212,7 +212,7 @@ impl Follower<'_> {
     fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
-        let surface = ends.filter(|_| self.at.arriving);
+        let surface = ends.filter(|_| self.at.is_arriving());
         let hit = surface.and_then(|hit| self.around.hit(ray, 0.0, hit.object));
         hit.unwrap_or(across)
     }
@@ -233,7 +233,7 @@ impl Follower<'_> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);
         };
-        let point = if self.at.arriving {
+        let point = if self.at.is_arriving() {
             ray.at(ray.front_hit(patch, self.at.frame.d)?)
         } else {
             ray.point
@@ -316,7 +316,7 @@ impl Follower<'_> {
             .or(again.map(Meets::Itself));
         if leg > 0 {
             unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
-        } else if self.at.arriving {
+        } else if self.at.is_arriving() {
             // For a plane across the leg, blockers and plane are parallel.
             unforeseen = unforeseen.or(self.around.first_leg(ray, end).1);
         }
@@ -327,7 +327,7 @@ impl Follower<'_> {
             return (None, unforeseen);
         };
         let scale = SAME_DISTANCE * counted.length();
-        if !self.at.arriving && ray.point.distance(counted) > scale {
+        if !self.at.is_arriving() && ray.point.distance(counted) > scale {
             unforeseen = unforeseen.or(leaves.map(Meets::Itself));
         }
         let seen = coordinates(self.at, ray, Some(on(patch, counted)));
@@ -339,7 +339,7 @@ impl Follower<'_> {
     /// surface twice. The photon then counts at the intersection that is nearest to the hit of the
     /// central ray.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
-        if self.at.arriving {
+        if self.at.is_arriving() {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));
         }
         let local = ray.seen_from(&patch.frame);

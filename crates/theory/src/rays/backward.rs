@@ -62,7 +62,7 @@ impl Back {
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;
-        if self.plane.patch.is_some() && !self.plane.arriving {
+        if self.plane.patch.is_some() && !self.plane.is_arriving() {
             let normal = patch.gradient(patch.frame.to_local(last.point));
             let normal = patch.frame.vector_to_world(normal.try_normalize()?);
             return element.turned(back, last.point, normal);

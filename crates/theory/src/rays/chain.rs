@@ -46,7 +46,7 @@ pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineCh
         at: "light".into(),
     };
     let mut layers = system.layers.clone();
-    let on_last = plane.orientation != Orientation::Orthogonal && !plane.arriving;
+    let on_last = plane.orientation != Orientation::Orthogonal && !plane.is_arriving();
     let is_lens = |element: &SpecularSurface| matches!(element.event, Specular::ThinLens { .. });
     if on_last && system.elements.last().is_some_and(is_lens) {
         return None;

@@ -2,7 +2,8 @@
 
 use super::Plane;
 use super::trace::LegRay;
-use etendue_field::{Frame, Orientation, Patch, Quantity, TwoPlane};
+use crate::obstacle::ROUNDING;
+use etendue_field::{Frame, Orientation, Patch, Quantity, Side, TwoPlane};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,7 +30,7 @@ impl Plane {
     /// if the ray misses the plane or its surface, or if the plane lies on the next surface and the
     /// ray's start lies behind it.
     pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
-        if self.orientation != Orientation::Orthogonal && !self.arriving {
+        if self.orientation != Orientation::Orthogonal && !self.is_arriving() {
             return Some(0.0);
         }
         if let Some(patch) = &self.patch {
@@ -37,7 +38,12 @@ impl Plane {
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
         let is_behind = self.orientation != Orientation::Orthogonal && t < 0.0;
-        (t.is_finite() && !is_behind).then_some(t)
+        // Rounding must not decide whether an object at the distance of the plane stops its light.
+        let share = match self.side {
+            Side::Before => 1.0 - ROUNDING,
+            Side::After => 1.0 + ROUNDING,
+        };
+        (t.is_finite() && !is_behind).then_some(t * share)
     }
 
     /// Returns the ray that has the given coordinates on the plane or on the plane's surface, in
@@ -56,7 +62,11 @@ impl Plane {
         let (point, normal) = self.point([x, y])?;
         let away = self.away([u, v])?;
         let towards = self.frame.turned_to(normal).vector_to_world(away);
-        let direction = if self.arriving { -towards } else { towards };
+        let direction = if self.is_arriving() {
+            -towards
+        } else {
+            towards
+        };
         // On a curved surface, dx dy is the surface area projected onto the tangent plane.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
         Some((LegRay { point, direction }, etendue))
@@ -128,7 +138,7 @@ impl Plane {
             let point = self.frame.to_world(DVec3::new(s, t, 0.0));
             return Some((point, self.frame.d));
         };
-        let (point, normal) = if self.arriving {
+        let (point, normal) = if self.is_arriving() {
             let (distance, normal) = self.arrives_on(patch, ray)?;
             (ray.point + ray.direction * distance, normal)
         } else {
@@ -153,7 +163,11 @@ impl Plane {
         direction: DVec3,
         local: &Frame,
     ) -> Option<([f64; 4], f64)> {
-        let away = if self.arriving { -direction } else { direction };
+        let away = if self.is_arriving() {
+            -direction
+        } else {
+            direction
+        };
         let away = local.vector_to_local(away);
         let (mut theta, mut phi) = (libm::atan2(away.x, away.z), libm::asin(away.y));
         if self.orientation == Orientation::Mirrored {

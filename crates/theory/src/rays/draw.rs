@@ -99,7 +99,7 @@ impl<'a> Outer<'a> {
         Some(match &system.light {
             Light::Area { shape, .. } => Self::Shape(*shape),
             Light::Environment { environment } => {
-                let met = plane.filter(|plane| plane.arriving && system.elements.is_empty());
+                let met = plane.filter(|plane| plane.is_arriving() && system.elements.is_empty());
                 let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
                 Self::Sky(environment, Box::new(SkyDensity::new(environment, normal)?))
             }
@@ -235,7 +235,7 @@ impl<'a> RaySampler<'a> {
                 let density = of_x * of_y * of_light / spread;
                 // A ray that meets the surface from behind has met the front of the surface at
                 // another point before.
-                let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
+                let is_hidden = plane.is_arriving() && normal.dot(along) >= 0.0;
                 let arrives = point.z > -AT_LIGHT && !is_hidden;
                 arrives.then(|| (placed(slopes, [start.x, start.y]), density))
             }

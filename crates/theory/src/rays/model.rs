@@ -40,7 +40,7 @@ impl Model for Observed<SpecularSystem> {
             let axes = curvatures(&element.patch).into_iter();
             all.extend(axes.map(|axis| Parameter::Curvature(i, axis)));
         }
-        if plane.orientation == Orientation::Orthogonal || plane.arriving {
+        if plane.orientation == Orientation::Orthogonal || plane.is_arriving() {
             all.push(Parameter::Travel(system.elements.len()));
         }
         let is_there = |parameter: &Parameter| {
@@ -145,7 +145,7 @@ impl Observed<SpecularSystem> {
         let patch = &mut self.system.elements.get_mut(i)?.patch;
         change_curvature(patch, axis, new)?;
         // A plane with local normals that light leaves is on the surface itself.
-        if is_last && !self.plane.arriving && self.plane.patch.is_some() {
+        if is_last && !self.plane.is_arriving() && self.plane.patch.is_some() {
             self.plane.patch = Some(*patch);
         }
         Some(())

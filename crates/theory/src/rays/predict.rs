@@ -142,7 +142,7 @@ fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> 
     // Light starts in the plane z = 0, so parts of a surface behind this plane are dark. On a
     // curved surface no check is needed, because the point where a ray meets the surface is always
     // ahead of the ray's start.
-    let on_first_leg = plane.arriving && system.elements.is_empty() && plane.patch.is_none();
+    let on_first_leg = plane.is_arriving() && system.elements.is_empty() && plane.patch.is_none();
     move |ray| {
         let flux = flux(system, masks, ray);
         if flux <= 0.0 {
@@ -166,7 +166,7 @@ fn linear_field<'a>(
     let rays = map.rays();
     let legs = AffineLeg::all(view);
     let is_sky = matches!(system.light, Light::Environment { .. });
-    let by_angle = is_sky && plane.arriving && system.elements.is_empty();
+    let by_angle = is_sky && plane.is_arriving() && system.elements.is_empty();
     let distance = plane.frame.origin.z;
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;

@@ -66,17 +66,20 @@ impl DirectionCoordinates {
     }
 
     /// Returns positions on the plane or on its surface, for the leg from the last scatterer.
-    /// Returns `None` if the leg does not run straight to the plane, or has no length.
+    /// Returns `None` if the leg does not run straight to the plane, or if the plane cuts the surface
+    /// at which the leg begins.
     pub(super) fn at_plane(
         view: &Observed<ReflectionSystem>,
         scatterers: &[ScatteringSurface],
     ) -> Option<Self> {
         let Observed { system, plane } = view;
         let from = scatterers.last()?.number;
-        let beyond = plane.frame.origin - system.surfaces[from].hit;
+        // A plane across the leg also counts light from parts of the surface beyond the plane. No
+        // direction leads from these parts to the plane.
+        let is_before = |p: &DVec3| (plane.frame.origin - p).dot(plane.frame.d) > 0.0;
         let is_beyond = match plane.orientation {
-            Orientation::Orthogonal => beyond.dot(plane.frame.d) > 0.0,
-            _ => plane.arriving,
+            Orientation::Orthogonal => system.surfaces[from].patch.corners().iter().all(is_before),
+            _ => plane.is_arriving(),
         };
         (is_beyond && from + 1 == system.visited).then(|| match plane.patch {
             Some(patch) if plane.orientation.is_local() => Self::on_patch(patch, &plane.frame),

@@ -230,7 +230,7 @@ fn rays_of_a_wide_surface_find_a_narrow_window() {
     let on_card = Plane {
         orientation: Orientation::LocalNormals,
         patch: Some(card),
-        arriving: true,
+        side: etendue_field::Side::Before,
         ..Plane::orthogonal(card.frame)
     };
     let arriving = predicted(&system, &on_card, &window);

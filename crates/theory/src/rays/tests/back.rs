@@ -3,6 +3,7 @@
 use super::super::backward::Back;
 use super::*;
 use crate::geometry::{AffineMap, from_fn};
+use etendue_field::Side;
 
 /// Builds an area light, and surfaces at oblique incidence.
 fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> SpecularSystem {
@@ -101,7 +102,7 @@ fn rays_come_back_from_surfaces() {
                 orientation,
                 longitude: 0.0,
                 patch: is_local.then_some(patch),
-                arriving,
+                side: if arriving { Side::Before } else { Side::After },
                 quantity: Quantity::Radiance,
             };
             let system = if arriving { &before } else { &through };

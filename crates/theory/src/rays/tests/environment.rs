@@ -74,7 +74,7 @@ fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
         orientation,
         longitude: turned * incidence.theta0,
         patch: is_local.then_some(patch),
-        arriving: true,
+        side: etendue_field::Side::Before,
         quantity,
     }
 }

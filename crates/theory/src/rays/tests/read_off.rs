@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rays::central::Incidence;
+use etendue_field::Side;
 
 /// Returns the coordinates at the plane of a ray that leaves the light.
 fn lands(system: &SpecularSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
@@ -149,15 +150,19 @@ fn on_surface(
     orientation: Orientation,
     patch: Patch,
     direction: DVec3,
-    arriving: bool,
+    side: Side,
 ) -> Plane {
-    let away = if arriving { -direction } else { direction };
+    let away = if side == Side::Before {
+        -direction
+    } else {
+        direction
+    };
     Plane {
         frame,
         orientation,
         longitude: libm::atan2(away.dot(frame.x), away.dot(frame.d)),
         patch: Some(patch),
-        arriving,
+        side,
         quantity: Quantity::Radiance,
     }
 }
@@ -180,7 +185,8 @@ pub(super) fn surface_planes() -> Vec<(SpecularSystem, Plane)> {
                 let hit = Incidence::new(&Frame::IDENTITY.travelled(0.8), patch.frame.d);
                 let frame = |t: DVec3, d: DVec3| Frame::new(patch.frame.origin, d, t).unwrap();
                 for t in [hit.t, -hit.t] {
-                    let plane = on_surface(frame(t, hit.n), orientation, patch, DVec3::Z, true);
+                    let plane =
+                        on_surface(frame(t, hit.n), orientation, patch, DVec3::Z, Side::Before);
                     all.push((onto.clone(), plane));
                     let off = with(onto.clone(), "surface", patch, event);
                     let leaving = off.hits().unwrap()[0].leaving.d;
@@ -189,7 +195,8 @@ pub(super) fn surface_planes() -> Vec<(SpecularSystem, Plane)> {
                     } else {
                         -hit.n
                     };
-                    let plane = on_surface(frame(t, side), orientation, patch, leaving, false);
+                    let plane =
+                        on_surface(frame(t, side), orientation, patch, leaving, Side::After);
                     all.push((off, plane));
                 }
             }

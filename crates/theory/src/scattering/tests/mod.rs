@@ -132,7 +132,7 @@ fn across(theta0: f64, after: f64) -> Plane {
         orientation: Orientation::Orthogonal,
         longitude: 0.0,
         patch: None,
-        arriving: false,
+        side: etendue_field::Side::After,
         quantity: Quantity::Radiance,
     }
 }
