@@ -9,7 +9,9 @@ use super::vector::{Axes, Vector, dot, plus, turned_along, unit};
 use super::views::{Looking, PLANES, View};
 use super::world::World;
 use crate::hostile::dice::Dice;
-use etendue_field::{Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Specular};
+use etendue_field::{
+    Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Side, Specular,
+};
 use etendue_theory::geometry::{AffineMap, Edition};
 use etendue_theory::rays::{self, Plane, SpecularSurface};
 use etendue_theory::{Observed, scattering};
@@ -100,7 +102,11 @@ impl Met {
             orientation,
             longitude: looking.longitude,
             patch: orientation.is_local().then_some(self.patch),
-            arriving: looking.arrives,
+            side: if looking.arrives {
+                Side::Before
+            } else {
+                Side::After
+            },
             quantity: Quantity::Radiance,
         }
     }
