@@ -103,8 +103,8 @@ impl PlaneFrequencies {
     /// Returns how near each of several frequencies (ρ, ν) along x and y, of light at the light, is to
     /// a frequency of the slices: between 0 and the number of azimuths.
     #[inline(always)]
-    fn nearness(&self, [along_x, along_y]: &[[Lanes; 2]; 2]) -> Lanes {
-        let at = |[rho, nu]: &[Lanes; 2]| lanes(|i| nu[i] - rho[i] * self.distance);
+    fn nearness(&self, [along_x, along_y]: &[[VectorLanes; 2]; 2]) -> VectorLanes {
+        let at = |[rho, nu]: &[VectorLanes; 2]| lanes(|i| nu[i] - rho[i] * self.distance);
         let (rho, nu) = ([along_x[0], along_y[0]], [at(along_x), at(along_y)]);
         let squared = |axis: usize, along: f64, across: f64| {
             let beyond = (along.abs() - self.largest[axis]).max(0.0);
@@ -112,7 +112,7 @@ impl PlaneFrequencies {
         };
         let mut sum = [0.0; ABREAST];
         for &(sin, cos) in &self.azimuths {
-            let turned = |axis: usize, [x, y]: &[Lanes; 2], i: usize| {
+            let turned = |axis: usize, [x, y]: &[VectorLanes; 2], i: usize| {
                 squared(axis, x[i] * cos + y[i] * sin, y[i] * cos - x[i] * sin)
             };
             sum =
@@ -318,7 +318,7 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
 type Frequencies = [[[f64; 2]; 2]; 2];
 
 /// One value for each of several vectors of a dual lattice.
-type Lanes = [f64; ABREAST];
+type VectorLanes = [f64; ABREAST];
 
 /// Returns the coefficients of all sums of basis vectors, except that opposite sums are the same.
 fn coefficients() -> Vec<[f64; 4]> {
@@ -344,7 +344,7 @@ fn badness(
     let mut sum = 0.0;
     for group in coefficients.chunks(ABREAST) {
         let factors = |i: usize, k: usize| group.get(i).map_or(0.0, |factors| factors[k]);
-        let h: [Lanes; 4] = [0, 1, 2, 3]
+        let h: [VectorLanes; 4] = [0, 1, 2, 3]
             .map(|axis| lanes(|i| (0..4).map(|k| factors(i, k) * basis[k][axis]).sum()));
         let along = [0, 1]
             .map(|i| frequencies[i].map(|[a, b]| lanes(|k| a * h[2 * i][k] + b * h[2 * i + 1][k])));
