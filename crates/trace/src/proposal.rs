@@ -114,7 +114,7 @@ impl ProfileDensity {
     /// Evaluates a function of the density for several numbers. The kind of density is fixed inside
     /// each loop, so the compiler can vectorise the loops.
     #[inline(always)]
-    fn each<const N: usize>(&self, t: &[f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
+    fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
         let of = |kind: ProposalKind| Self { kind, ..*self };
         match self.kind {
             ProposalKind::Constant => lanes(|i| f(&of(ProposalKind::Constant), t[i])),
@@ -148,12 +148,10 @@ impl Aim {
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
-        let range = if distance != 0.0 {
-            let half = self.half.copysign(distance);
-            [
-                self.slope.cumulative((-half - x) / distance),
-                self.slope.cumulative((half - x) / distance),
-            ]
+        let range = if distance > 0.0 {
+            [-self.half, self.half].map(|end| self.slope.cumulative((end - x) / distance))
+        } else if distance < 0.0 {
+            [self.half, -self.half].map(|end| self.slope.cumulative((end - x) / distance))
         } else if x.abs() < self.half {
             [0.0, 1.0]
         } else {
@@ -264,30 +262,18 @@ impl Proposal {
     #[inline(always)]
     fn ranges<const N: usize>(&self, first: &[f64; N]) -> [[f64; N]; 2] {
         let [low, high] = self.light;
-        // The arrays are not written as a `map` over both ends: the compiler would not vectorise the
-        // closure for the processor at hand.
-        let (density, ends): (_, [[f64; N]; 2]) = match self.order {
+        match self.order {
             // At the light, rays of all slopes have the same position.
-            DrawOrder::Position if self.nearness == 0.0 => return [[0.0; N], [1.0; N]],
-            DrawOrder::Position => (
-                &self.slope,
-                [
-                    lanes(|i| (first[i] - high) * self.nearness),
-                    lanes(|i| (first[i] - low) * self.nearness),
-                ],
-            ),
-            DrawOrder::Slope => (
-                &self.space,
-                [
-                    lanes(|i| low + self.distance * first[i]),
-                    lanes(|i| high + self.distance * first[i]),
-                ],
-            ),
-        };
-        [
-            density.each(&ends[0], ProfileDensity::cumulative),
-            density.each(&ends[1], ProfileDensity::cumulative),
-        ]
+            DrawOrder::Position if self.nearness == 0.0 => [[0.0; N], [1.0; N]],
+            DrawOrder::Position => [high, low].map(|end| {
+                let slopes: [f64; N] = lanes(|i| (first[i] - end) * self.nearness);
+                self.slope.each(slopes, ProfileDensity::cumulative)
+            }),
+            DrawOrder::Slope => [low, high].map(|end| {
+                let positions: [f64; N] = lanes(|i| end + self.distance * first[i]);
+                self.space.each(positions, ProfileDensity::cumulative)
+            }),
+        }
     }
 
     /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
@@ -310,11 +296,10 @@ impl Proposal {
     /// Returns the density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
-        let ranges = match self.order {
-            _ if self.is_point() => None,
-            DrawOrder::Position => Some(self.ranges(&lanes(|i| x[i] + self.distance * u[i]))),
-            DrawOrder::Slope => Some(self.ranges(u)),
-        };
+        let ranges = (!self.is_point()).then(|| match self.order {
+            DrawOrder::Position => self.ranges(&lanes(|i| x[i] + self.distance * u[i])),
+            DrawOrder::Slope => self.ranges(u),
+        });
         self.densities_of([x, u], ranges)
     }
 
@@ -331,13 +316,13 @@ impl Proposal {
         };
         let [low, high] = self.range;
         let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
-        let first = first.each(&shares, ProfileDensity::quantile);
+        let first = first.each(shares, ProfileDensity::quantile);
         if self.is_point() {
             return ([[self.light[0]; N], first], None);
         }
         let [low, high] = self.ranges(&first);
         let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
-        let second = second.each(&shares, ProfileDensity::quantile);
+        let second = second.each(shares, ProfileDensity::quantile);
         let [seen, u] = match self.order {
             DrawOrder::Position => [first, second],
             DrawOrder::Slope => [second, first],
@@ -365,7 +350,7 @@ impl Proposal {
     ) -> [f64; N] {
         let [left, right] = self.light;
         let share = self.range[1] - self.range[0];
-        let slope = self.slope.each(u, ProfileDensity::density);
+        let slope = self.slope.each(*u, ProfileDensity::density);
         let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
         let Some([low, high]) = ranges else {
             return lanes(|i| {
@@ -373,7 +358,7 @@ impl Proposal {
                 if is_seen { slope[i] / share } else { 0.0 }
             });
         };
-        let space = self.space.each(&seen, ProfileDensity::density);
+        let space = self.space.each(seen, ProfileDensity::density);
         lanes(|i| {
             let density = slope[i] * space[i] / (share * (high[i] - low[i]));
             let is_lit = x[i] >= left && x[i] <= right && high[i] > low[i];
