@@ -8,6 +8,7 @@ use ndarray_npy::WriteNpyExt;
 use serde_json::Value;
 use std::fs::{self, File};
 use std::path::Path;
+use std::process::Output;
 
 fn number(tree: &Value, name: &str) -> f64 {
     tree[name].as_f64().unwrap()
@@ -25,6 +26,12 @@ fn lattice(count: usize) -> Array2<f64> {
     Array2::from_shape_fn((count, 4), at)
 }
 
+/// Runs a command that prints its tables.
+fn told(folder: &Path, line: &str) -> Output {
+    let words = line.split(' ');
+    etendue().current_dir(folder).args(words).output().unwrap()
+}
+
 #[test]
 fn predicted_errors_are_found() {
     let folder = tempfile::tempdir().unwrap();
@@ -35,11 +42,7 @@ fn predicted_errors_are_found() {
         "variance {} --photons 2^18 --counts 16,64,256 --unshifted --samplers independent,jitter,lhs,sobol,padded,lattice.npy,long.npy --out out",
         soft.display()
     );
-    let output = etendue()
-        .current_dir(folder.path())
-        .args(line.split(' '))
-        .output()
-        .unwrap();
+    let output = told(folder.path(), &line);
     // The prediction for one of the files is undecided.
     assert_eq!(output.status.code(), Some(4), "{output:?}");
     let said = String::from_utf8(output.stdout).unwrap();
@@ -150,11 +153,7 @@ fn an_unknown_tail_is_reported() {
             "variance {} --photons {photons} --counts 4 --shifts 20 --samplers sobol --out v{photons}",
             soft.display()
         );
-        let output = etendue()
-            .current_dir(folder.path())
-            .args(line.split(' '))
-            .output()
-            .unwrap();
+        let output = told(folder.path(), &line);
         let said = String::from_utf8(output.stdout).unwrap();
         assert_eq!(said.contains("use more photons"), !is_known, "{said}");
         let index = json(&folder.path().join(format!("v{photons}/variance.json")));

@@ -35,8 +35,6 @@ impl PredictedVariance {
         moments: &WindowMoments,
         count: usize,
     ) -> Self {
-        // If the last octave has no power above its noise, its shape is unknown. The power beyond the
-        // box, which is then small, counts as for independent points.
         let is_known = power.has_last_octave();
         let of_tail = |parts: &[f64]| {
             if is_known {

@@ -142,6 +142,15 @@ fn scene_does_not_fail(scene: &Scene, planes: &[(&str, Class)]) {
     }
 }
 
+/// Checks that photons and backward rays agree with theory at the first plane.
+fn both_tracers_agree_with_theory(scene: &Scene) {
+    let prediction = by_theory(scene, &scene.planes[0]);
+    for measured in [photons(scene), backward(scene)] {
+        let judged = verdict(scene, &measured, &prediction);
+        assert_eq!(judged, Verdict::Pass, "{}", scene.name);
+    }
+}
+
 /// Checks that photons agree with backward rays at the first plane.
 fn the_tracers_agree(scene: &Scene) {
     let reference = by_reference(scene, 0, &backward(scene));

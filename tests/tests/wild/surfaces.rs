@@ -1,9 +1,9 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    FOLDER, MORE, backward, by_exact_rays, by_reference, by_scattering, by_specular, by_theory,
-    does_not_fail, edited, measured, only_the_reference_is_right, photons, report, scene,
-    scene_does_not_fail, the_tracers_agree, verdict,
+    FOLDER, MORE, both_tracers_agree_with_theory, by_exact_rays, by_reference, by_scattering,
+    by_specular, by_theory, does_not_fail, edited, measured, only_the_reference_is_right, photons,
+    report, scene, scene_does_not_fail, the_tracers_agree, verdict,
 };
 use etendue_compare::{Applicability, Class, Prediction, Verdict, scattered};
 use etendue_scene::{SceneFile, resolve};
@@ -183,15 +183,12 @@ fn a_plane_on_a_lens_is_decided() {
     }
 }
 
-/// The plane of the second surface cuts the first one, a diffuse wall or a mirror. Where the plane lies behind the first surface,
-/// photons, backward rays and theory find no light.
+/// The plane of the second surface cuts the first one, a diffuse wall or a mirror. Where the plane
+/// lies behind the first surface, photons, backward rays and theory find no light.
 #[test]
 fn a_plane_that_cuts_the_surface_before_it_is_decided() {
     let scene = scene("through_the_wall_before");
-    let prediction = by_theory(&scene, &scene.planes[0]);
-    for measured in [photons(&scene), backward(&scene)] {
-        assert_eq!(verdict(&scene, &measured, &prediction), Verdict::Pass);
-    }
+    both_tracers_agree_with_theory(&scene);
     let mirror = [
         ("Rectangle(", "Smooth(facing: (0, 0.05, -1), form: Plane, "),
         ("size: (1, 4), albedo: 1)", "aperture: 2, event: Mirror)"),
@@ -205,8 +202,5 @@ fn a_plane_that_cuts_the_surface_before_it_is_decided() {
 #[test]
 fn a_wall_beyond_the_plane_is_decided() {
     let scene = scene("wall_beyond_the_plane");
-    let prediction = by_theory(&scene, &scene.planes[0]);
-    for measured in [photons(&scene), backward(&scene)] {
-        assert_eq!(verdict(&scene, &measured, &prediction), Verdict::Pass);
-    }
+    both_tracers_agree_with_theory(&scene);
 }

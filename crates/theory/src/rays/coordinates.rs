@@ -37,7 +37,7 @@ impl Plane {
             return Some(self.arrives_on(patch, ray)?.0);
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
-        let is_behind = self.orientation != Orientation::Orthogonal && t < 0.0;
+        let is_behind = self.is_arriving() && t < 0.0;
         // Rounding must not decide whether an object at the distance of the plane stops its light.
         let share = match self.side {
             Side::Before => 1.0 - ROUNDING,
