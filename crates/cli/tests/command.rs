@@ -48,27 +48,42 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
+/// Returns the exit code and the text of a run of a scene.
+fn run_by(name: &str, method: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = etendue();
+    command
+        .args(["run", "--force", "--method", method])
+        .arg(scene(name))
+        .arg("--out")
+        .arg(folder.path());
+    let output = command.output().unwrap();
+    let table = String::from_utf8(output.stdout).unwrap();
+    (output.status.code(), table)
+}
+
 /// If a plane is crossed only by photons that were aimed at another plane, it does not fail. Such
 /// photons cover only a part of its window.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
-    let folder = tempfile::tempdir().unwrap();
-    let of = |method: &str| {
-        let mut command = etendue();
-        command
-            .args(["run", "--force", "--method", method])
-            .arg(scene("wild/seen_in_part.ron"))
-            .arg("--out")
-            .arg(folder.path());
-        let output = command.output().unwrap();
-        let table = String::from_utf8(output.stdout).unwrap();
-        (output.status.code(), table)
-    };
-    let (code, table) = of("photons");
+    let name = "wild/seen_in_part.ron";
+    let (code, table) = run_by(name, "photons");
     assert_eq!(code, Some(4), "{table}");
     let said = "far: 0 of 100000 photons that are aimed at this window reach it";
     assert!(table.contains(said), "{table}");
-    assert_eq!(of("backward").0, Some(0));
+    assert_eq!(run_by(name, "backward").0, Some(0));
+}
+
+/// If no photon of a light reaches a window, the plane does not fail, although the photons of
+/// another light fill the window.
+#[test]
+fn a_light_whose_photons_miss_the_window_is_undecided() {
+    let name = "wild/beam_on_a_tiny_window.ron";
+    let (code, table) = run_by(name, "photons");
+    assert_eq!(code, Some(4), "{table}");
+    let said = "comes from light 2, but 0 of its photons reach the window";
+    assert!(table.contains(said), "{table}");
+    assert_eq!(run_by(name, "backward").0, Some(0));
 }
 
 #[test]

@@ -8,9 +8,9 @@ impl Prediction {
     /// with the same name are the same parameter, whose derivatives add up.
     pub(crate) fn plus(self, other: Self) -> Self {
         let slices = sum(&self.slices, &other.slices);
-        let all = norm(&slices);
+        let all = slices.norm();
         let share = |of: &Self, error: f64| {
-            let size = norm(&of.slices);
+            let size = of.slices.norm();
             if size > 0.0 && all > 0.0 {
                 error * size / all
             } else {
@@ -63,11 +63,6 @@ fn sum(a: &Slices, b: &Slices) -> Slices {
     }
 }
 
-fn norm(slices: &Slices) -> f64 {
-    let squares = slices.half.iter().map(|s| s.norm_sqr());
-    squares.sum::<f64>().sqrt()
-}
-
 /// Returns the replicates of a sum. A light without replicates has the same slices in each.
 fn replicates(a: &Prediction, b: &Prediction) -> Vec<Slices> {
     let with = |of: &[Slices], all: &Slices| of.iter().map(|one| sum(one, all)).collect();
@@ -87,7 +82,7 @@ fn standard_error(replicates: &[Slices], mean: &Slices) -> f64 {
         off.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>()
     });
     let count = replicates.len() as f64;
-    let size = norm(mean);
+    let size = mean.norm();
     if size > 0.0 {
         (squares.sum::<f64>() / (count * (count - 1.0))).sqrt() / size
     } else {

@@ -99,20 +99,31 @@ impl Prediction {
     /// darkness where no theory applies and [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
+        let each = Self::of_lights(scene, plane, applicability);
+        let sum = each.map(|(_, of)| of).reduce(Self::plus);
+        sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability))
+    }
+
+    /// Returns the prediction of theory for each light that may reach a plane, with the number of
+    /// the light, which begins at 1.
+    pub fn of_lights<'a>(
+        scene: &'a Scene,
+        plane: &'a VirtualPlane,
+        applicability: &'a Applicability,
+    ) -> impl Iterator<Item = (usize, Self)> + 'a {
         let is_alone = scene.other_lights.is_empty();
         let each = applicability.of_lights(scene, plane);
-        let each = each.map(|(of, seen, theory, number)| {
-            let number = (!is_alone).then_some(number);
+        each.map(move |(of, seen, theory, number)| {
+            let among = (!is_alone).then_some(number);
             let (window, grid) = (plane.window, plane.grid);
             let seen = VirtualPlane {
                 window,
                 grid,
                 ..seen.clone()
             };
-            Self::of_light((of, &seen, theory), budget(scene), number)
-        });
-        let sum = each.reduce(Self::plus);
-        sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability))
+            let found = Self::of_light((of, &seen, theory), budget(scene), among);
+            (number, found)
+        })
     }
 
     /// Returns the prediction for one light. `number` is the number of the light if there are
@@ -135,8 +146,7 @@ impl Prediction {
                 let found = empty.by(view.as_ref(), over, (budget, number), |exact| {
                     FirstOrder::new(scene, view, over, exact)
                 });
-                let half = &found.slices.half;
-                let size = half.iter().map(|s| s.norm_sqr()).sum::<f64>().sqrt();
+                let size = found.slices.norm();
                 let meshes = applicability.off_patches.filter(|_| size > 0.0);
                 let error = |off: OffPatches| off.change * found.slices.at_zero() / size;
                 Self {

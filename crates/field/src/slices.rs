@@ -33,6 +33,13 @@ impl Slices {
         self.half.iter().all(|s| s.norm_sqr() <= 0.0)
     }
 
+    /// Returns ‖ℓ̂‖, the root of the sum of |ℓ̂|² over the stored half.
+    #[must_use]
+    pub fn norm(&self) -> f64 {
+        let squares = self.half.iter().map(|s| s.norm_sqr());
+        squares.sum::<f64>().sqrt()
+    }
+
     /// Returns the value ℓ̂(0) = ∫ L W.
     #[must_use]
     pub fn at_zero(&self) -> f64 {

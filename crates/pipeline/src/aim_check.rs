@@ -1,11 +1,12 @@
 //! Checks that the photons and rays of a failed plane are enough for its verdict.
 
 use crate::case::MeasuredScene;
-use crate::method::source;
-use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
-use etendue_field::Crossing;
+use crate::method::{judge_of, source};
+use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Prediction, Verdict};
+use etendue_field::{Crossing, PhotonSource, Window, percent};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
+use etendue_trace::AllLights;
 use rayon::prelude::*;
 
 /// Makes a failed plane undecided if too few of the photons aimed at its window reach it.
@@ -46,57 +47,132 @@ pub(crate) fn leave_open(
     Ok(())
 }
 
-/// Makes a failed comparison of photons with backward rays undecided if too few of either find one of
-/// several lights. The light of the others would hide that this light is missing.
+/// Makes a failed plane undecided if too few photons or rays of one of several lights reach its
+/// window. The light of the others would hide that this light is missing.
 pub(crate) fn leave_hidden_lights_open(
     case: &MeasuredScene,
     planes: &mut [PlaneComparison],
 ) -> Result<(), Failure> {
-    let lights = case.scene.lights().count() as u64;
-    if lights < 2 {
+    if case.scene.other_lights.is_empty() {
         return Ok(());
     }
-    let rays = case.scene.run.photons / lights;
-    let least = MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches);
-    for PlaneComparison { report, .. } in planes {
-        if report.class != Class::Reference || report.exact_verdict() != Verdict::Fail {
+    for (plane, compared) in planes.iter_mut().enumerate() {
+        if compared.report.exact_verdict() != Verdict::Fail {
             continue;
         }
-        for (number, light) in (1..).zip(case.scene.lights()) {
-            let Some(own) = light.plane_named(&report.name) else {
-                continue;
-            };
-            let alone = Scene {
-                other_lights: Vec::new(),
-                ..light.seen_at(&[own])
-            };
-            let photons = reached(alone.clone(), Method::Photons, rays)?;
-            let back = reached(alone, Method::Backward, rays)?;
-            if photons.max(back) > 0 && (photons.min(back) as f64) < least {
-                report.verdict = Verdict::Undecided;
-                report.undecided = Some(format!(
-                    "{photons} photons and {back} backward rays find light {number}, which are too few to compare them. Use more photons"
-                ));
-            }
+        let hidden = if compared.report.class == Class::Reference {
+            hidden_from_tracers(case, plane)?
+        } else {
+            hidden_from_photons(case, plane, compared)?
+        };
+        if let Some(hidden) = hidden {
+            compared.report.verdict = Verdict::Undecided;
+            compared.report.undecided = Some(hidden);
         }
     }
     Ok(())
+}
+
+/// Returns the number of photons or rays that each light needs in a window.
+fn least(case: &MeasuredScene) -> f64 {
+    MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches)
+}
+
+/// Returns a light that one of two tracers finds too rarely, in words.
+fn hidden_from_tracers(case: &MeasuredScene, plane: usize) -> Result<Option<String>, Failure> {
+    let judge = judge_of(case.method, &case.scene, &case.scene.planes[plane]);
+    let this = reached_by_light(case, plane, case.method)?;
+    let other = reached_by_light(case, plane, judge)?;
+    let lights = (1..).zip(this.into_iter().zip(other));
+    let mut hidden = lights.filter(|(_, (this, other))| {
+        (*this).max(*other) > 0 && ((*this).min(*other) as f64) < least(case)
+    });
+    let [method, judge] = [case.method, judge].map(Method::words);
+    Ok(hidden.next().map(|(number, (this, other))| {
+        format!(
+            "{this} {method} and {other} {judge} find light {number}, which are too few to compare them. Use more photons"
+        )
+    }))
+}
+
+/// Returns a light, in words, of which theory predicts more light than the noise, but which the
+/// photons find too rarely.
+fn hidden_from_photons(
+    case: &MeasuredScene,
+    plane: usize,
+    compared: &PlaneComparison,
+) -> Result<Option<String>, Failure> {
+    let Some(noise) = compared.report.noise_limit else {
+        return Ok(None);
+    };
+    let found = reached_by_light(case, plane, case.method)?;
+    let rare = |number: usize| (found[number - 1] as f64) < least(case);
+    let all = compared.predicted.norm();
+    let at = &case.scene.planes[plane];
+    let mut lights = Prediction::of_lights(&case.scene, at, &case.theories[plane]);
+    let hidden = lights.find_map(|(number, light)| {
+        let share = light.slices.norm() / all;
+        (rare(number) && share > noise).then_some((number, share))
+    });
+    Ok(hidden.map(|(number, share)| {
+        format!(
+            "{} of the predicted spectrum comes from light {number}, but {} of its {} reach the window, which are too few to compare. Use more photons",
+            percent(share, 3),
+            found[number - 1],
+            case.method.words()
+        )
+    }))
 }
 
 /// Returns how many of `photons` photons or rays of a scene with one plane reach the window of this
 /// plane.
 fn reached(mut alone: Scene, method: Method, photons: u64) -> Result<u64, Failure> {
     alone.run.photons = photons;
-    let source = source(&alone, method)?;
     let window = &alone.planes[0].window;
+    Ok(inside(
+        &*source(&alone, method)?,
+        0,
+        window,
+        alone.run.batches,
+    ))
+}
+
+/// Returns how many photons or rays of each light reach the window of a plane.
+fn reached_by_light(
+    case: &MeasuredScene,
+    plane: usize,
+    method: Method,
+) -> Result<Vec<u64>, Failure> {
+    let scene = &case.scene;
+    Ok(match method {
+        Method::Photons => of_each(&AllLights::photons(scene), scene, plane),
+        Method::Even => of_each(&AllLights::evenly(scene), scene, plane),
+        Method::Backward => {
+            let lights = AllLights::backward(scene).map_err(Failure::bad_input)?;
+            of_each(&lights, scene, plane)
+        }
+    })
+}
+
+fn of_each<S: PhotonSource>(lights: &AllLights<S>, scene: &Scene, plane: usize) -> Vec<u64> {
+    let window = &scene.planes[plane].window;
+    let reached = |(source, planes): (&S, &[usize])| {
+        let own = planes.iter().position(|whole| *whole == plane);
+        own.map_or(0, |own| inside(source, own, window, scene.run.batches))
+    };
+    lights.each().map(reached).collect()
+}
+
+/// Returns how many of the photons of a source are inside the window of its plane `plane`.
+fn inside(source: &dyn PhotonSource, plane: usize, window: &Window, batches: u32) -> u64 {
     let of_batch = |batch: u32| {
         let mut inside = 0;
-        let mut count = |_: usize, crossings: &[Crossing]| {
+        let mut count = |at: usize, crossings: &[Crossing]| {
             let seen = crossings.iter().filter(|c| window.value(&c.ray) > 0.0);
-            inside += seen.count() as u64;
+            inside += if at == plane { seen.count() as u64 } else { 0 };
         };
         source.emit(batch, &mut count, &|_| ());
         inside
     };
-    Ok((0..alone.run.batches).into_par_iter().map(of_batch).sum())
+    (0..batches).into_par_iter().map(of_batch).sum()
 }

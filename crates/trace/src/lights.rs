@@ -92,6 +92,13 @@ impl AllLights<Backward> {
 }
 
 impl<S: PhotonSource> AllLights<S> {
+    /// Returns the tracer of each light, with the index in the whole scene of each plane that the
+    /// light may reach.
+    pub fn each(&self) -> impl Iterator<Item = (&S, &[usize])> {
+        let lights = self.lights.iter();
+        lights.map(|light| (&light.source, &light.planes[..]))
+    }
+
     fn new(scene: &Scene, lights: Vec<TracedScene<S>>) -> Self {
         let is_precise = lights.iter().any(|light| light.source.is_precise());
         Self {
