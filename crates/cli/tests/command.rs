@@ -81,7 +81,7 @@ fn a_light_whose_photons_miss_the_window_is_undecided() {
     let name = "wild/beam_on_a_tiny_window.ron";
     let (code, table) = run_by(name, "photons");
     assert_eq!(code, Some(4), "{table}");
-    let said = "comes from light 2, but 0 of its photons reach the window";
+    let said = "comes from light 2, but 0 photons in the window are from this light";
     assert!(table.contains(said), "{table}");
     assert_eq!(run_by(name, "backward").0, Some(0));
 }

@@ -4,7 +4,7 @@ use crate::case::MeasuredScene;
 use crate::inquiry::inquire;
 use crate::reporter::{Reporter, Work};
 use crate::summary::Summary;
-use crate::{aim_check, field};
+use crate::{enough_photons, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>,
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
     });
     let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
-    aim_check::leave_open(case, &mut planes)?;
-    aim_check::leave_hidden_lights_open(case, &mut planes)?;
+    enough_photons::leave_open(case, &mut planes)?;
+    enough_photons::leave_hidden_lights_open(case, &mut planes)?;
     Ok(planes)
 }

@@ -10,11 +10,11 @@
     reason = "a Failure holds the complete message for the user"
 )]
 
-mod aim_check;
 mod case;
 pub mod checkpoint;
 pub mod covariance;
 pub mod diff;
+mod enough_photons;
 pub mod field;
 mod follower;
 mod inquiry;

@@ -106,21 +106,23 @@ fn hidden_from_photons(
         return Ok(None);
     };
     let found = reached_by_light(case, plane, case.method)?;
-    let rare = |number: usize| (found[number - 1] as f64) < least(case);
+    let is_rare = |count: &u64| (*count as f64) < least(case);
+    if !found.iter().any(is_rare) {
+        return Ok(None);
+    }
     let all = compared.predicted.norm();
     let at = &case.scene.planes[plane];
     let mut lights = Prediction::of_lights(&case.scene, at, &case.theories[plane]);
-    let hidden = lights.find_map(|(number, light)| {
+    Ok(lights.find_map(|(number, light)| {
+        let count = found.get(number - 1).filter(|count| is_rare(count))?;
         let share = light.slices.norm() / all;
-        (rare(number) && share > noise).then_some((number, share))
-    });
-    Ok(hidden.map(|(number, share)| {
-        format!(
-            "{} of the predicted spectrum comes from light {number}, but {} of its {} reach the window, which are too few to compare. Use more photons",
-            percent(share, 3),
-            found[number - 1],
-            case.method.words()
-        )
+        (share > noise).then(|| {
+            format!(
+                "{} of the predicted spectrum comes from light {number}, but {count} {} in the window are from this light, which are too few to compare. Use more photons",
+                percent(share, 3),
+                case.method.words()
+            )
+        })
     }))
 }
 
