@@ -42,7 +42,8 @@ fn difference(full: &Measurement, reduced: &Measurement, plane: usize) -> f64 {
     ratios.fold(0.0, f64::max)
 }
 
-/// Lights without extent, narrow lights with nets, and long runs need full precision.
+/// Lights without extent in position or slope, narrow lights, narrow windows, and long runs need full
+/// precision.
 #[test]
 fn quiet_photons_have_full_precision() {
     let precise = |text: &str, photons: u64| {
@@ -56,6 +57,11 @@ fn quiet_photons_have_full_precision() {
     let narrow = travel.replace("size: (0.2, 0.2)", "size: (0.2, 0.001)");
     assert_ne!(narrow, travel);
     assert!(precise(point, 1 << 22) && precise(&narrow, 1 << 22));
+    let area = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2), radiance: 1.0)";
+    let beam = travel.replace(area, "Beam(center: (0, 0, 0), image: (width: (0.2, 0.2)))");
+    let thin = travel.replace("u: Hann(0.5)", "u: Hann(0.001)");
+    assert!(beam != travel && thin != travel);
+    assert!(precise(&beam, 1 << 22) && precise(&thin, 1 << 22));
     assert!(!precise(travel, 1 << 22) && precise(travel, 1 << 30));
 }
 

@@ -17,6 +17,7 @@ use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope, wedge_share};
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
+use std::borrow::Cow;
 
 /// The comparison of a plane: the report, and the arrays from which the report is computed.
 #[derive(Clone, Debug)]
@@ -137,6 +138,7 @@ struct ComparedSides<'a> {
 struct Judgement {
     agreement: Agreement,
     p_value: Option<f64>,
+    chi2_per_dof: Option<f64>,
     first_order: Option<FirstOrderReport>,
     verdict: Verdict,
     photons_needed: Option<f64>,
@@ -146,13 +148,20 @@ struct Judgement {
 impl ComparedSides<'_> {
     fn judged(&self, test: &Test) -> Judgement {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
-        let p_value = self.residuals.p_value(test.seed);
+        let mut tested = Cow::Borrowed(self.residuals);
+        let mut p_value = tested.p_value(test.seed);
+        if p_value.is_some_and(|p| p < test.level) {
+            // The error of the photons' transform may exceed their noise.
+            tested = Cow::Owned(self.residuals.forgiving(self.predicted, 0.0));
+            p_value = tested.p_value(test.seed);
+        }
+        // Without photons, there is no noise to compare with.
+        let has_photons = self.inside() > 0;
         let agrees = if self.predicted.is_dark() {
             self.is_dark()
         } else {
             // Residuals that are all zero have no p-value.
             p_value.is_none_or(|p| p >= test.level)
-                || self.agrees_within(0.0, test)
                 || agreement.is_explained(self.prediction)
                 || self.is_excused(test)
         };
@@ -170,7 +179,8 @@ impl ComparedSides<'_> {
         let has_wrong_map = first_order.as_ref().map(|f| f.verdict) == Some(Verdict::Fail);
         Judgement {
             agreement,
-            p_value,
+            p_value: p_value.filter(|_| has_photons),
+            chi2_per_dof: tested.chi2_per_dof(self.variance).filter(|_| has_photons),
             first_order,
             photons_needed: photons_needed.filter(|_| open.is_some()),
             open,
@@ -248,22 +258,18 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Checks whether the possible error of a quadrature explains the whole disagreement, for
-    /// example where the photons have almost no noise.
+    /// Checks whether photons agree with any spectrum near the prediction, for example where the
+    /// photons have almost no noise. At each frequency, this spectrum may differ from the
+    /// prediction by the possible error of a quadrature, and by the error of the photons' transform.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
-        error.is_some_and(|error| self.agrees_within(error, test))
-    }
-
-    /// Checks whether photons agree with any spectrum near the prediction. At each frequency, this
-    /// spectrum may differ from the prediction by the relative error `error`, plus the error of the
-    /// photons' transform.
-    fn agrees_within(&self, error: f64, test: &Test) -> bool {
-        let p = self
-            .residuals
-            .forgiving(self.predicted, error)
-            .p_value(test.seed);
-        p.is_none_or(|p| p >= test.level)
+        error.is_some_and(|error| {
+            let p = self
+                .residuals
+                .forgiving(self.predicted, error)
+                .p_value(test.seed);
+            p.is_none_or(|p| p >= test.level)
+        })
     }
 
     /// Returns the number of photons with which the comparison would be decided. Returns `None`
@@ -329,7 +335,7 @@ impl ComparedSides<'_> {
         let tally = self.measurement.tally(self.index);
         let (grid, prediction) = (&plane.grid, self.prediction);
         let agreement = &judged.agreement;
-        let noise = agreement.noise_limit();
+        let noise = agreement.noise_limit().filter(|_| tally.inside > 0);
         Ok(PlaneReport {
             name: plane.name.clone(),
             class: prediction.class,
@@ -347,7 +353,7 @@ impl ComparedSides<'_> {
             excess_squared_error: agreement.excess_squared_error,
             noise_floor_db: agreement.noise_floor_db,
             noise_dof: noise_dof(self.measurement, self.index)?,
-            chi2_per_dof: self.residuals.chi2_per_dof(self.variance),
+            chi2_per_dof: judged.chi2_per_dof,
             p_value: judged.p_value,
             parameters: self.parameters(),
             slope: self.slope(grid),

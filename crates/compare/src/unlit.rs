@@ -42,10 +42,13 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         }
         cuts.dedup();
         if whole > 0.0 && section.measure() <= ROUNDING * whole {
-            return Some(format!(
-                "the edges of {} block all paths of light",
-                cuts.join(" and ")
-            ));
+            let block = if cuts.len() == 1 {
+                "blocks"
+            } else {
+                "together block"
+            };
+            let layers = cuts.join(" and ");
+            return Some(format!("{layers} {block} all paths of light"));
         }
     }
     let covering = layers

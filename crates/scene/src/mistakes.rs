@@ -5,7 +5,7 @@ use crate::scene::{BlockerLayer, Scene};
 use etendue_field::{Light, Mask, VirtualPlane, Window, brief};
 use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A length above this limit, in metres, is suspicious if the other lengths of the scene are about
 /// a metre.
@@ -23,13 +23,7 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     for (i, (file, plane)) in planes {
         told.extend(coarse(i, file, plane, &scene.file.frequencies));
     }
-    for scene in scene.lights() {
-        let past = scene
-            .planes
-            .iter()
-            .flat_map(|plane| past_edges(scene, plane));
-        told.extend(past);
-    }
+    told.extend(past_edges(scene));
     let steep = steep(&scene.file.window);
     long(scene).into_iter().chain(steep).chain(told).collect()
 }
@@ -144,22 +138,33 @@ fn coarse(
     told.collect()
 }
 
-/// Warns of arrays of blockers if light passes beside the array to a plane.
-fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
-    let told = arrays.filter_map(|layer| {
-        let edges = edges(layer)?;
-        let reach = reach(scene, plane, layer.distance)?;
-        let beyond = (0..2).any(|axis| reach[axis] > edges[axis]);
-        beyond.then(|| {
-            format!(
-                "{}: light that reaches this plane passes {} at up to {} m from the central ray. The array ends at {} m, so nothing blocks the light beyond its edge",
-                plane.name,
-                layer.name,
-                pair(reach),
-                pair(edges)
-            )
-        })
+/// Warns of arrays of blockers around the central ray if light passes beside the array to a plane.
+fn past_edges(scene: &Scene) -> Vec<String> {
+    // With several lights, the warning is about the light that reaches farthest.
+    let mut all: BTreeMap<[&str; 2], [[f64; 2]; 2]> = BTreeMap::new();
+    for of in scene.lights() {
+        for layer in &of.blockers {
+            let Some(edges) = edges(layer) else {
+                continue;
+            };
+            for plane in &of.planes {
+                let Some(reach) = reach(of, plane, layer.distance) else {
+                    continue;
+                };
+                let seen = all.entry([&plane.name, &layer.name]).or_default();
+                *seen = [[0, 1].map(|axis| seen[0][axis].max(reach[axis])), edges];
+            }
+        }
+    }
+    let beyond = all
+        .into_iter()
+        .filter(|(_, [reach, edges])| (0..2).any(|axis| reach[axis] > edges[axis]));
+    let told = beyond.map(|([plane, layer], [reach, edges])| {
+        format!(
+            "{plane}: light that reaches this plane passes {layer} at up to {} m from the central ray. The array ends at {} m, so nothing blocks the light beyond its edge",
+            pair(reach),
+            pair(edges)
+        )
     });
     told.collect()
 }
@@ -170,13 +175,13 @@ fn pair([x, y]: [f64; 2]) -> String {
 
 /// Returns the distances from the central ray to the edges of an array, along X and along Y. An
 /// edge of an array lies half a pitch beyond the centres of the outermost shapes, or at the ends
-/// of bars.
+/// of bars. Returns `None` for an array beside the central ray.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
     };
     let half = 0.5 * layer.pitch?;
-    Some([0, 1].map(|axis| {
+    let edges = [0, 1].map(|axis| {
         let halves = shapes.iter().map(|shape| {
             let bounds = shape.bounds();
             (bounds.center[axis], half.max(0.5 * bounds.size[axis]))
@@ -186,7 +191,8 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
             [low.min(a), high.max(b)]
         });
         high.min(-low)
-    }))
+    });
+    edges.iter().all(|edge| *edge > 0.0).then_some(edges)
 }
 
 /// Returns how far the light that a plane sees extends from the central ray, at a given distance

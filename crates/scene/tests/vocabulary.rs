@@ -325,11 +325,11 @@ fn holes_have_limits() {
         ),
         (
             "Polygon(corners: [(0, 0), (1, 1), (1, 0), (0, 1)])",
-            format!("hole.corners is 4 corners of no convex polygon; allowed: {order}"),
+            format!("hole.corners is 4 corners that form no convex polygon; allowed: {order}"),
         ),
         (
             "Polygon(corners: [(0, 0), (1, 0), (2, 0)])",
-            format!("hole.corners is 3 corners of no convex polygon; allowed: {order}"),
+            format!("hole.corners is 3 corners that form no convex polygon; allowed: {order}"),
         ),
     ] {
         let error = with_hole(hole).unwrap_err().to_string();

@@ -15,7 +15,7 @@ use crate::photon_group::{ABREAST, PhotonGroup};
 use crate::plane_on_leg::{PlaneOnLeg, bends};
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
-use etendue_scene::{Object, Sampling, Scene};
+use etendue_scene::{Object, Scene};
 use etendue_transform::random::Stream;
 use fearless_simd::Level;
 use std::ops::Range;
@@ -56,10 +56,10 @@ pub struct Tracer {
 /// standard errors, with 5·10⁷ photons 0.005 (results/performance.md).
 pub(crate) const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 
-/// The smallest number of cycles of the largest frequency across the width of a light with which
-/// nets have reduced precision. The spectrum of a narrower light does not fall beyond the grid, and
-/// nets sample it with little noise.
-const MIN_LIGHT_CYCLES: f64 = 1.25;
+/// The smallest number of cycles of the largest frequency across the light in a window, in position
+/// and in slope, with which the transform has reduced precision. The spectrum of narrower light does
+/// not fall beyond the grid, and it may have no noise: all photons of a beam have the slope zero.
+const MIN_CYCLES: f64 = 1.25;
 
 /// A leg of the path for photons.
 #[derive(Debug)]
@@ -393,15 +393,17 @@ impl FlightLeg {
 
 /// Checks whether spectra of a scene need the full precision of the transform.
 fn is_precise(scene: &Scene) -> bool {
-    let is_narrow = |plane: &VirtualPlane| {
-        [0, 1].into_iter().any(|axis| {
+    let is_narrow = |VirtualPlane { window, grid, .. }: &VirtualPlane| {
+        let profiles = [[&window.x, &window.u], [&window.y, &window.v]];
+        (0..2).zip(profiles).any(|(axis, profiles)| {
+            let [x, u] = profiles.map(|profile| profile.half_width());
             let [low, high] = scene.light.extent(axis);
-            (high - low) * plane.grid.rho.max() < MIN_LIGHT_CYCLES
+            let width = (high - low).min(2.0 * x);
+            let slopes = 2.0 * scene.light.steepest(axis).min(u);
+            width * grid.rho.max() < MIN_CYCLES || slopes * grid.nu.max() < MIN_CYCLES
         })
     };
-    let has_quiet_nets =
-        scene.run.sampling != Sampling::Random && scene.planes.iter().any(is_narrow);
-    scene.run.photons > MAX_REDUCED_PHOTONS || has_quiet_nets
+    scene.run.photons > MAX_REDUCED_PHOTONS || scene.planes.iter().any(is_narrow)
 }
 
 impl PhotonSource for Tracer {

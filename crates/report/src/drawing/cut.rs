@@ -1,6 +1,6 @@
 //! A plane that cuts the scene, and the resulting segments.
 
-use etendue_field::{Light, Mask, Patch, Shape, Specular, VirtualPlane};
+use etendue_field::{Light, Mask, Patch, Rectangle, Shape, Specular, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_pipeline::table::spaced;
 use etendue_scene::limits::MAX_NUMBER;
@@ -235,14 +235,21 @@ impl CuttingPlane<'_> {
                 shapes,
                 half_planes,
             } => {
-                // Jitter may move all rows of blockers off the cut, so the row nearest to the cut
-                // is shown.
-                let off = |shape: &Shape| shape.bounds().center[1 - axis].abs();
-                let nearest = shapes.iter().map(off).fold(f64::INFINITY, f64::min);
-                let row = shapes
-                    .iter()
-                    .map(Shape::bounds)
-                    .filter(|r| r.center[1 - axis].abs() <= nearest + 0.5 * r.size[1 - axis]);
+                // If no shape is on the cut, the nearest is shown. Jitter may move a row of an
+                // array partly off the cut, so all of the row nearest to the cut is shown.
+                let is_array = layer.pitch.is_some();
+                let half = |r: &Rectangle| 0.5 * r.size[1 - axis];
+                let off = |r: &Rectangle| {
+                    let center = r.center[1 - axis].abs();
+                    center - if is_array { 0.0 } else { half(r).min(center) }
+                };
+                let bounds = shapes.iter().map(Shape::bounds);
+                let nearest = bounds
+                    .clone()
+                    .map(|r| off(&r))
+                    .fold(f64::INFINITY, f64::min);
+                let row =
+                    bounds.filter(|r| off(r) <= nearest + if is_array { half(r) } else { 0.0 });
                 let halves = half_planes.iter().filter_map(|half| {
                     match (half.axis == axis, half.above) {
                         (true, true) => Some([half.edge, f64::INFINITY]),

@@ -297,7 +297,7 @@ impl Resolver<'_> {
         if product > limits::PRODUCTS {
             let most = limits::PRODUCTS;
             let allowed = format!(
-                "at most {most:.0e}: the numbers of shapes of the light and of all layers are multiplied"
+                "at most {most:.0e}: the numbers of shapes of the light (64 for a disc) and of all layers are multiplied"
             );
             self.faults
                 .add("blockers: shapes", number(product), allowed);

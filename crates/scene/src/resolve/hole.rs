@@ -31,7 +31,7 @@ impl Resolver<'_> {
         if polygon.is_none() && self.faults.all.is_empty() {
             self.faults.add(
                 field,
-                format!("{} corners of no convex polygon", corners.len()),
+                format!("{} corners that form no convex polygon", corners.len()),
                 "corners in order around a convex polygon, no three of them on a line",
             );
         }

@@ -62,8 +62,9 @@ pub enum BlockersFile {
         #[schemars(transform = told("a share of the pitch", "0.5"), transform = within(1e-9, 1.0))]
         fill: f64,
     },
-    /// Opaque pixels of a picture: a pixel is opaque if its value is below 0.5. X points to the right
-    /// of the picture and Y to its top; outside, all is clear.
+    /// Opaque pixels of a picture: a pixel is opaque if its value, or the luminance or selected
+    /// channel of its colour, is below 0.5; alpha is ignored. X points to the right of the picture
+    /// and Y to its top; outside, all is clear.
     Picture {
         /// Name.
         #[schemars(transform = name_of_blockers)]
