@@ -116,7 +116,7 @@ class BlockersMeshFields(TypedDict):
 
 
 class BlockersPicture(TypedDict):
-    """Opaque pixels of a picture: a pixel is opaque if its value is below 0.5. X points to the right of the picture and Y to its top; outside, all is clear."""
+    """Opaque pixels of a picture: a pixel is opaque if its value, or the luminance or selected channel of its colour, is below 0.5; alpha is ignored. X points to the right of the picture and Y to its top; outside, all is clear."""
 
     Picture: "BlockersPictureFields"
 
