@@ -411,7 +411,10 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
     assert_eq!(compared(1e-4, stated).verdict, Verdict::Pass);
     // The error of the photons' fast transform may be as large as this tolerance.
-    assert_eq!(compared(1e-7, None).verdict, Verdict::Pass);
+    let report = compared(1e-7, None);
+    assert_eq!(report.verdict, Verdict::Pass);
+    // With noise of 1e-9, an error of 1e-7 has χ² of 1e4 at its frequency.
+    assert!(report.p_value.unwrap() >= TEST.level && report.chi2_per_dof.unwrap() < 2.0);
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
 
@@ -492,6 +495,22 @@ fn a_batch_without_photons_decides_nothing() {
     let report = judged(&holed);
     assert_eq!(report.verdict, Verdict::Undecided);
     assert!(report.photons_needed.is_some() && report.undecided.is_some());
+}
+
+/// Without photons, there is no noise with which a disagreement can be compared.
+#[test]
+fn a_window_without_photons_has_no_noise() {
+    let [predicted, _] = spectrum(1.0);
+    let dark = measurement(&Slices::zeros(predicted.grid), 0.0, 1);
+    let report = compare(&dark, 0, &prediction(1.0), &TEST).unwrap().report;
+    assert_eq!(report.verdict, Verdict::Undecided);
+    assert_eq!(
+        report
+            .p_value
+            .or(report.chi2_per_dof)
+            .or(report.noise_limit),
+        None
+    );
 }
 
 /// One heavy photon carries half of the light of a batch, or half of the light of a replicate of

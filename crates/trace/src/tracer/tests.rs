@@ -4,7 +4,7 @@
 use super::*;
 use crate::lanes::lanes;
 use crate::mesh_order::OrderMemory;
-use etendue_scene::{SceneFile, resolve};
+use etendue_scene::{Sampling, SceneFile, resolve};
 use etendue_transform::random::words;
 
 /// Returns random numbers 0..`count`.
