@@ -230,7 +230,7 @@ fn darkness_has_a_reason() {
     let closed = [
         (
             both.as_str(),
-            "the edges of other and edge block all paths of light",
+            "other and edge together block all paths of light",
         ),
         (lid, "lid blocks all paths of light"),
     ];
@@ -301,7 +301,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
         )
     };
     let narrow = of(&built(0.03));
-    let dark = "the edges of edge block all paths of light";
+    let dark = "edge blocks all paths of light";
     assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
     let wide = of(&built(0.4));
     assert_eq!((wide.class(), wide.dark), (Class::FirstOrder, None));
@@ -383,7 +383,7 @@ fn light_passes_an_aperture_through_its_hole() {
         )
     };
     let built = |x: f64, at: &str| of(&scene(LIGHT, &hole(x), floor, r#""floor""#, at, 0.1));
-    let dark = "the edges of iris block all paths of light";
+    let dark = "iris blocks all paths of light";
     let before = r#"Before("floor")"#;
     assert_eq!(built(0.0, before).dark, None);
     assert_eq!(built(50.0, before).dark.as_deref(), Some(dark));
