@@ -246,8 +246,10 @@ def test_the_command_writes_the_same_bytes(tmp_path):
     ],
 )
 def test_an_interrupt_leaves_nothing(tmp_path, call):
+    # A job in the background may ignore interrupts, and its children too.
     code = f"""
-import etendue, os, sys, time
+import etendue, os, signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 out = sys.argv[3]
 def told(n):
     if not told.said: print("on", flush=True); told.said = True
