@@ -150,10 +150,14 @@ impl ComparedSides<'_> {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let mut tested = Cow::Borrowed(self.residuals);
         let mut p_value = tested.p_value(test.seed);
-        if p_value.is_some_and(|p| p < test.level) {
+        let passes = |p: Option<f64>| p.is_none_or(|p| p >= test.level);
+        if !passes(p_value) {
             // The error of the photons' transform may exceed their noise.
-            tested = Cow::Owned(self.residuals.forgiving(self.predicted, 0.0));
-            p_value = tested.p_value(test.seed);
+            let within = self.residuals.forgiving(self.predicted, 0.0);
+            let p_within = within.p_value(test.seed);
+            if passes(p_within) {
+                (tested, p_value) = (Cow::Owned(within), p_within);
+            }
         }
         // Without photons, there is no noise to compare with.
         let has_photons = self.inside() > 0;
@@ -161,9 +165,7 @@ impl ComparedSides<'_> {
             self.is_dark()
         } else {
             // Residuals that are all zero have no p-value.
-            p_value.is_none_or(|p| p >= test.level)
-                || agreement.is_explained(self.prediction)
-                || self.is_excused(test)
+            passes(p_value) || agreement.is_explained(self.prediction) || self.is_excused(test)
         };
         let photons_needed = self.photons_needed(&agreement, agrees, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);
