@@ -62,28 +62,28 @@ fn run_by(name: &str, method: &str) -> (Option<i32>, String) {
     (output.status.code(), table)
 }
 
+/// Checks that photons leave a scene undecided for the reason `said`, and that backward rays decide.
+fn only_backward_rays_decide(name: &str, said: &str) {
+    let (code, table) = run_by(name, "photons");
+    assert_eq!(code, Some(4), "{table}");
+    assert!(table.contains(said), "{table}");
+    assert_eq!(run_by(name, "backward").0, Some(0));
+}
+
 /// If a plane is crossed only by photons that were aimed at another plane, it does not fail. Such
 /// photons cover only a part of its window.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
-    let name = "wild/seen_in_part.ron";
-    let (code, table) = run_by(name, "photons");
-    assert_eq!(code, Some(4), "{table}");
     let said = "far: 0 of 100000 photons that are aimed at this window reach it";
-    assert!(table.contains(said), "{table}");
-    assert_eq!(run_by(name, "backward").0, Some(0));
+    only_backward_rays_decide("wild/seen_in_part.ron", said);
 }
 
 /// If no photon of a light reaches a window, the plane does not fail, although the photons of
 /// another light fill the window.
 #[test]
 fn a_light_whose_photons_miss_the_window_is_undecided() {
-    let name = "wild/beam_on_a_tiny_window.ron";
-    let (code, table) = run_by(name, "photons");
-    assert_eq!(code, Some(4), "{table}");
     let said = "comes from light 2, but 0 photons in the window are from this light";
-    assert!(table.contains(said), "{table}");
-    assert_eq!(run_by(name, "backward").0, Some(0));
+    only_backward_rays_decide("wild/beam_on_a_tiny_window.ron", said);
 }
 
 #[test]

@@ -150,22 +150,20 @@ impl ComparedSides<'_> {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let mut tested = Cow::Borrowed(self.residuals);
         let mut p_value = tested.p_value(test.seed);
-        let passes = |p: Option<f64>| p.is_none_or(|p| p >= test.level);
-        if !passes(p_value) {
+        if !test.accepts(p_value) {
             // The error of the photons' transform may exceed their noise.
             let within = self.residuals.forgiving(self.predicted, 0.0);
             let p_within = within.p_value(test.seed);
-            if passes(p_within) {
+            if test.accepts(p_within) {
                 (tested, p_value) = (Cow::Owned(within), p_within);
             }
         }
-        // Without photons, there is no noise to compare with.
-        let has_photons = self.inside() > 0;
         let agrees = if self.predicted.is_dark() {
             self.is_dark()
         } else {
-            // Residuals that are all zero have no p-value.
-            passes(p_value) || agreement.is_explained(self.prediction) || self.is_excused(test)
+            test.accepts(p_value)
+                || agreement.is_explained(self.prediction)
+                || self.is_excused(test)
         };
         let photons_needed = self.photons_needed(&agreement, agrees, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);
@@ -181,8 +179,8 @@ impl ComparedSides<'_> {
         let has_wrong_map = first_order.as_ref().map(|f| f.verdict) == Some(Verdict::Fail);
         Judgement {
             agreement,
-            p_value: p_value.filter(|_| has_photons),
-            chi2_per_dof: tested.chi2_per_dof(self.variance).filter(|_| has_photons),
+            p_value,
+            chi2_per_dof: tested.chi2_per_dof(self.variance),
             first_order,
             photons_needed: photons_needed.filter(|_| open.is_some()),
             open,
@@ -262,15 +260,12 @@ impl ComparedSides<'_> {
 
     /// Checks whether photons agree with any spectrum near the prediction, for example where the
     /// photons have almost no noise. At each frequency, this spectrum may differ from the
-    /// prediction by the possible error of a quadrature, and by the error of the photons' transform.
+    /// prediction by the possible error of a quadrature or of the photons' transform.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
         error.is_some_and(|error| {
-            let p = self
-                .residuals
-                .forgiving(self.predicted, error)
-                .p_value(test.seed);
-            p.is_none_or(|p| p >= test.level)
+            let within = self.residuals.forgiving(self.predicted, error);
+            test.accepts(within.p_value(test.seed))
         })
     }
 
@@ -337,7 +332,9 @@ impl ComparedSides<'_> {
         let tally = self.measurement.tally(self.index);
         let (grid, prediction) = (&plane.grid, self.prediction);
         let agreement = &judged.agreement;
-        let noise = agreement.noise_limit().filter(|_| tally.inside > 0);
+        // Without photons, there is no noise to compare with.
+        let has_photons = tally.inside > 0;
+        let noise = agreement.noise_limit().filter(|_| has_photons);
         Ok(PlaneReport {
             name: plane.name.clone(),
             class: prediction.class,
@@ -355,8 +352,8 @@ impl ComparedSides<'_> {
             excess_squared_error: agreement.excess_squared_error,
             noise_floor_db: agreement.noise_floor_db,
             noise_dof: noise_dof(self.measurement, self.index)?,
-            chi2_per_dof: judged.chi2_per_dof,
-            p_value: judged.p_value,
+            chi2_per_dof: judged.chi2_per_dof.filter(|_| has_photons),
+            p_value: judged.p_value.filter(|_| has_photons),
             parameters: self.parameters(),
             slope: self.slope(grid),
             spectral_moments: [[2, 0], [1, 1], [0, 2]]
@@ -538,7 +535,7 @@ impl PlaneComparison {
     ) {
         let report = &mut self.report;
         let numbers = full_radial.report;
-        let disagrees = numbers.p_value.is_some_and(|p| p < test.level);
+        let disagrees = !test.accepts(numbers.p_value);
         let error = prediction.systematic_error().zip(report.noise_limit);
         let is_excused = error.is_some_and(|(error, noise)| error > UNSEEN * noise);
         report.full_radial = Some(numbers);

@@ -33,6 +33,12 @@ impl Test {
             seed: run.seed,
         }
     }
+
+    /// Checks whether a p-value is not below the level. Residuals that are all zero agree, and have
+    /// no p-value.
+    pub(crate) fn accepts(&self, p_value: Option<f64>) -> bool {
+        p_value.is_none_or(|p| p >= self.level)
+    }
 }
 
 /// The verdict on a plane or a run.

@@ -31,7 +31,7 @@ pub(crate) fn leave_open(
         }
         let photons = case.scene.run.photons / count;
         let reach = reached(case.scene.seen_at(&[plane]), Method::Photons, photons)?;
-        if (reach as f64) < MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches) {
+        if (reach as f64) < least(case) {
             let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail
@@ -73,7 +73,7 @@ pub(crate) fn leave_hidden_lights_open(
     Ok(())
 }
 
-/// Returns the number of photons or rays that each light needs in a window.
+/// Returns the number of photons or rays that a verdict needs in a window.
 fn least(case: &MeasuredScene) -> f64 {
     MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches)
 }

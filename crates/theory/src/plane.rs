@@ -17,8 +17,8 @@ pub struct Plane {
     /// The surface that gives the local normals. If it is `None`, all normals are along D.
     pub patch: Option<Patch>,
     /// Whether the plane lies before or after the objects at its distance. If light arrives at the
-    /// plane's surface, this surface is not among the system's elements. If light leaves the plane's
-    /// surface, this surface is the last element.
+    /// plane's surface, this surface is not among the system's elements. If light leaves it, this
+    /// surface is the last element.
     pub side: Side,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,

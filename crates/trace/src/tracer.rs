@@ -57,8 +57,9 @@ pub struct Tracer {
 pub(crate) const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 
 /// The smallest number of cycles of the largest frequency across the light in a window, in position
-/// and in slope, with which the transform has reduced precision. The spectrum of narrower light does
-/// not fall beyond the grid, and it may have no noise: all photons of a beam have the slope zero.
+/// and in slope, with which the transform has reduced precision. The spectrum of narrower light
+/// does not fall beyond the grid, and it may have no noise: all photons of a beam have the slope
+/// zero.
 const MIN_CYCLES: f64 = 1.25;
 
 /// A leg of the path for photons.

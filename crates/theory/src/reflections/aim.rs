@@ -66,8 +66,8 @@ impl DirectionCoordinates {
     }
 
     /// Returns positions on the plane or on its surface, for the leg from the last scatterer.
-    /// Returns `None` if the leg does not run straight to the plane, or if the plane cuts the surface
-    /// at which the leg begins.
+    /// Returns `None` if the leg does not run straight to the plane, or if the plane cuts the
+    /// surface at which the leg begins.
     pub(super) fn at_plane(
         view: &Observed<ReflectionSystem>,
         scatterers: &[ScatteringSurface],
