@@ -69,9 +69,13 @@ fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     obstacles
 }
 
-/// Checks whether light meets an object at `distance` on its way to the plane.
+/// Checks whether light meets an object at `distance` on the first leg, on its way to the plane.
 #[must_use]
 pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool {
+    // A layer may stand behind a further light.
+    if distance <= 0.0 {
+        return false;
+    }
     if plane.leg > 0 {
         return distance < scene.path.first_hit();
     }

@@ -20,7 +20,7 @@ pub struct Scene {
     /// The light, at distance zero.
     pub light: Light,
     /// A scene for each further light. It equals this scene, but has only this light, and its
-    /// distances begin at this light. Planes and blockers behind the light are omitted.
+    /// distances begin at this light. Planes behind the light are omitted.
     pub other_lights: Vec<Self>,
     /// The layers of blockers, in the order of their distances.
     pub blockers: Vec<BlockerLayer>,
@@ -148,7 +148,8 @@ impl CentralRay {
 pub struct BlockerLayer {
     /// Name.
     pub name: String,
-    /// Distance of the layer's plane from the light.
+    /// Distance of the layer's plane from the light. It is negative if the layer stands behind a
+    /// further light; light meets such a layer only on later legs.
     pub distance: f64,
     /// Distance between repetitions of the mask; `None` if the mask is not repeated. Repetitions
     /// replicate spectra at multiples of 1/pitch.

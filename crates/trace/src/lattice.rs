@@ -294,7 +294,7 @@ const REPLICA_POWER: f64 = 0.1;
 /// Returns the spectrum of the light, and its first replicas behind periodic blockers.
 fn replicas(scene: &Scene) -> Vec<Replica> {
     let mut all = vec![DIRECT];
-    for layer in &scene.blockers {
+    for layer in scene.blockers.iter().filter(|layer| layer.distance > 0.0) {
         let Some(pitch) = layer.pitch else { continue };
         for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
             if (i, j) != (0, 0) {

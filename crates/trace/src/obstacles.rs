@@ -8,7 +8,7 @@ use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveHit, PrimitiveSet, TaggedPrimitive};
 use crate::unbounded::Unbounded;
 use etendue_field::{Frame, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
-use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
+use etendue_scene::{BlockerLayer, Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
 /// The kind of obstacle that a photon meets.
@@ -98,7 +98,8 @@ impl Obstacles {
         let (mut unbounded, mut semi_transparent) = (Vec::new(), Vec::new());
         let around = Around(leg.frame);
         let later = leg.leaves.map(|_| leg.frame);
-        for layer in &scene.blockers {
+        let is_met = |layer: &&BlockerLayer| later.is_some() || layer.distance > 0.0;
+        for layer in scene.blockers.iter().filter(is_met) {
             let distance = layer.distance;
             match &layer.mask {
                 Mask::Opaque {

@@ -94,7 +94,8 @@ fn behind(depth: f64, frame: &Frame) -> Frame {
     Frame { origin, ..*frame }
 }
 
-/// Returns a scene whose distances begin at the distance `depth` on the central ray.
+/// Returns a scene whose distances begin at the distance `depth` on the central ray. Layers before
+/// this distance are kept, because light that a surface sends back may meet them.
 fn moved(scene: &Scene, depth: f64) -> Scene {
     let mut moved = scene.clone();
     if depth == 0.0 {
@@ -116,7 +117,6 @@ fn moved(scene: &Scene, depth: f64) -> Scene {
             hit.point.z -= depth;
         }
     }
-    moved.blockers.retain(|layer| layer.distance > depth);
     for layer in &mut moved.blockers {
         layer.distance -= depth;
     }
