@@ -57,6 +57,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- full-radial  minutes; writes results/validation.md
   cargo run --release -p etendue-validation -- nets         three minutes; writes results/nets.md
   cargo run --release -p etendue-validation -- second       seconds; compares shared functions with a second implementation
+  cargo run --release -p etendue-validation -- plain        minutes; 2,000 random scenes by a tracer of scene files
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs for etendue in the same folder
   cargo run --release -p etendue-validation -- kills        200 kills of etendue in the same folder
   cargo run --release -p etendue-validation -- wild         100 random scenes for etendue in the same folder
@@ -147,6 +148,9 @@ enum ValidationCommand {
     /// Compare the code shared by theory and tracers with a second implementation; exit code 1 if
     /// they differ or a planted fault is not detected.
     Second,
+    /// Compare the light in the windows of random scenes with a tracer that reads the scene file
+    /// and shares no resolved scene; exit code 1 if photons find other light.
+    Plain(second::PlainOptions),
     /// Give the program mutated scenes, meshes, pictures and stored stages as input; exit code 1 if
     /// it fails on any of them.
     Hostile(hostile::HostileOptions),
@@ -228,6 +232,9 @@ fn main() -> ExitCode {
     }
     if let ValidationCommand::Transform(options) = &command {
         return printed(transform::transform(options).map(|section| vec![section]));
+    }
+    if let ValidationCommand::Plain(options) = &command {
+        return printed(second::plain(options).map(|section| vec![section]));
     }
     if matches!(command, ValidationCommand::Second) {
         return printed(second::second().map(|section| vec![section]));
@@ -389,6 +396,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
         // Each of these commands writes its own report, or consists of others.
         ValidationCommand::Nets
         | ValidationCommand::Second
+        | ValidationCommand::Plain(_)
         | ValidationCommand::Hostile(_)
         | ValidationCommand::Kills(_)
         | ValidationCommand::Wild(_)

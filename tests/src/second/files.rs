@@ -32,7 +32,7 @@ const FAULTS: &[&str] = &[
 const FILE: &str = "blend.png";
 
 /// Returns the luminance of red, green and blue (Rec. ITU-R BT.709).
-fn luminance([r, g, b]: [f64; 3]) -> f64 {
+pub(super) fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }
 

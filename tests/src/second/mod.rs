@@ -19,6 +19,7 @@ mod masks;
 mod meshes;
 mod paths;
 mod pattern;
+mod plain;
 mod sky;
 mod smooth;
 mod surfaces;
@@ -26,6 +27,8 @@ mod textures;
 mod vector;
 mod views;
 mod world;
+
+pub(crate) use plain::{PlainOptions, plain};
 
 use crate::hostile::dice::Dice;
 use crate::report::{self, ReportSection, Row};

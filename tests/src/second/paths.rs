@@ -107,7 +107,7 @@ impl Legs {
     /// Returns the frame after a change of direction. If the event is a reflection, the frame of
     /// the arriving ray is mirrored, and its X is reversed. Then the frame is rotated by the
     /// smallest angle to the new direction.
-    fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
+    pub(super) fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not reversed" { 1.0 } else { -1.0 };
         let (x, y, d, to) = match turn {

@@ -166,7 +166,7 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
 
 /// Returns the direction after refraction, by Snell's law in angles (Born and Wolf 1999, 1.5.1);
 /// `None` for total reflection.
-fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
+pub(super) fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
     let is_from_front = dot(along, normal) < 0.0;
     let (ahead, ratio) = if is_from_front {
         (times(-1.0, normal), front / back)
@@ -182,7 +182,7 @@ fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<V
 }
 
 /// Parallel rays meet in the focal plane, where the ray through the lens centre arrives undeviated.
-fn focused(along: Vector, lens: &Axes, point: Vector, focal_length: f64) -> Vector {
+pub(super) fn focused(along: Vector, lens: &Axes, point: Vector, focal_length: f64) -> Vector {
     let ahead = dot(along, lens.d).abs();
     let meet = plus(lens.origin, focal_length / ahead, along);
     unit(times(focal_length.signum(), plus(meet, -1.0, point)))

@@ -78,6 +78,11 @@ impl SceneDraw {
         rounded_vector(DVec3::new(r * cos, r * sin, z))
     }
 
+    /// Whether no value of the scene is extreme.
+    pub(super) fn is_usual(&self) -> bool {
+        self.rarity == 0
+    }
+
     pub(super) fn is_extreme(&mut self) -> bool {
         self.rarity > 0 && self.dice.one_in(self.rarity)
     }

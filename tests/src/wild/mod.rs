@@ -11,6 +11,7 @@ mod judge;
 mod light;
 mod lights;
 mod pictures;
+mod plain;
 mod planes;
 mod planted;
 mod reflects;
@@ -24,6 +25,7 @@ mod surfaces;
 mod tally;
 
 pub(crate) use judge::HANDFUL;
+pub(crate) use plain::plain_scene;
 pub(crate) use run::text;
 pub(crate) use scene::scene;
 pub(crate) use several::several;

@@ -1,0 +1,209 @@
+//! Lights of the plain tracer, as docs/scene.md describes them.
+
+use super::path::Draws;
+use super::world::{grey, number};
+use crate::second::pattern::cosine;
+use crate::second::vector::{Axes, Vector, dot, plus, turned, unit};
+use etendue_field::Grating;
+use etendue_scene::{BulbFile, EnvironmentFile, ImageFile, LightFile};
+use std::f64::consts::{PI, TAU};
+
+/// The picture of a beam ends at this many widths.
+const REACH: f64 = 3.6;
+
+pub(super) struct Lamp {
+    axes: Axes,
+    kind: Kind,
+}
+
+enum Kind {
+    /// Area and radiance, and the exponent of the cosine that multiplies the radiance.
+    Rectangle([f64; 2], f64, f64),
+    Disc(f64, f64, f64),
+    /// Intensity and slide.
+    Point(f64, Option<ImageFile>),
+    Beam(f64, ImageFile),
+    /// Lobes: direction from which light comes, width, radiance.
+    Lobes(Vec<(Vector, f64, f64)>),
+}
+
+/// How light begins.
+pub(super) enum Start {
+    /// At a point, towards any direction; the weight is an area, or 1 for a point light.
+    At(Vector, f64),
+    /// Along a ray from a point; the weight is a flux.
+    Along(Vector, Vector, f64),
+    /// From far away: radiance per density of a direction.
+    Far(Vector, f64),
+}
+
+impl Lamp {
+    pub(super) fn new(file: &LightFile, axes: impl Fn(Vector) -> Axes) -> Option<Self> {
+        let (center, kind) = match file {
+            LightFile::Rectangle {
+                center,
+                size,
+                radiance,
+            } => (center, Kind::Rectangle(*size, grey(radiance), 0.0)),
+            LightFile::Disc {
+                center,
+                radius,
+                radiance,
+            } => (center, Kind::Disc(*radius, grey(radiance), 0.0)),
+            LightFile::Spot {
+                center,
+                bulb,
+                radiance,
+                exponent,
+            } => {
+                let radiance = grey(radiance);
+                let kind = match bulb {
+                    BulbFile::Square(side) => Kind::Rectangle([*side; 2], radiance, *exponent),
+                    BulbFile::Disc(radius) => Kind::Disc(*radius, radiance, *exponent),
+                };
+                (center, kind)
+            }
+            LightFile::Point { center, intensity } => (center, Kind::Point(grey(intensity), None)),
+            LightFile::Projector {
+                center,
+                intensity,
+                image,
+            } => (center, Kind::Point(grey(intensity), Some(image.clone()))),
+            LightFile::Beam {
+                center,
+                irradiance,
+                image,
+            } => (center, Kind::Beam(grey(irradiance), image.clone())),
+            LightFile::Environment {
+                center,
+                up,
+                front,
+                scale,
+                map: EnvironmentFile::Lobes(lobes),
+            } => {
+                // The components of a lobe are along up × front, up, and front.
+                let of_map = Axes::new([0.0; 3], *up, *front);
+                let lobes = lobes.iter().map(|lobe| {
+                    let [x, up, front] = lobe.from;
+                    let from = unit(of_map.vector([front, x, up]));
+                    (from, lobe.width, scale * grey(&lobe.radiance))
+                });
+                (center, Kind::Lobes(lobes.collect()))
+            }
+            LightFile::Environment { .. } | LightFile::Rays { .. } => return None,
+        };
+        let axes = axes(*center);
+        Some(Self { axes, kind })
+    }
+
+    pub(super) fn center(&self) -> Vector {
+        self.axes.origin
+    }
+
+    pub(super) fn start(&self, draws: &mut Draws<'_>) -> Start {
+        match &self.kind {
+            Kind::Rectangle([width, height], ..) => {
+                let [a, b] = draws.next();
+                let at = self
+                    .axes
+                    .point([(a - 0.5) * width, (b - 0.5) * height, 0.0]);
+                Start::At(at, width * height)
+            }
+            Kind::Disc(radius, ..) => {
+                let [a, b] = draws.next();
+                let (r, around) = (radius * a.sqrt(), TAU * b);
+                let at = self.axes.point([r * around.cos(), r * around.sin(), 0.0]);
+                Start::At(at, PI * radius * radius)
+            }
+            Kind::Point(..) => Start::At(self.axes.origin, 1.0),
+            Kind::Beam(irradiance, image) => {
+                let [a, b] = draws.next();
+                let reach = image.width.map(|width| REACH * width);
+                let at = [(2.0 * a - 1.0) * reach[0], (2.0 * b - 1.0) * reach[1]];
+                let flux = irradiance * picture(image, at) * 4.0 * reach[0] * reach[1];
+                Start::Along(self.axes.point([at[0], at[1], 0.0]), self.axes.d, flux)
+            }
+            Kind::Lobes(lobes) => {
+                let [which, around] = draws.next();
+                let count = lobes.len() as f64;
+                let (from, width, _) = lobes[(which * count) as usize];
+                let [height, _] = draws.next();
+                let squared = width * width;
+                let cosine =
+                    1.0 + squared * (height + (1.0 - height) * (-2.0 / squared).exp()).ln();
+                let axis = unit(crate::second::vector::cross(from, self.axes.x));
+                let tilted = turned(from, axis, cosine.clamp(-1.0, 1.0).acos());
+                let from = turned(tilted, from, TAU * around);
+                let density = lobes.iter().map(|(of, width, _)| {
+                    let squared = width * width;
+                    let unit = TAU * squared * (1.0 - (-2.0 / squared).exp());
+                    ((dot(*of, from) - 1.0) / squared).exp() / unit / count
+                });
+                let along = from.map(|c| -c);
+                Start::Far(along, self.radiance(along) / density.sum::<f64>())
+            }
+        }
+    }
+
+    /// Returns the radiance of an environment along a direction.
+    pub(super) fn radiance(&self, along: Vector) -> f64 {
+        let Kind::Lobes(lobes) = &self.kind else {
+            return 0.0;
+        };
+        if dot(along, self.axes.d) <= 0.0 {
+            return 0.0;
+        }
+        let lobe = |(from, width, radiance): &(Vector, f64, f64)| {
+            radiance * ((-dot(*from, along) - 1.0) / (width * width)).exp()
+        };
+        lobes.iter().map(lobe).sum()
+    }
+
+    /// Whether all light has one direction.
+    pub(super) fn is_beam(&self) -> bool {
+        matches!(self.kind, Kind::Beam(..))
+    }
+
+    /// Whether the light is an environment.
+    pub(super) fn is_far(&self) -> bool {
+        matches!(self.kind, Kind::Lobes(_))
+    }
+
+    /// Returns where a ray through a point leaves the plane of an environment.
+    pub(super) fn origin(&self, point: Vector, along: Vector) -> Vector {
+        let [.., height] = self.axes.coordinates(point);
+        plus(point, -height / dot(along, self.axes.d), along)
+    }
+
+    /// Returns the flux that leaves towards a direction per solid angle, and per area if the light
+    /// has one.
+    pub(super) fn emits(&self, to: Vector) -> f64 {
+        let [x, y, cosine] = self.axes.components(to);
+        match &self.kind {
+            Kind::Point(intensity, None) => *intensity,
+            _ if cosine <= 0.0 => 0.0,
+            Kind::Point(intensity, Some(image)) => {
+                intensity * picture(image, [x / cosine, y / cosine])
+            }
+            Kind::Rectangle(_, radiance, exponent) | Kind::Disc(_, radiance, exponent) => {
+                radiance * cosine.powf(exponent + 1.0)
+            }
+            Kind::Beam(..) | Kind::Lobes(_) => 0.0,
+        }
+    }
+}
+
+/// exp(−π x²/w²) along both axes, times the grating.
+fn picture(image: &ImageFile, at: [f64; 2]) -> f64 {
+    let gauss = |i: usize| (-PI * (at[i] / image.width[i]).powi(2)).exp();
+    let grating = image.grating.as_ref().map_or(1.0, |grating| {
+        let grating = Grating {
+            axis: number(grating.axis),
+            frequency: grating.frequency,
+            modulation: grating.modulation,
+            phase: grating.phase,
+        };
+        cosine(&grating, at, "")
+    });
+    gauss(0) * gauss(1) * grating
+}

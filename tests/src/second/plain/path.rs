@@ -1,0 +1,352 @@
+//! One path of light from a lamp to the plane, for a point of the unit cube.
+
+use super::lamp::{Lamp, Start};
+use super::world::{Leaves, PlainSurface, PlainWorld, START};
+use crate::second::vector::{Vector, distance, dot, length, plus, times, unit};
+use etendue_field::Profile;
+use std::f64::consts::PI;
+
+/// Numbers that a path may use: four at an environment, two at each surface and at the plane.
+pub(super) const NUMBERS: usize = 14;
+
+/// A point of the unit cube, whose coordinates are used in pairs.
+pub(super) struct Draws<'a> {
+    numbers: &'a [f64; NUMBERS],
+    used: usize,
+}
+
+impl Draws<'_> {
+    pub(super) fn next(&mut self) -> [f64; 2] {
+        self.used += 2;
+        [self.numbers[self.used - 2], self.numbers[self.used - 1]]
+    }
+}
+
+/// What sends light into all directions.
+enum Emitter<'a> {
+    Lamp(&'a Lamp),
+    Surface(&'a PlainSurface, Vector),
+}
+
+/// Light at a point.
+struct Light<'a> {
+    at: Vector,
+    /// The flux, or flux per emission.
+    weight: f64,
+    /// The only direction of the light, unless an emitter sends it into all directions.
+    along: Result<Vector, Emitter<'a>>,
+    /// The surface that the light has left.
+    left: Option<usize>,
+}
+
+/// A ray of the window, and the point of the last surface where it begins.
+struct Seen {
+    point: Vector,
+    along: Vector,
+    /// The window's weight times the range of rays in the window.
+    weight: f64,
+    /// The distance from the point to the plane.
+    ahead: f64,
+}
+
+/// How a path is chosen.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Choice {
+    /// From the lamp to the plane.
+    Forward,
+    /// From the lamp to the point of the last surface that a ray of the window sees. This takes a
+    /// surface that scatters, and light that can be sent there.
+    Connected,
+}
+
+impl PlainWorld {
+    /// Returns the light that a path brings into the window: flux times (1 + u² + v²)² times the
+    /// window. The mean over the unit cube is the spectrum at zero frequency, ∫ L W.
+    pub(super) fn light(&self, lamp: &Lamp, choice: Choice, numbers: &[f64; NUMBERS]) -> f64 {
+        let mut draws = Draws { numbers, used: 0 };
+        self.path(lamp, choice, &mut draws).unwrap_or(0.0)
+    }
+
+    /// Whether paths of a lamp may be connected.
+    pub(super) fn connects(&self, lamp: &Lamp) -> bool {
+        let scatters = |visit: &usize| self.surfaces[*visit].scatters();
+        match &self.visits[..] {
+            [] => false,
+            [only] => scatters(only) && !lamp.is_beam(),
+            [.., before, last] => scatters(before) && scatters(last),
+        }
+    }
+
+    fn path(&self, lamp: &Lamp, choice: Choice, draws: &mut Draws<'_>) -> Option<f64> {
+        if self.visits.is_empty() && lamp.is_far() {
+            return self.from_far(lamp, draws);
+        }
+        let seen = match choice {
+            Choice::Forward => None,
+            Choice::Connected => Some(self.seen(draws)?),
+        };
+        let mut light = match lamp.start(draws) {
+            Start::At(at, weight) => Light {
+                at,
+                weight,
+                along: Err(Emitter::Lamp(lamp)),
+                left: None,
+            },
+            Start::Along(at, along, weight) => Light {
+                at,
+                weight,
+                along: Ok(along),
+                left: None,
+            },
+            Start::Far(along, per_density) => {
+                let surface = &self.surfaces[*self.visits.first()?];
+                let (point, area) = match &seen {
+                    Some(seen) if self.visits.len() == 1 => (seen.point, 1.0),
+                    _ => surface.point(draws.next()),
+                };
+                let cosine = dot(along, surface.normal(point)).abs();
+                Light {
+                    at: lamp.origin(point, along),
+                    weight: per_density * area * cosine,
+                    along: Ok(along),
+                    left: None,
+                }
+            }
+        };
+        for (i, visit) in self.visits.iter().enumerate() {
+            let seen = seen.as_ref().filter(|_| i + 1 == self.visits.len());
+            light = self.visit(&light, *visit, seen, draws)?;
+        }
+        let Some(Seen {
+            along,
+            weight,
+            ahead,
+            ..
+        }) = seen
+        else {
+            return self.at_plane(&light, draws);
+        };
+        let Err(Emitter::Surface(surface, arrived)) = light.along else {
+            return None;
+        };
+        // Radiance is flux per solid angle over the cosine, here for light per area.
+        let cosine = dot(along, surface.normal(light.at)).abs();
+        let radiance = light.weight * surface.scattered(light.at, arrived, along) / cosine;
+        let passes = self.passes(&light, along, ahead, self.end, false);
+        Some(radiance * passes * weight)
+    }
+
+    /// Draws a ray of the window and follows its line back to the last surface. If the line meets
+    /// the surface more than once, only its last point sends light along it.
+    fn seen(&self, draws: &mut Draws<'_>) -> Option<Seen> {
+        let (point, along, weight) = self.ray(draws);
+        let surface = &self.surfaces[*self.visits.last()?];
+        let ahead = -surface.hits(point, along).pop()?;
+        Some(Seen {
+            point: plus(point, -ahead, along),
+            along,
+            weight,
+            ahead,
+        })
+    }
+
+    /// Returns the light after its next surface. If the point is `seen`, light is per area there.
+    fn visit(
+        &self,
+        light: &Light<'_>,
+        visit: usize,
+        seen: Option<&Seen>,
+        draws: &mut Draws<'_>,
+    ) -> Option<Light<'_>> {
+        let surface = &self.surfaces[visit];
+        let (point, along, flux) = match &light.along {
+            Ok(along) => {
+                let hits = surface.hits(light.at, *along);
+                let t = hits.into_iter().find(|t| *t > self.begins(light.at))?;
+                (plus(light.at, t, *along), *along, light.weight)
+            }
+            Err(emitter) => {
+                let (point, area) = match seen {
+                    Some(seen) => (seen.point, 1.0),
+                    None => surface.point(draws.next()),
+                };
+                let along = unit(plus(point, -1.0, light.at));
+                let cosine = dot(along, surface.normal(point)).abs();
+                let flux = emitter.flux(light, along, point, area * cosine);
+                (point, along, flux)
+            }
+        };
+        let passes = self.passes(light, along, distance(light.at, point), Some(visit), true);
+        let weight = flux * passes;
+        if weight <= 0.0 {
+            return None;
+        }
+        let along = match surface.leaves(point, along) {
+            Leaves::Along(to) => Ok(to),
+            Leaves::Scattered => Err(Emitter::Surface(surface, along)),
+            Leaves::Nowhere => return None,
+        };
+        Some(Light {
+            at: point,
+            weight,
+            along,
+            left: Some(visit),
+        })
+    }
+
+    fn at_plane(&self, light: &Light<'_>, draws: &mut Draws<'_>) -> Option<f64> {
+        let plane = &self.plane;
+        let (point, along, flux) = match &light.along {
+            Ok(along) => {
+                let [.., height] = plane.coordinates(light.at);
+                let t = -height / dot(*along, plane.d);
+                (plus(light.at, t, *along), *along, light.weight)
+            }
+            Err(emitter) => {
+                let (at, area) = self.lit(light.at, draws.next())?;
+                let point = plane.point(at);
+                let towards = unit(plus(point, -1.0, light.at));
+                let along = times(dot(towards, plane.d).signum(), towards);
+                let flux = emitter.flux(light, along, point, area * dot(along, plane.d));
+                (point, along, flux)
+            }
+        };
+        let [dx, dy, dz] = plane.components(along);
+        let ahead = dot(plus(point, -1.0, light.at), along);
+        // A plane that cuts a surface also counts light that leaves the surface beyond the plane.
+        if dz <= 0.0 || (ahead <= 0.0 && light.left.is_none()) {
+            return None;
+        }
+        let [x, y, _] = plane.coordinates(point);
+        let weight = self.weight([x, y, dx / dz, dy / dz]);
+        if weight <= 0.0 || flux <= 0.0 {
+            return None;
+        }
+        let passes = self.passes(light, along, ahead, self.end, false);
+        Some(flux * passes * weight / dz.powi(4))
+    }
+
+    /// Returns the light of an environment at a plane of the first leg, for a ray of the window.
+    fn from_far(&self, lamp: &Lamp, draws: &mut Draws<'_>) -> Option<f64> {
+        let (point, along, weight) = self.ray(draws);
+        let from = lamp.origin(point, along);
+        let light = Light {
+            at: from,
+            weight: 1.0,
+            along: Ok(along),
+            left: None,
+        };
+        let ahead = dot(plus(point, -1.0, from), along);
+        if ahead <= 0.0 {
+            return None;
+        }
+        let passes = self.passes(&light, along, ahead, self.end, false);
+        Some(lamp.radiance(along) * passes * weight)
+    }
+
+    /// Draws a ray of the window: its point in the plane, its direction, and the window's weight
+    /// times the range of rays.
+    fn ray(&self, draws: &mut Draws<'_>) -> (Vector, Vector, f64) {
+        let (at, area) = self.place(draws.next());
+        let halves = [self.window[2], self.window[3]].map(|profile| profile.half_width());
+        let [a, b] = draws.next();
+        let [u, v] = [(2.0 * a - 1.0) * halves[0], (2.0 * b - 1.0) * halves[1]];
+        let weight = area * 4.0 * halves[0] * halves[1] * self.weight([at[0], at[1], u, v]);
+        let along = unit(self.plane.vector([u, v, 1.0]));
+        (self.plane.point(at), along, weight)
+    }
+
+    /// Returns a point of the window's support in the plane, and the area of the support.
+    fn place(&self, [a, b]: [f64; 2]) -> (Vector, f64) {
+        let [x, y] = [self.window[0], self.window[1]].map(|profile| profile.half_width());
+        let at = [(2.0 * a - 1.0) * x, (2.0 * b - 1.0) * y, 0.0];
+        (at, 4.0 * x * y)
+    }
+
+    /// Returns a point of the part of the plane from which light of a point has slopes in the window,
+    /// and the area of this part.
+    fn lit(&self, from: Vector, numbers: [f64; 2]) -> Option<(Vector, f64)> {
+        let [x, y, z] = self.plane.coordinates(from);
+        let (mut at, mut area) = ([0.0; 3], 1.0);
+        for (axis, from) in [x, y].into_iter().enumerate() {
+            let half = self.window[axis].half_width();
+            let reach = z.abs() * self.window[axis + 2].half_width();
+            let [low, high] = [(from - reach).max(-half), (from + reach).min(half)];
+            if low >= high {
+                return None;
+            }
+            at[axis] = low + (high - low) * numbers[axis];
+            area *= high - low;
+        }
+        Some((at, area))
+    }
+
+    fn weight(&self, at: [f64; 4]) -> f64 {
+        let each = self.window.iter().zip(at);
+        each.map(|(profile, t)| value(profile, t)).product()
+    }
+
+    /// Returns the distance up to which hits are the origin of a ray itself.
+    fn begins(&self, at: Vector) -> f64 {
+        START * (1.0 + length(at) + length(self.plane.origin))
+    }
+
+    /// Returns the share of light that travels a distance. The surface `end` stops no light; if the
+    /// light arrives at it (`arrives`), it must be the first hit.
+    fn passes(
+        &self,
+        light: &Light<'_>,
+        along: Vector,
+        to: f64,
+        end: Option<usize>,
+        arrives: bool,
+    ) -> f64 {
+        let from = self.begins(light.at);
+        for (i, surface) in self.surfaces.iter().enumerate() {
+            let is_end = Some(i) == end;
+            let limit = if Some(i) == light.left {
+                // Light is lost if its line meets the surface again, even beyond the end.
+                f64::INFINITY
+            } else if is_end && !arrives {
+                continue;
+            } else if is_end {
+                to * (1.0 - 1e-7) - from
+            } else {
+                to
+            };
+            let is_met = |t: &f64| *t > from && *t < limit;
+            if surface.hits(light.at, along).iter().any(is_met) {
+                return 0.0;
+            }
+        }
+        let masks = self.masks.iter();
+        masks
+            .map(|mask| mask.passes(light.at, along, [from, to]))
+            .product()
+    }
+}
+
+impl Emitter<'_> {
+    /// Returns the flux that reaches a point through an area orthogonal to the direction.
+    fn flux(&self, light: &Light<'_>, along: Vector, point: Vector, area: f64) -> f64 {
+        let per_angle = match self {
+            Emitter::Lamp(lamp) => lamp.emits(along),
+            Emitter::Surface(surface, arrived) => surface.scattered(light.at, *arrived, along),
+        };
+        light.weight * per_angle * area / distance(light.at, point).powi(2)
+    }
+}
+
+/// Returns a profile of the window (docs/conventions.md, section Window).
+fn value(profile: &Profile, t: f64) -> f64 {
+    let inside = match *profile {
+        Profile::Hann(h) => (PI * t / (2.0 * h)).cos().powi(2),
+        Profile::Box(_) => 1.0,
+        Profile::Gaussian { width, .. } => (-PI * t * t / (width * width)).exp(),
+    };
+    if t.abs() < profile.half_width() {
+        inside
+    } else {
+        0.0
+    }
+}
