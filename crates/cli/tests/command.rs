@@ -166,6 +166,13 @@ fn expecting_disagreement_turns_the_exit_code() {
     let corrected = ["--set", "as_printed=false"];
     assert_eq!(code("corrected", &corrected), Some(0));
     assert_eq!(code("no_fault", &[corrected, expect].concat()), Some(1));
+    // A second light beside the first neither hides the fault nor makes one.
+    let second = [
+        "--set",
+        "other_lights=[Disc(center: (0.02, 0, 0.05), radius: 0.03)]",
+    ];
+    assert_eq!(code("printed_two", &second), Some(1));
+    assert_eq!(code("two", &[corrected, second].concat()), Some(0));
     // With too much noise, the photons cannot confirm the exact prediction.
     let few = ["--set", "run.resolution=0.001"];
     assert_eq!(code("few", &[few, expect].concat()), Some(4));

@@ -5,6 +5,7 @@ use crate::budget::budget;
 use crate::class::Class;
 use crate::depth::depth;
 use crate::first_order::FirstOrder;
+use crate::lights::chain_of_lights;
 use crate::theories::Theory;
 use crate::validity::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
@@ -99,9 +100,16 @@ impl Prediction {
     /// darkness where no theory applies and [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
-        let each = Self::of_lights(scene, plane, applicability);
-        let sum = each.map(|(_, of)| of).reduce(Self::plus);
-        sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability))
+        let each = Self::of_lights(scene, plane, applicability).map(|(_, of)| of);
+        let each: Vec<Self> = each.collect();
+        let theories = applicability.of_lights(scene, plane);
+        let theories: Vec<&Theory> = theories.map(|(_, _, of, _)| &of.theory).collect();
+        let sum = each.iter().cloned().reduce(Self::plus);
+        let sum = sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability));
+        Self {
+            first_order: chain_of_lights(&each, &theories, &sum),
+            ..sum
+        }
     }
 
     /// Returns the prediction of theory for each light that may reach a plane, with the number of
@@ -167,8 +175,7 @@ impl Prediction {
         }
     }
 
-    /// Returns the prediction of a model, with the first-order chain beside it. If there are
-    /// several lights, there is no first-order chain, because each light would have its own.
+    /// Returns the prediction of a model, with the first-order chain beside it.
     fn by<M: Model>(
         self,
         model: &M,
@@ -178,10 +185,7 @@ impl Prediction {
     ) -> Self {
         let parameters = model.parameters();
         let found = model.predict(&parameters, over, budget);
-        let first_order = match number {
-            None => first_order(&found),
-            Some(_) => None,
-        };
+        let first_order = first_order(&found);
         let name = |parameter| match number.filter(|_| is_of_light(parameter, &parameters)) {
             Some(number) => format!("{} (light {number})", model.name(parameter)),
             None => model.name(parameter),
