@@ -86,6 +86,13 @@ fn a_light_whose_photons_miss_the_window_is_undecided() {
     only_backward_rays_decide("wild/beam_on_a_tiny_window.ron", said);
 }
 
+/// If few photons reach a window and many backward rays do, the command names the other method.
+#[test]
+fn a_grazing_mirror_is_left_to_backward_rays() {
+    let said = "none of 200000 photons reached the window; --method backward has";
+    only_backward_rays_decide("wild/grazing_mirror.ron", said);
+}
+
 #[test]
 fn a_run_passes_and_leaves_a_result() {
     let folder = tempfile::tempdir().unwrap();

@@ -273,16 +273,19 @@ impl ComparedSides<'_> {
     /// where this number is not known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
+        let batches = self.measurement.batches().len() as f64;
+        let for_batches = MIN_PHOTONS_PER_BATCH * batches / inside as f64;
         if self.predicted.is_dark() || inside == 0 {
             None
-        } else if self.has_dark_batch() || self.has_dark_replicate() {
-            let batches = self.measurement.batches().len() as f64;
+        } else if self.has_dark_batch() {
+            // The number with which no batch is empty; a run with it will tell the noise.
+            Some((emitted as f64 * for_batches).ceil())
+        } else if self.has_dark_replicate() {
             // If each of n replicates has m rays on average, n e⁻ᵐ replicates are empty.
             let all = self.prediction.replicates.len() as f64;
             let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
             let each = libm::log(all / empty.count() as f64);
-            let more =
-                (MIN_PHOTONS_PER_BATCH * batches / inside as f64).max(MIN_PHOTONS_PER_BATCH / each);
+            let more = for_batches.max(MIN_PHOTONS_PER_BATCH / each);
             let more = more.is_finite().then(|| (emitted as f64 * more).ceil());
             let less_noise = agreement.photons_needed(emitted, self.prediction, test);
             more.into_iter().chain(less_noise).max_by(f64::total_cmp)
@@ -332,9 +335,9 @@ impl ComparedSides<'_> {
         let tally = self.measurement.tally(self.index);
         let (grid, prediction) = (&plane.grid, self.prediction);
         let agreement = &judged.agreement;
-        // Without photons, there is no noise to compare with.
-        let has_photons = tally.inside > 0;
-        let noise = agreement.noise_limit().filter(|_| has_photons);
+        // Batches without photons do not tell the noise.
+        let tells_noise = !self.has_dark_batch();
+        let noise = agreement.noise_limit().filter(|_| tells_noise);
         Ok(PlaneReport {
             name: plane.name.clone(),
             class: prediction.class,
@@ -348,13 +351,17 @@ impl ComparedSides<'_> {
             outside_window: tally.outside,
             relative_error: agreement.relative_error(),
             noise_limit: noise,
-            excess: agreement.excess(),
-            excess_squared_error: agreement.excess_squared_error,
-            noise_floor_db: agreement.noise_floor_db,
+            excess: agreement.excess().filter(|_| tells_noise),
+            excess_squared_error: agreement.excess_squared_error.filter(|_| tells_noise),
+            noise_floor_db: agreement.noise_floor_db.filter(|_| tells_noise),
             noise_dof: noise_dof(self.measurement, self.index)?,
-            chi2_per_dof: judged.chi2_per_dof.filter(|_| has_photons),
-            p_value: judged.p_value.filter(|_| has_photons),
-            parameters: self.parameters(),
+            chi2_per_dof: judged.chi2_per_dof.filter(|_| tells_noise),
+            p_value: judged.p_value.filter(|_| tells_noise),
+            parameters: if tells_noise {
+                self.parameters()
+            } else {
+                Vec::new()
+            },
             slope: self.slope(grid),
             spectral_moments: [[2, 0], [1, 1], [0, 2]]
                 .map(|powers| self.pair(|p| second_moment(p, grid, powers))),

@@ -500,6 +500,9 @@ fn a_batch_without_photons_decides_nothing() {
     let report = judged(&holed);
     assert_eq!(report.verdict, Verdict::Undecided);
     assert!(report.photons_needed.is_some() && report.undecided.is_some());
+    // The spread of such batches is no noise.
+    assert_eq!((report.p_value, report.noise_limit), (None, None));
+    assert!(report.parameters.is_empty() && report.chi2_per_dof.is_none());
 }
 
 /// One heavy photon carries half of the light of a batch, or half of the light of a replicate of

@@ -73,6 +73,41 @@ pub(crate) fn leave_hidden_lights_open(
     Ok(())
 }
 
+/// The number of photons or rays that show how often another method reaches a window.
+const TRIED: u64 = 1 << 14;
+/// Another method is named if it reaches the window this many times as often.
+const MORE_OFTEN: f64 = 10.0;
+
+/// Names the other method at planes that more photons would decide, if it reaches the window much
+/// more often.
+pub(crate) fn name_other_method(
+    case: &MeasuredScene,
+    planes: &mut [PlaneComparison],
+) -> Result<(), Failure> {
+    for (plane, compared) in planes.iter_mut().enumerate() {
+        let report = &mut compared.report;
+        let is_rare = report.in_window == 0 || report.photons_needed.is_some();
+        let Some(why) = report.undecided.as_mut().filter(|_| is_rare) else {
+            continue;
+        };
+        let other = judge_of(case.method, &case.scene, &case.scene.planes[plane]);
+        if report.class == Class::Reference || other == Method::Even {
+            continue;
+        }
+        let tried = reached(case.scene.seen_at(&[plane]), other, TRIED)? as f64 / TRIED as f64;
+        // A part of the photons is aimed at each window.
+        let aimed = case.scene.run.photons as f64 / case.scene.planes.len() as f64;
+        let often = tried * aimed / (report.in_window as f64).max(1.0);
+        if often > MORE_OFTEN {
+            let name = other.name();
+            *why += &format!(
+                "; --method {name} has {often:.0} times as many rays in this window, so use it"
+            );
+        }
+    }
+    Ok(())
+}
+
 /// Returns the number of photons or rays that a verdict needs in a window.
 fn least(case: &MeasuredScene) -> f64 {
     MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches)

@@ -28,8 +28,11 @@ pub fn text(summary: &Summary) -> String {
     ];
     lines.extend(aligned(planes(summary)));
     lines.push(String::new());
-    lines.extend(aligned(parameters(summary)));
-    lines.push(String::new());
+    let parameters = parameters(summary);
+    if parameters.len() > 1 {
+        lines.extend(aligned(parameters));
+        lines.push(String::new());
+    }
     if summary
         .planes
         .iter()
