@@ -114,6 +114,29 @@ fn two_results_are_told_apart_when_they_differ() {
     );
 }
 
+/// Of the two edges of a slit, the one that moved is named.
+#[test]
+fn the_edge_that_moved_is_named() {
+    let slit = concat!(
+        r#"--set blockers=[Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:["#,
+        "HalfPlane(axis:X,edge:-0.05,opaque:Below),HalfPlane(axis:X,edge:EDGE,opaque:Above)])]",
+        " --photons 2^17",
+    );
+    let [before, after] = ["0.05", "0.053"].map(|edge| slit.replace("EDGE", edge));
+    let folder = runs(&[
+        &format!("{before} --seed 1 --out a"),
+        &format!("{after} --seed 2 --out b"),
+    ]);
+    let (code, text) = diff(folder.path(), "a b");
+    assert_eq!(code, Some(1), "{text}");
+    let verdict = text.lines().find(|line| line.starts_with("verdict:"));
+    let verdict = verdict.unwrap();
+    assert!(
+        verdict.contains("edge 2 of slit") && !verdict.contains("edge 1"),
+        "{verdict}"
+    );
+}
+
 #[test]
 fn planes_that_one_result_lacks_are_named() {
     let folder = runs(&["--photons 2^14 --seed 1 --out a"]);

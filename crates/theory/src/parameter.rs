@@ -22,8 +22,9 @@ pub enum Parameter {
     /// extent along X. All shapes of the mask scale by the same factor about their centres, and a
     /// polygon scales about its centroid.
     BlockerSide(usize),
-    /// The edge of the first half-plane of an opaque mask; the mask's other edges do not move.
-    HalfPlaneEdge(usize),
+    /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
+    /// other edges do not move.
+    HalfPlaneEdge(usize, usize),
     /// The frequency of a grating.
     GratingFrequency(usize),
     /// The phase of a grating.
@@ -68,7 +69,7 @@ impl Parameter {
             | Self::ImageWidth
             | Self::Travel(_)
             | Self::BlockerSide(_)
-            | Self::HalfPlaneEdge(_)
+            | Self::HalfPlaneEdge(..)
             | Self::FocalLength(_) => "m",
         }
     }

@@ -51,7 +51,10 @@ impl Model for Chain {
                 (Parameter::BlockerSide(_), Mask::Aperture(hole)) => {
                     Some(format!("{} of {name}", hole_word(hole)))
                 }
-                (Parameter::HalfPlaneEdge(_), _) => Some(format!("edge of {name}")),
+                (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
+                    let number = (half_planes.len() > 1).then(|| format!(" {}", edge + 1));
+                    Some(format!("edge{} of {name}", number.unwrap_or_default()))
+                }
                 (Parameter::GratingFrequency(_), _) => Some(format!("frequency of {name}")),
                 (Parameter::GratingPhase(_), _) => Some(format!("phase of {name}")),
                 _ => None,
@@ -72,9 +75,9 @@ impl Model for Chain {
                     resize(shapes, new);
                 }
                 (Parameter::BlockerSide(_), Mask::Aperture(hole)) => resize_hole(hole, new),
-                (Parameter::HalfPlaneEdge(_), Mask::Opaque { half_planes, .. }) => {
-                    let first = half_planes.first_mut()?;
-                    first.edge = new(first.edge);
+                (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
+                    let half = half_planes.get_mut(edge)?;
+                    half.edge = new(half.edge);
                 }
                 (Parameter::GratingFrequency(_), Mask::Grating(grating)) => {
                     grating.frequency = new(grating.frequency);
@@ -196,7 +199,7 @@ impl Parameter {
         match self {
             Self::Travel(i)
             | Self::BlockerSide(i)
-            | Self::HalfPlaneEdge(i)
+            | Self::HalfPlaneEdge(i, _)
             | Self::GratingFrequency(i)
             | Self::GratingPhase(i) => Some(i),
             _ => None,
@@ -211,8 +214,8 @@ fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
             half_planes,
         } => {
             let side = (!shapes.is_empty()).then_some(Parameter::BlockerSide(index));
-            let edge = (!half_planes.is_empty()).then_some(Parameter::HalfPlaneEdge(index));
-            side.into_iter().chain(edge).collect()
+            let edges = (0..half_planes.len()).map(|edge| Parameter::HalfPlaneEdge(index, edge));
+            side.into_iter().chain(edges).collect()
         }
         Mask::Aperture(_) => vec![Parameter::BlockerSide(index)],
         Mask::Grating(_) => vec![
@@ -337,11 +340,13 @@ mod tests {
     fn rich() -> Chain {
         let mixed = Mask::Opaque {
             shapes: vec![disc([0.0, 0.1], 0.2)],
-            half_planes: vec![HalfPlane {
-                axis: 1,
-                edge: 0.4,
-                above: true,
-            }],
+            half_planes: [(-0.3, false), (0.4, true)]
+                .map(|(edge, above)| HalfPlane {
+                    axis: 1,
+                    edge,
+                    above,
+                })
+                .to_vec(),
         };
         let mut chain = chain_of(
             spot(disc([0.0, 0.0], 0.1), 20.0),
@@ -363,7 +368,8 @@ mod tests {
                 "exponent of light []",
                 "travel a to b [m]",
                 "radius of b [m]",
-                "edge of b [m]",
+                "edge 1 of b [m]",
+                "edge 2 of b [m]",
                 "travel b to c [m]",
                 "frequency of c [1/m]",
                 "phase of c [rad]",
