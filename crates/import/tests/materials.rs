@@ -1,6 +1,6 @@
 //! Materials.
 
-use crate::common::{assert_close, causes, world};
+use crate::common::{assert_close, causes, notes, world};
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 
@@ -114,4 +114,16 @@ fn unsound_principled_is_refused() {
         let found = causes(&principled(inside));
         assert!(found.len() == 1 && found[0].contains(what), "{found:?}");
     }
+}
+
+#[test]
+fn masks_are_noted_where_mitsuba_takes_them_for_opaque() {
+    let notes_of = |integrator: &str| {
+        notes(&format!(
+            "<integrator type=\"{integrator}\"/>\n<shape type=\"sphere\"><bsdf type=\"mask\"><bsdf type=\"diffuse\"/></bsdf></shape>"
+        ))
+    };
+    let noted = "text:2:1: light passes `mask` and `null` as in volpath: also light of point lights, and without being counted by max_depth";
+    assert_eq!(notes_of("path"), [noted]);
+    assert_eq!(notes_of("volpath"), [""; 0]);
 }

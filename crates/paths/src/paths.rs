@@ -16,6 +16,8 @@ use glam::DVec3;
 pub struct Paths {
     pub(crate) geometry: SceneGeometry,
     pub(crate) lights: LightSampler,
+    /// Whether some material is partly transparent.
+    is_masked: bool,
     materials: Vec<Scatter>,
     of_shape: Vec<usize>,
     pub(crate) depth: u32,
@@ -74,10 +76,12 @@ impl Paths {
     #[must_use]
     pub fn new(world: &World) -> Self {
         let geometry = SceneGeometry::new(world);
+        let materials: Vec<Scatter> = world.materials.iter().map(Scatter::from).collect();
         Self {
             lights: LightSampler::new(world, &geometry),
             geometry,
-            materials: world.materials.iter().map(Scatter::from).collect(),
+            is_masked: materials.iter().any(Scatter::is_masked),
+            materials,
             of_shape: world.shapes.iter().map(|shape| shape.material).collect(),
             depth: world.depth.unwrap_or(LONGEST).min(LONGEST),
             hides_sources: world.hides_sources,
@@ -129,6 +133,15 @@ impl Paths {
         search: LightSearch,
         found: &mut impl FnMut(usize, DVec3, f64),
     ) {
+        walks = keep(walks, |walk| {
+            let hit = walk.hit;
+            if !self.passes(&hit, &mut walk.numbers) {
+                return true;
+            }
+            walk.first = Some(hit.frame.transpose() * walk.ray.along);
+            let next = self.geometry.behind(&walk.ray, &hit, f64::INFINITY);
+            self.arrives(walk, next, search, found)
+        });
         for met in before..self.depth {
             if walks.is_empty() {
                 break;
@@ -151,13 +164,84 @@ impl Paths {
             });
             walks = keep(walks, |walk| {
                 let next = self.geometry.first(&walk.ray, [0.0, f64::INFINITY]);
-                let density = walk.density.filter(|_| search == LightSearch::Both);
-                let from = walk.first.unwrap_or(DVec3::Z);
-                let light = self.emitted(&walk.ray, next.as_ref(), density);
-                found(walk.number, from, walk.weight * light);
-                next.map(|next| walk.hit = next).is_some()
+                self.arrives(walk, next, search, found)
             });
         }
+    }
+
+    /// Moves a path to the next surface that it does not pass. Reports the light of the sources on
+    /// the way; returns false if the path leaves the world.
+    fn arrives(
+        &self,
+        walk: &mut TracedPath<'_>,
+        mut next: Option<Hit>,
+        search: LightSearch,
+        found: &mut impl FnMut(usize, DVec3, f64),
+    ) -> bool {
+        let density = walk.density.filter(|_| search == LightSearch::Both);
+        let from = walk.first.unwrap_or(DVec3::Z);
+        loop {
+            let light = self.emitted(&walk.ray, next.as_ref(), density);
+            found(walk.number, from, walk.weight * light);
+            let Some(hit) = next else {
+                return false;
+            };
+            walk.hit = hit;
+            if !self.passes(&hit, &mut walk.numbers) {
+                return true;
+            }
+            next = self.geometry.behind(&walk.ray, &hit, f64::INFINITY);
+        }
+    }
+
+    /// Returns the first hit of a ray that the ray does not pass.
+    pub(crate) fn stopped(&self, ray: &Ray, numbers: &mut PathNumbers<'_>) -> Option<Hit> {
+        let passes = |hit: &Hit| self.passes(hit, numbers);
+        self.first_unless(ray, [0.0, f64::INFINITY], passes)
+    }
+
+    /// Returns the first hit of a ray, at distances within bounds, with a surface that stops at
+    /// least half of the light.
+    pub(crate) fn mostly_stopped(&self, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
+        self.first_unless(ray, within, |hit| self.opacity(hit) < 0.5)
+    }
+
+    fn first_unless(
+        &self,
+        ray: &Ray,
+        within: [f64; 2],
+        mut passes: impl FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        let mut hit = self.geometry.first(ray, within)?;
+        while passes(&hit) {
+            hit = self.geometry.behind(ray, &hit, within[1])?;
+        }
+        Some(hit)
+    }
+
+    /// Decides whether light passes a partly transparent surface.
+    fn passes(&self, hit: &Hit, numbers: &mut PathNumbers<'_>) -> bool {
+        let opacity = self.opacity(hit);
+        opacity < 1.0 && {
+            let [drawn] = numbers.draw();
+            drawn >= opacity
+        }
+    }
+
+    /// Returns the share of light that does not pass a surface unchanged.
+    pub(crate) fn opacity(&self, hit: &Hit) -> f64 {
+        if self.is_masked {
+            self.scatter(hit).opacity(&hit.point)
+        } else {
+            1.0
+        }
+    }
+
+    /// Returns the share of light that passes along a ray up to a distance.
+    #[inline]
+    pub(crate) fn transmittance(&self, ray: &Ray, distance: f64) -> f64 {
+        let opacity = |hit: &Hit| self.opacity(hit);
+        self.geometry.transmittance(ray, distance, opacity)
     }
 
     /// Samples the direction in which a path continues; returns false if it ends.
@@ -236,13 +320,14 @@ impl Paths {
             from: hit.position,
             along: light.toward,
         };
-        if !self.geometry.is_free(&ray, light.distance) {
+        let transmittance = self.transmittance(&ray, light.distance);
+        if transmittance <= 0.0 {
             return (wi, 0.0);
         }
         let mis_weight = light
             .density
             .map_or(1.0, |looked| mis_weight(looked, density));
-        (wi, value * light.weight * mis_weight)
+        (wi, value * light.weight * mis_weight * transmittance)
     }
 }
 

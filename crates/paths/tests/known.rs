@@ -28,7 +28,12 @@ fn camera(from: DVec3, at: DVec3) -> Camera {
     }
 }
 
-fn shape(geometry: Geometry, to_world: DAffine3, material: usize, emission: Option<f64>) -> Shape {
+pub(crate) fn shape(
+    geometry: Geometry,
+    to_world: DAffine3,
+    material: usize,
+    emission: Option<f64>,
+) -> Shape {
     Shape {
         name: String::new(),
         geometry,
@@ -39,13 +44,13 @@ fn shape(geometry: Geometry, to_world: DAffine3, material: usize, emission: Opti
     }
 }
 
-fn diffuse(reflectance: f64) -> Material {
+pub(crate) fn diffuse(reflectance: f64) -> Material {
     Material::Diffuse {
         reflectance: Texture::Constant(reflectance),
     }
 }
 
-fn scaled(scale: f64, z: f64) -> DAffine3 {
+pub(crate) fn scaled(scale: f64, z: f64) -> DAffine3 {
     DAffine3::from_scale_rotation_translation(
         DVec3::splat(scale),
         DQuat::IDENTITY,
@@ -54,7 +59,7 @@ fn scaled(scale: f64, z: f64) -> DAffine3 {
 }
 
 /// Returns a floor in z = 0 with reflectance one half, and more shapes and lights.
-fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
+pub(crate) fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
     shapes.extend(more);
     World {
@@ -66,14 +71,14 @@ fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
 }
 
 /// Returns the radiance of one pixel, with its standard error.
-fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
+pub(crate) fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     let picture = Paths::new(world).picture(&camera(from, at), samples, 3, &|_| {});
     (picture.mean[0], picture.variance[0].sqrt())
 }
 
 /// Checks agreement within five standard errors, or within rounding error if all paths find the
 /// same value; the standard error must be small.
-fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
+pub(crate) fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     let (mean, error) = seen(world, from, at, 20_000);
     assert!(
         (mean - expected).abs() <= 5.0 * error + 1e-9 * expected,
@@ -82,7 +87,7 @@ fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     assert!(error <= 0.02 * expected, "{mean} ± {error}");
 }
 
-const ASIDE: DVec3 = DVec3::new(1.0, 0.5, 1.0);
+pub(crate) const ASIDE: DVec3 = DVec3::new(1.0, 0.5, 1.0);
 
 #[test]
 fn a_closed_sphere_gathers_light() {
@@ -411,7 +416,7 @@ fn board() -> Texture {
 
 /// Returns the placement of a light above the floor that shines down. Its X is X of the floor, and its
 /// Y is −Y of the floor.
-fn downward(height: f64) -> DAffine3 {
+pub(crate) fn downward(height: f64) -> DAffine3 {
     DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, height),

@@ -5,4 +5,5 @@
 mod attributes;
 mod furnace;
 mod known;
+mod masks;
 mod probe;

@@ -286,6 +286,41 @@ fn wide_windows() {
     assert_even_with(400_000, &of, &wide, &all, 1.5);
 }
 
+/// A black sheet with an opacity of 0.4 covers the floor, or also the camera's view of it.
+#[test]
+fn partly_transparent_sheets_between_lights_floors_and_cameras() {
+    let sun = || vec![directional()];
+    let lamp = || {
+        vec![Light::Point {
+            position: DVec3::new(0.0, 0.0, 40.0),
+            intensity: 800.0,
+        }]
+    };
+    let sky = || vec![Light::Constant { radiance: 1.5 }];
+    let planes = ["camera", "leaving_1"];
+    for (lights, irradiance) in [(sun(), 2.4), (lamp(), 0.5), (sky(), 1.5 * PI)] {
+        for (height, share) in [(3.0, 0.6), (1.0, 0.36)] {
+            let place = DAffine3::from_translation(height * DVec3::Z);
+            let sheet = shape(
+                Geometry::Rectangle,
+                place * DAffine3::from_scale(DVec3::splat(1e4)),
+                2,
+            );
+            let mut of = world(vec![floor(0), sheet]);
+            of.materials.push(Material::Mask {
+                opacity: Texture::Constant(0.4),
+                of: Box::new(Material::Diffuse {
+                    reflectance: Texture::Constant(0.0),
+                }),
+            });
+            of.lights.clone_from(&lights);
+            // Only light that has met the floor counts.
+            of.depth = Some(1);
+            assert_even(&of, &QUESTION, &planes, share * irradiance * 0.5 / PI);
+        }
+    }
+}
+
 #[test]
 fn photons_know_what_they_miss() {
     let glass = Material::Dielectric(Dielectric {

@@ -36,8 +36,8 @@ pub enum Material {
     /// Two opaque materials, one on each side of the surface; each material scatters as on its own
     /// front.
     TwoSided(Box<[Self; 2]>),
-    /// A partly transparent surface. A fraction of the light hits the material, and the rest passes
-    /// unchanged.
+    /// A partly transparent surface. A fraction of the light hits the material. The rest passes
+    /// unchanged, as if there were no surface: the depth of a world does not count it.
     Mask {
         /// The fraction of the light that hits the material.
         opacity: Texture,

@@ -35,6 +35,19 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
+    /// Notes where light passes masks that the integrator of the scene takes for opaque.
+    pub(super) fn note_masks(&self, scene: &'a MitsubaObject) {
+        let is_mask =
+            |of: &MitsubaObject| of.is_used.get() && matches!(of.plugin.as_str(), "mask" | "null");
+        if let Some((_, object)) = self.children(scene, ObjectKind::Integrator).first()
+            && !object.plugin.contains("volpath")
+            && self.objects.iter().any(is_mask)
+        {
+            let message = "light passes `mask` and `null` as in volpath: also light of point lights, and without being counted by max_depth";
+            self.report.note(&object.place, message);
+        }
+    }
+
     fn hide(&mut self, object: &'a MitsubaObject) {
         self.world.hides_sources = self.truth(object, "hide_emitters");
     }

@@ -91,6 +91,7 @@ impl<'a> MitsubaReader<'a> {
         for (_, shape) in self.children(scene, ObjectKind::Shape) {
             self.top_shape(shape);
         }
+        self.note_masks(scene);
         self.definitions(scene);
         self.refuse_media();
         self.world

@@ -101,8 +101,8 @@ impl PbrtReader<'_> {
             return None;
         }
         let opacity = self.texture_or(entity, "alpha", Ask::Float, 1.0, uv);
-        let material = material
-            .and_then(|number| Ok(self.masked(entity, number.ok_or(CauseGiven)?, opacity?)));
+        let material =
+            material.and_then(|number| Ok(self.masked(number.ok_or(CauseGiven)?, opacity?)));
         let emission = self.shape_emission(shape, uv, is_in_object);
         let varies = |emission: &EmittedRadiance| !matches!(emission, Texture::Constant(_));
         let needs_uv = material.is_ok_and(|at| reads_uv(&self.world.materials[at]))
@@ -121,12 +121,10 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn masked(&mut self, entity: &Entity, number: usize, opacity: Texture) -> usize {
+    fn masked(&mut self, number: usize, opacity: Texture) -> usize {
         if matches!(opacity, Texture::Constant(a) if a >= 1.0) {
             return number;
         }
-        let message = "approximated: a transparent part counts as a surface of the path";
-        self.note_once(entity.place_of("alpha"), message);
         let of = Box::new(self.world.materials[number].clone());
         self.add_material(Material::Mask { opacity, of })
     }

@@ -91,7 +91,7 @@ impl<'a> PhotonProbe<'a> {
             return;
         }
         for met in 1..=paths.depth {
-            let Some(hit) = paths.geometry.first(&ray, [0.0, f64::INFINITY]) else {
+            let Some(hit) = paths.stopped(&ray, &mut numbers) else {
                 return;
             };
             let wi = hit.frame.transpose() * -ray.along;

@@ -58,7 +58,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     let mut seen = look.seen;
     let mut travelled = 0.0;
     while stops.len() < most
-        && let Some(hit) = paths.geometry.first(&ray, seen)
+        && let Some(hit) = paths.mostly_stopped(&ray, seen)
     {
         travelled += hit.distance;
         let side = if hit.frame.z_axis.dot(ray.along) < 0.0 {

@@ -169,7 +169,7 @@ impl<'a> WindowConnector<'a> {
         };
         let mut line = legs[leg].line(&paths.geometry, &plane.frame, &seen);
         loop {
-            let Some(hit) = paths.geometry.first(&line, [0.0, f64::INFINITY]) else {
+            let Some(hit) = paths.stopped(&line, numbers) else {
                 self.regions[leg].sees_sky |= paths.has_sky();
                 return None;
             };
@@ -307,7 +307,11 @@ impl<'a> WindowConnector<'a> {
             return;
         }
         let flux = flux();
-        if flux <= 0.0 || !self.is_seen(number, from, along) {
+        if flux <= 0.0 {
+            return;
+        }
+        let flux = flux * self.transmittance(number, from, along);
+        if flux <= 0.0 {
             return;
         }
         for (i, ray) in seen {
@@ -318,7 +322,8 @@ impl<'a> WindowConnector<'a> {
         let Some(hit) = end else {
             return;
         };
-        let scatter = self.probe.paths.scatter(&hit);
+        let paths = self.probe.paths;
+        let scatter = paths.scatter(&hit);
         let arriving = hit.frame.transpose() * -along;
         let Some(bounce) = scatter.sample(&hit.point, arriving, numbers.draw()) else {
             return;
@@ -326,7 +331,7 @@ impl<'a> WindowConnector<'a> {
         let onward = (hit.frame * bounce.wi).normalize();
         if bounce.density.is_none() && onward.dot(legs[number - 1].frame.d) > 0.0 {
             let share = bounce.weight * scatter.squared_index(arriving, bounce.wi);
-            let flux = || flux * share;
+            let flux = || flux * share * paths.opacity(&hit);
             self.pass(number - 1, (hit.position, onward), &flux, numbers, record);
         }
     }
@@ -344,13 +349,22 @@ impl<'a> WindowConnector<'a> {
         (at.x.abs().max(at.y.abs()) <= region.position).then_some(hit)
     }
 
-    /// Traces the line through a point back from the end of a leg, and checks whether it hits this
-    /// point before any other.
-    fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
+    /// Traces the line through a point back from the end of a leg, and returns the share of light
+    /// that passes between this point and the end.
+    fn transmittance(&self, leg: usize, position: DVec3, along: DVec3) -> f64 {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
         // If the line begins at the point itself, light leaves from the other side of the surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].position;
-        is_before && paths.geometry.is_clear(line.from, position)
+        if !is_before {
+            return 0.0;
+        }
+        let between = position - line.from;
+        let distance = between.length();
+        let line = Ray {
+            along: between / distance,
+            ..line
+        };
+        paths.transmittance(&line, distance)
     }
 }

@@ -73,13 +73,9 @@ impl Scatter {
                 let (side, turned) = side_of(sides, wo);
                 side.value_and_density(point, turned(wi), turned(wo))
             }
-            Self::Mask(opacity, of) => {
-                let opacity = opacity.value(point);
-                let (value, density) = of.value_and_density(point, wi, wo);
-                (opacity * value, opacity * density)
-            }
+            Self::Mask(_, of) => of.value_and_density(point, wi, wo),
             Self::Blend(weight, of) => {
-                let share = weight.value(point).clamp(0.0, 1.0);
+                let share = second_share(weight, of, point);
                 let [a, b] = of.each_ref().map(|of| of.value_and_density(point, wi, wo));
                 let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
                 (mix(a.0, b.0), mix(a.1, b.1))
@@ -131,17 +127,9 @@ impl Scatter {
                     ..bounce
                 })
             }
-            Self::Mask(opacity, of) => {
-                let opacity = opacity.value(point).clamp(0.0, 1.0);
-                if c >= opacity {
-                    return Some(BsdfSample::only(-wo, 1.0));
-                }
-                let bounce = of.sample(point, wo, [a, b, c / opacity])?;
-                let density = bounce.density.map(|density| opacity * density);
-                Some(BsdfSample { density, ..bounce })
-            }
+            Self::Mask(_, of) => of.sample(point, wo, random),
             Self::Blend(weight, of) => {
-                self.blended(weight.value(point).clamp(0.0, 1.0), of, point, wo, random)
+                self.blended(second_share(weight, of, point), of, point, wo, random)
             }
             Self::Dielectric(of) => {
                 let turned = to_front(wo);
@@ -226,8 +214,7 @@ impl Scatter {
                 };
                 index * index
             }
-            // Light that continues in a straight line is not scattered.
-            Self::Mask(_, of) if (from + to).length_squared() > 1e-24 => of.squared_index(from, to),
+            Self::Mask(_, of) => of.squared_index(from, to),
             Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
             _ => 1.0,
         }
@@ -313,8 +300,31 @@ impl Scatter {
         match self {
             Self::Plastic(of) => of.coat.facets().is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().any(Self::has_mirror),
-            Self::Mask(..) => true,
+            Self::Mask(_, of) => of.has_mirror(),
             _ => self.is_smooth(),
+        }
+    }
+
+    /// Checks whether the material is partly transparent.
+    pub(crate) fn is_masked(&self) -> bool {
+        match self {
+            Self::Mask(..) => true,
+            Self::TwoSided(of) | Self::Blend(_, of) => of.iter().any(Self::is_masked),
+            _ => false,
+        }
+    }
+
+    /// Returns the share of light that hits the material. The rest passes unchanged; the other
+    /// methods do not describe it.
+    pub(crate) fn opacity(&self, point: &TexturePoint) -> f64 {
+        match self {
+            Self::Mask(opacity, of) => opacity.value(point).clamp(0.0, 1.0) * of.opacity(point),
+            Self::Blend(weight, of) => {
+                let share = weight.value(point).clamp(0.0, 1.0);
+                let [a, b] = of.each_ref().map(|of| of.opacity(point));
+                a + share * (b - a)
+            }
+            _ => 1.0,
         }
     }
 
@@ -334,6 +344,13 @@ impl Scatter {
 fn both(of: &impl Bsdf, wi: DVec3, wo: DVec3) -> (f64, f64) {
     let (value, density) = of.value_and_density(wi, wo);
     (value * wi.z.abs(), density)
+}
+
+/// Returns the share of the second of two mixed materials in the light that hits either of them.
+fn second_share(weight: &Texture, of: &[Scatter; 2], point: &TexturePoint) -> f64 {
+    let share = weight.value(point).clamp(0.0, 1.0);
+    let [a, b] = of.each_ref().map(|of| of.opacity(point));
+    share * b / (a + share * (b - a)).max(f64::MIN_POSITIVE)
 }
 
 /// Returns the material on the side that faces a direction, and the flip to the frame of this

@@ -83,14 +83,35 @@ impl SceneGeometry {
         Some(placed.hit(ray, shape, &spot?))
     }
 
-    /// Checks whether nothing is between two points.
-    pub(crate) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
-        let between = to - from;
-        let distance = between.length();
-        let along = between / distance;
-        self.is_free(&Ray { from, along }, distance)
+    /// Returns the first hit of a ray behind another of its hits.
+    pub(crate) fn behind(&self, ray: &Ray, hit: &Hit, until: f64) -> Option<Hit> {
+        self.first(ray, [hit.distance + self.nearest, until])
     }
 
+    /// Returns the share of light that passes along a ray up to a distance. `opacity` returns the
+    /// share that a hit stops.
+    #[inline]
+    pub(crate) fn transmittance(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        opacity: impl Fn(&Hit) -> f64,
+    ) -> f64 {
+        if self.is_free(ray, distance) {
+            return 1.0;
+        }
+        let until = distance - self.nearest;
+        let mut share = 1.0;
+        let mut next = self.first(ray, [0.0, until]);
+        while let Some(hit) = next {
+            share *= 1.0 - opacity(&hit);
+            if share <= 0.0 {
+                return 0.0;
+            }
+            next = self.behind(ray, &hit, until);
+        }
+        share
+    }
     /// Checks whether a ray hits nothing before a distance.
     #[inline]
     #[must_use]
