@@ -141,17 +141,16 @@ fn base_colours_are_linear_and_their_pictures_srgb() {
 fn alpha_is_the_square_of_roughness() {
     let material = r#"{"pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0.5}}"#;
     let world = world(&mesh(r#"{"mesh":0}"#, material, ""));
-    let Material::Conductor(metal) = &world.materials[0] else {
+    let Material::MetallicRoughness(metal) = &world.materials[0] else {
         panic!("{:?}", world.materials);
     };
     let roughness = metal.roughness.as_ref().unwrap();
     assert_eq!(roughness.distribution, MicrofacetDistribution::Ggx);
     assert_close(&[constant(&roughness.alpha[0])], &[0.25], 1e-12);
-    assert!(metal.index.is_none());
 }
 
 #[test]
-fn what_is_no_metal_is_coated_and_what_is_between_is_mixed() {
+fn factors_of_a_material_keep_their_values() {
     let of = |factor: f64| {
         let material = format!(
             r#"{{"pbrMetallicRoughness":{{"metallicFactor":{factor}}},"extensions":{{"KHR_materials_ior":{{"ior":1.3}}}}}}"#
@@ -160,18 +159,14 @@ fn what_is_no_metal_is_coated_and_what_is_between_is_mixed() {
             .materials
             .remove(0)
     };
-    let Material::Plastic(coat) = of(0.0) else {
-        panic!("{:?}", of(0.0));
-    };
-    assert_close(&[coat.index], &[1.3], 1e-6);
-    let Material::Blend { weight, of: parts } = of(0.25) else {
-        panic!("{:?}", of(0.25));
-    };
-    assert_close(&[constant(&weight)], &[0.25], 1e-12);
-    assert!(matches!(
-        &parts[..],
-        [Material::Plastic(_), Material::Conductor(_)]
-    ));
+    for factor in [0.0, 0.25] {
+        let Material::MetallicRoughness(of) = of(factor) else {
+            panic!("{:?}", of(factor));
+        };
+        // At normal incidence, an index of 1.3 reflects (0.3/2.3)².
+        assert_close(&of.coat, &[0.017_013_2, 1.0], 1e-6);
+        assert_close(&[constant(&of.metallic)], &[factor], 1e-12);
+    }
 }
 
 #[test]

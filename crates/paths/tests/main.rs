@@ -4,6 +4,7 @@
 
 mod attributes;
 mod furnace;
+mod gltf;
 mod known;
 mod masks;
 mod probe;

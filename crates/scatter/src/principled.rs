@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 /// The smallest share of directions that the facets sample, because Schlick's factor is larger at
 /// grazing angles than the share of the lobe that is estimated.
-const MIN_SHARE: f64 = 0.1;
+pub(crate) const MIN_SHARE: f64 = 0.1;
 
 /// The mixture at one point. wo is in front of the surface.
 #[derive(Clone, Copy, Debug)]
@@ -244,7 +244,7 @@ fn raised(normal: f64, cosine: f64) -> f64 {
 }
 
 /// Returns (1 − cos)⁵, the weight in Schlick's approximation (Schlick 1994).
-fn schlick(cosine: f64) -> f64 {
+pub(crate) fn schlick(cosine: f64) -> f64 {
     let rest = (1.0 - cosine).clamp(0.0, 1.0);
     let squared = rest * rest;
     squared * squared * rest

@@ -17,7 +17,9 @@ mod triangles;
 pub use camera::{Camera, Lens, Look, Projection};
 pub use etendue_field::MicrofacetDistribution;
 pub use light::{EmittedRadiance, Falloff, Light, SkyMap};
-pub use material::{Conductor, Dielectric, Material, Plastic, Principled, Roughness};
+pub use material::{
+    Conductor, Dielectric, Material, MetallicRoughness, Plastic, Principled, Roughness,
+};
 pub use mesh_values::MeshValues;
 pub use shape::{Geometry, Shape};
 pub use texture::{Bitmap, Filter, Texture, Wrap};

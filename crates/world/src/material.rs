@@ -20,6 +20,8 @@ pub enum Material {
     Dielectric(Dielectric),
     /// A diffuse base below a dielectric coat, on the front.
     Plastic(Plastic),
+    /// A mixture of a metal and a coated diffuse base, on the front.
+    MetallicRoughness(Box<MetallicRoughness>),
     /// A mixture of a metal and a diffuse base below a dielectric interface, on the front, and of
     /// an interface that transmits light, on both sides.
     Principled(Box<Principled>),
@@ -94,6 +96,20 @@ pub struct Plastic {
     pub is_nonlinear: bool,
     /// Roughness of the coat, which does not affect the base; `None` for a smooth coat.
     pub roughness: Option<Roughness>,
+}
+
+/// A mixture of a metal and a diffuse base below a coat, with Schlick's reflectances (glTF 2.0,
+/// Appendix B). At grazing angles it may reflect more light than it receives.
+#[derive(Clone, Debug)]
+pub struct MetallicRoughness {
+    /// Albedo of the base, and reflectance of the metal at normal incidence.
+    pub color: Texture,
+    /// The share of the metal, 0 to 1.
+    pub metallic: Texture,
+    /// Roughness of the metal and of the coat; `None` if both are smooth.
+    pub roughness: Option<Roughness>,
+    /// Reflectance of the coat at normal and at grazing incidence.
+    pub coat: [f64; 2],
 }
 
 /// A mixture of a metal, a diffuse base below a dielectric interface, and such an interface that

@@ -1,21 +1,15 @@
-//! Conversion of the metallic-roughness model to a mixture of plastic and metal.
+//! Reads the metallic-roughness model.
 
 use super::level::TextureChannel;
 use super::reader::GltfReader;
 use super::surface::Draft;
-use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughness, Texture};
+use etendue_world::{Material, MetallicRoughness, MicrofacetDistribution, Roughness, Texture};
 
 /// Default index of refraction.
 const INDEX: f64 = 1.5;
 
 /// The JSON field that contains the pictures of the base colour and of metallic and roughness.
 const PBR: &str = "pbrMetallicRoughness";
-
-/// The reflection at the surface of a dielectric.
-struct DielectricCoat {
-    index: f64,
-    specular: f64,
-}
 
 impl GltfReader<'_> {
     /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
@@ -25,19 +19,16 @@ impl GltfReader<'_> {
         let metallic = self.share(draft, "metallicFactor");
         let alpha = self.alpha(draft);
         let (color, metallic, alpha) = (color?, metallic?, alpha?);
-        match metallic {
-            Texture::Constant(..=0.0) => self.dielectric_base(draft, color, &alpha),
-            Texture::Constant(1.0..) => Some(self.metal(draft, color, alpha)),
-            weight => {
-                let message =
-                    "approximated: the material is a mixture of a coated base and a metal";
-                self.note(&format!("{}.{PBR}.metallicFactor", draft.path), message);
-                let base = self.dielectric_base(draft, color.clone(), &alpha)?;
-                let metal = self.metal(draft, color, alpha);
-                let of = Box::new([base, metal]);
-                Some(Material::Blend { weight, of })
-            }
+        let coat = self.coat(draft)?;
+        if matches!(metallic, Texture::Constant(..=0.0)) && coat[1] <= 0.0 {
+            return Some(Material::Diffuse { reflectance: color });
         }
+        Some(Material::MetallicRoughness(Box::new(MetallicRoughness {
+            color,
+            metallic,
+            roughness: roughness(alpha),
+            coat,
+        })))
     }
 
     pub(super) fn base_color(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
@@ -80,55 +71,6 @@ impl GltfReader<'_> {
         }
     }
 
-    /// Returns a metal whose reflectance is the base colour at all angles.
-    fn metal(&self, draft: &Draft<'_>, reflectance: Texture, alpha: Texture) -> Material {
-        let is_white = matches!(reflectance, Texture::Constant(v) if (v - 1.0).abs() < 1e-9);
-        if !is_white {
-            let message = "approximated: the metal reflects its base colour at all angles; in glTF, a metal is white at grazing angles";
-            self.note(&format!("{}.{PBR}", draft.path), message);
-        }
-        Material::Conductor(Conductor {
-            index: None,
-            reflectance,
-            roughness: roughness(alpha),
-        })
-    }
-
-    fn dielectric_base(
-        &self,
-        draft: &Draft<'_>,
-        diffuse: Texture,
-        alpha: &Texture,
-    ) -> Option<Material> {
-        let DielectricCoat { index, specular } = self.coat(draft)?;
-        if index <= 1.0 || specular <= 0.0 {
-            return Some(Material::Diffuse {
-                reflectance: diffuse,
-            });
-        }
-        let path = format!("{}.{PBR}", draft.path);
-        self.note(&path, format!("approximated: the material is a diffuse base below a coat of index {index}, with internal reflections"));
-        let alpha = match alpha {
-            Texture::Bitmap(bitmap) => {
-                let values = bitmap.pixels.values();
-                let roots: f64 = values.iter().map(|alpha| alpha.sqrt()).sum();
-                let mean = roots / values.len() as f64;
-                let message =
-                    format!("approximated: the coat has the mean roughness, {mean:.4}, everywhere");
-                self.note(&format!("{path}.metallicRoughnessTexture"), message);
-                Texture::Constant(mean * mean)
-            }
-            other => other.clone(),
-        };
-        Some(Material::Plastic(Plastic {
-            index,
-            diffuse,
-            specular: Texture::Constant(specular),
-            is_nonlinear: false,
-            roughness: roughness(alpha),
-        }))
-    }
-
     /// Returns the index of refraction, or `None` if a cause of refusal was reported.
     pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let ior = draft
@@ -143,19 +85,17 @@ impl GltfReader<'_> {
         self.within(&path, ior.ior.0, [1.0, 10.0])
     }
 
-    fn coat(&self, draft: &Draft<'_>) -> Option<DielectricCoat> {
+    /// Returns the reflectance of the coat of a dielectric at normal and at grazing incidence.
+    fn coat(&self, draft: &Draft<'_>) -> Option<[f64; 2]> {
         let index = self.index(draft)?;
+        let normal = ((index - 1.0) / (index + 1.0)).powi(2);
         let extensions = draft.source.extensions.as_ref();
         let Some(of) = extensions.and_then(|of| of.specular.as_ref()) else {
-            let specular = 1.0;
-            return Some(DielectricCoat { index, specular });
+            return Some([normal, 1.0]);
         };
         let path = format!("{}.extensions.KHR_materials_specular", draft.path);
-        let factor = self.within(
-            &format!("{path}.specularFactor"),
-            of.specular_factor.0,
-            [0.0, 1.0],
-        )?;
+        let field = format!("{path}.specularFactor");
+        let factor = self.within(&field, of.specular_factor.0, [0.0, 1.0])?;
         let color = of.specular_color_factor.0;
         for value in color {
             self.within(&format!("{path}.specularColorFactor"), value, [0.0, 1.0])?;
@@ -163,15 +103,10 @@ impl GltfReader<'_> {
         if of.specular_texture.is_some() || of.specular_color_texture.is_some() {
             self.note(&path, "pictures are left out");
         }
-        let specular = factor * self.color.of(color.map(f64::from));
-        let is_plain = specular <= 0.0 || (specular - 1.0).abs() < 1e-9;
-        if !is_plain {
-            self.note(
-                &path,
-                "approximated: the reflection of the coat is multiplied by this factor",
-            );
-        }
-        Some(DielectricCoat { index, specular })
+        Some([
+            factor * normal * self.color.of(color.map(f64::from)),
+            factor,
+        ])
     }
 }
 

@@ -298,7 +298,8 @@ pub(super) fn reads_uv(material: &Material) -> bool {
         Material::Conductor(of) => varies(&of.reflectance) || rough(&of.roughness),
         Material::Dielectric(of) => rough(&of.roughness),
         Material::Plastic(of) => varies(&of.diffuse) || rough(&of.roughness),
-        Material::Phong { .. } | Material::Principled(_) => false,
+        // pbrt has no such materials.
+        Material::Phong { .. } | Material::MetallicRoughness(_) | Material::Principled(_) => false,
         Material::TwoSided(of) => of.iter().any(reads_uv),
         Material::Mask { opacity, of } => varies(opacity) || reads_uv(of),
         Material::Blend { weight, of } => varies(weight) || of.iter().any(reads_uv),

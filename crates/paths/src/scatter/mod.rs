@@ -16,8 +16,8 @@ use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
 use glam::DVec3;
 use place::{
-    Coated, conductor, factor, fresnel, phong, principled, rough_dielectric, share,
-    smooth_dielectric,
+    Coated, conductor, factor, fresnel, is_mirrored, metallic_roughness, phong, principled,
+    rough_dielectric, share, smooth_dielectric,
 };
 use principled_side::PrincipledSide;
 pub use reflects::Reflects;
@@ -30,6 +30,7 @@ pub(crate) enum Scatter {
     Conductor(world::Conductor),
     Dielectric(world::Dielectric),
     Plastic(Box<Coated>),
+    MetallicRoughness(Box<world::MetallicRoughness>),
     Principled(Box<world::Principled>),
     Phong([Texture; 3]),
     TwoSided(Box<[Self; 2]>),
@@ -45,6 +46,7 @@ impl From<&Material> for Scatter {
             Material::Conductor(conductor) => Self::Conductor(conductor.clone()),
             Material::Dielectric(dielectric) => Self::Dielectric(dielectric.clone()),
             Material::Plastic(plastic) => Self::Plastic(Box::new(Coated::new(plastic))),
+            Material::MetallicRoughness(of) => Self::MetallicRoughness(of.clone()),
             Material::Principled(principled) => Self::Principled(principled.clone()),
             Material::Phong {
                 diffuse,
@@ -96,6 +98,7 @@ impl Scatter {
                 (of.reflectance.value(point) * value, density)
             }),
             Self::Plastic(of) => both(&of.at(point), wi, wo),
+            Self::MetallicRoughness(of) => both(&metallic_roughness(of, point), wi, wo),
             Self::Phong(of) => both(&phong(of, point), wi, wo),
         }
     }
@@ -164,6 +167,7 @@ impl Scatter {
                 })
             }
             Self::Plastic(of) => of.at(point).sample(wo, random),
+            Self::MetallicRoughness(of) => metallic_roughness(of, point).sample(wo, random),
             Self::Phong(of) => phong(of, point).sample(wo, random),
         }
     }
@@ -247,6 +251,7 @@ impl Scatter {
             _ if wo.z <= 0.0 => Reflects::Nothing,
             Self::Diffuse(_) => Reflects::Diffuse,
             Self::Conductor(of) => rough(of.roughness.as_ref()),
+            Self::MetallicRoughness(of) => rough(of.roughness.as_ref()),
             Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
                 Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
             }),
@@ -268,6 +273,7 @@ impl Scatter {
             Self::Conductor(of) => [of.reflectance.value(point), 0.0],
             Self::Plastic(of) => [of.at(point).base_albedo(), of.specular.value(point)],
             Self::Phong([diffuse, specular, _]) => [diffuse.value(point), specular.value(point)],
+            Self::MetallicRoughness(of) => [metallic_roughness(of, point).base(), 1.0],
             Self::Principled(of) => [principled(of, point).base(), 1.0],
             _ => [1.0, 0.0],
         }
@@ -281,6 +287,13 @@ impl Scatter {
                 side.base_share(point, turned(wi), turned(wo))
             }
             Self::Plastic(of) => of.base_share(point, wi, wo),
+            Self::MetallicRoughness(of) => {
+                let at = metallic_roughness(of, point);
+                if at.facets.is_none() && is_mirrored(wi, wo) {
+                    return 0.0;
+                }
+                share(at.base_value(wi, wo), at.value(wi, wo))
+            }
             // Only the front reflects light from the base.
             Self::Principled(_) if wi.z <= 0.0 || wo.z <= 0.0 => 0.0,
             Self::Principled(of) => {
@@ -299,6 +312,7 @@ impl Scatter {
     pub(crate) fn has_mirror(&self) -> bool {
         match self {
             Self::Plastic(of) => of.coat.facets().is_none(),
+            Self::MetallicRoughness(of) => of.roughness.is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().any(Self::has_mirror),
             Self::Mask(_, of) => of.has_mirror(),
             _ => self.is_smooth(),
@@ -332,6 +346,7 @@ impl Scatter {
     pub(crate) fn is_smooth(&self) -> bool {
         match self {
             Self::Conductor(of) => of.roughness.is_none(),
+            Self::MetallicRoughness(of) => of.roughness.is_none() && of.metallic.smallest() >= 1.0,
             Self::Dielectric(of) => of.is_thin || of.roughness.is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().all(Self::is_smooth),
             Self::Mask(_, of) => of.is_smooth(),

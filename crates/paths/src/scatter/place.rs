@@ -2,8 +2,8 @@
 
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_scatter::{
-    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, Principled, RoughDielectric,
-    SmoothDielectric,
+    Bsdf, Coat, Conductor, MetallicRoughness, Microfacets, ModifiedPhong, Phong, Plastic,
+    Principled, RoughDielectric, SmoothDielectric,
 };
 use etendue_world::{self as world, Roughness, Texture, TexturePoint};
 use glam::DVec3;
@@ -108,6 +108,19 @@ pub(super) fn principled(of: &world::Principled, point: &TexturePoint) -> Princi
     }
 }
 
+/// Returns glTF's mixture of a metal and a coated base at a point.
+pub(super) fn metallic_roughness(
+    of: &world::MetallicRoughness,
+    point: &TexturePoint,
+) -> MetallicRoughness {
+    MetallicRoughness {
+        facets: facets(of.roughness.as_ref(), point),
+        color: of.color.value(point),
+        metallic: of.metallic.value(point),
+        coat: of.coat,
+    }
+}
+
 /// A diffuse base below a dielectric coat.
 #[derive(Clone, Debug)]
 pub(crate) struct Coated {
@@ -142,13 +155,17 @@ impl Coated {
     /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
     /// a smooth coat, whose reflection is a delta component.
     pub(super) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
-        let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
-        if self.coat.facets().is_none() && is_mirrored {
+        if self.coat.facets().is_none() && is_mirrored(wi, wo) {
             return 0.0;
         }
         let plastic = self.at(point);
         share(plastic.base_value(wi, wo), plastic.value(wi, wo))
     }
+}
+
+/// Checks whether directions are mirror directions of each other.
+pub(super) fn is_mirrored(wi: DVec3, wo: DVec3) -> bool {
+    (wi + wo).truncate().length_squared() < 1e-24
 }
 
 /// Returns the ratio of a part to the whole value, or 0 if the value is 0.

@@ -1,8 +1,8 @@
 //! All models of the crate, with narrow and wide lobes, for tests.
 
 use crate::{
-    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, Principled, RoughDielectric,
-    lambertian,
+    Bsdf, Coat, Conductor, MetallicRoughness, Microfacets, ModifiedPhong, Phong, Plastic,
+    Principled, RoughDielectric, lambertian,
 };
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_sampling::chi_square::{ChiSquare, SphereCells};
@@ -15,6 +15,8 @@ pub(super) struct Model {
     pub(super) bsdf: Box<dyn Bsdf>,
     /// The index behind the surface divided by the index in front of it.
     pub(super) index: f64,
+    /// An upper bound of the share of light that leaves; 1 if energy is conserved.
+    pub(super) max_flux: f64,
     /// An upper bound of the weights.
     pub(super) max_weight: f64,
 }
@@ -24,6 +26,7 @@ fn model(name: String, max_weight: f64, bsdf: impl Bsdf + 'static) -> Model {
         name,
         bsdf: Box::new(bsdf),
         index: 1.0,
+        max_flux: 1.0,
         max_weight,
     }
 }
@@ -157,6 +160,21 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
     model(name, 4.0, plastic)
 }
 
+fn metallic_roughness(facets: Option<Microfacets>, color: f64, metallic: f64) -> Model {
+    let mixture = MetallicRoughness {
+        facets,
+        color,
+        metallic,
+        coat: [0.04, 1.0],
+    };
+    // The facets sample at least a tenth of the directions. Base and coat share light by the angle
+    // to the half vector, so that each may reflect all light that arrives at grazing angles.
+    Model {
+        max_flux: 2.0,
+        ..model(format!("{mixture:?}"), 10.0, mixture)
+    }
+}
+
 /// A mixture with all lobes.
 pub(super) const MIXTURE: Principled = Principled {
     facets: Microfacets {
@@ -271,6 +289,12 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
+    models.extend([
+        metallic_roughness(None, 0.8, 0.0),
+        metallic_roughness(Some(ggx([0.04, 0.04])), 1.0, 0.0),
+        metallic_roughness(Some(ggx([1.0, 1.0])), 0.6, 0.3),
+        metallic_roughness(Some(ggx([0.3, 0.3])), 0.5, 1.0),
+    ]);
     models.extend(mixtures());
     models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
     let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
