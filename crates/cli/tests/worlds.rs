@@ -175,6 +175,91 @@ fn a_probe_names_surfaces_and_judges_planes() {
     );
 }
 
+/// Returns a BMP picture of one row, whose levels are those of a period of two waves about ½.
+fn waves(amplitudes: [f64; 2], cycles: [f64; 2]) -> Vec<u8> {
+    const WIDTH: u8 = 128;
+    let level = |i: u8| {
+        let turn = 2.0 * std::f64::consts::PI * (f64::from(i) + 0.5) / f64::from(WIDTH);
+        let wave = |k: usize| amplitudes[k] * (cycles[k] * turn).cos();
+        let level = 255.0 * (0.5 + wave(0) + wave(1));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a level from 0 to 255"
+        )]
+        let level = level.round() as u8;
+        [level; 3]
+    };
+    let mut bytes = b"BM".to_vec();
+    let words = [
+        54 + 3 * u32::from(WIDTH),
+        0,
+        54,
+        40,
+        WIDTH.into(),
+        1,
+        1 | 24 << 16,
+    ];
+    bytes.extend(words.into_iter().flat_map(u32::to_le_bytes));
+    bytes.resize(54, 0);
+    bytes.extend((0..WIDTH).flat_map(level));
+    bytes
+}
+
+/// A floor has waves of 0.3 and 1.2 cycles a pixel, with these amplitudes, under an even sky. The
+/// narrowest window shows at most 0.77 cycles a pixel.
+#[test]
+fn a_probe_finds_variation_above_its_highest_frequency() {
+    for (amplitudes, share) in [
+        ([0.45, 0.0], None),
+        ([0.0, 0.3], Some(1.0)),
+        // The variance of a wave is half its squared amplitude.
+        ([0.2, 0.3], Some(0.09 / 0.13)),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        fs::write(path.join("waves.bmp"), waves(amplitudes, [1.0, 4.0])).unwrap();
+        let periods = 0.3 * 6.0 / (4.0 * 20_f64.to_radians().tan() / 256.0);
+        let text = format!(
+            r#"<scene version="3.0.0">
+  <sensor type="perspective"><float name="fov" value="40"/>
+    <transform name="to_world"><lookat origin="0, 0, 2" target="0, 0, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="256"/><integer name="height" value="256"/><rfilter type="box"/></film>
+  </sensor>
+  <shape type="rectangle"><transform name="to_world"><scale value="3"/></transform>
+    <bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="waves.bmp"/>
+      <boolean name="raw" value="true"/><transform name="to_uv"><scale x="{periods}"/></transform></texture></bsdf>
+  </shape>
+  <emitter type="constant"><rgb name="radiance" value="1"/></emitter>
+</scene>"#
+        );
+        fs::write(path.join("floor.xml"), text).unwrap();
+        let line = "probe floor.xml --pixel 130,120 --rays 2^17 --photons 2^10 --out p";
+        let said = String::from_utf8(call(path, line).stdout).unwrap();
+        let picture = &json(&path.join("p/probe.json"))["picture"];
+        let found = picture["missed"]["share"].as_f64();
+        match share {
+            Some(share) => {
+                // The polar cells change the measured power by 3 %, and 2^14 pairs the whole by 2 %.
+                assert!((found.unwrap() - share).abs() < 0.05, "{found:?} {share}");
+                let advice = "place at least one shading sample in each pixel";
+                assert!(said.contains(advice), "{said}");
+            }
+            None => {
+                assert!(found.is_none(), "{found:?}");
+                assert!(
+                    said.contains("advice: place shading samples every"),
+                    "{said}"
+                );
+            }
+        }
+    }
+    // Too few rays are not taken for a smooth or a fine picture.
+    let folder = room();
+    let said = done(folder.path(), "probe room.xml --map 2x2 --rays 2^6 --out m");
+    assert!(said.contains("noise hides the bandwidth of"), "{said}");
+}
+
 /// The predicted errors of samplers at the planes of a probe are the errors really made.
 #[test]
 fn a_probe_predicts_the_errors_of_samplers() {

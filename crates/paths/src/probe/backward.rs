@@ -3,9 +3,10 @@
 use super::{Budget, Probe};
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::LightSearch;
-use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_field::{Crossing, Ledger, PhotonSource, Profile, TwoPlane, VirtualPlane, Window};
 use etendue_transform::Net;
 use etendue_transform::random::Stream;
+use rayon::prelude::*;
 
 /// Backward rays of a [`Probe`]. For each plane separately, lines are drawn uniformly over the
 /// plane's window, and a path finds the radiance along each line.
@@ -43,16 +44,8 @@ impl<'a> BackwardProbe<'a> {
     /// numbers of the ray.
     fn crossing(&self, plane: &VirtualPlane, number: u64, (net, point): (&Net, u32)) -> Crossing {
         let mut numbers = PathNumbers::new(self.budget.seed, number).of_net(net, point);
-        let half = [
-            plane.window.x,
-            plane.window.y,
-            plane.window.u,
-            plane.window.v,
-        ];
-        let half = half.map(|profile| profile.half_width());
-        let drawn: [f64; 4] = numbers.draw();
-        let [x, y, u, v] = [0, 1, 2, 3].map(|i: usize| (2.0 * drawn[i] - 1.0) * half[i]);
-        let ray = TwoPlane { x, y, u, v };
+        let half = half_widths(plane);
+        let ray = line(half, &mut numbers);
         let probe = self.probe;
         let radiance = probe.radiance_by(plane, &ray, self.search, &mut numbers);
         // The last factor is the volume of the window. The weights are not divided by the number of
@@ -60,6 +53,39 @@ impl<'a> BackwardProbe<'a> {
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();
         Crossing { ray, weight }
     }
+
+    /// Returns lines drawn uniformly over a plane's window, each with the radiances that two
+    /// independent paths find along it. The mean of a product of both has no part due to the noise
+    /// of paths.
+    #[must_use]
+    pub fn pairs(&self, plane: &VirtualPlane, count: u64) -> Vec<(TwoPlane, [f64; 2])> {
+        let pair = |i: u64| {
+            let mut numbers =
+                [2 * i, 2 * i + 1].map(|i| PathNumbers::new(self.budget.seed, PAIRS + i));
+            let ray = line(half_widths(plane), &mut numbers[0]);
+            let found = numbers
+                .each_mut()
+                .map(|numbers| self.probe.radiance_by(plane, &ray, self.search, numbers));
+            (ray, found)
+        };
+        (0..count).into_par_iter().map(pair).collect()
+    }
+}
+
+/// The number of the first path of [`BackwardProbe::pairs`]; other paths have smaller numbers.
+const PAIRS: u64 = 1 << 62;
+
+/// Returns the half-widths of a plane's window along x, y, u and v.
+fn half_widths(plane: &VirtualPlane) -> [f64; 4] {
+    let Window { x, y, u, v } = &plane.window;
+    [x, y, u, v].map(Profile::half_width)
+}
+
+/// Draws a line uniformly within half-widths.
+fn line(half: [f64; 4], numbers: &mut PathNumbers<'_>) -> TwoPlane {
+    let drawn: [f64; 4] = numbers.draw();
+    let [x, y, u, v] = [0, 1, 2, 3].map(|i: usize| (2.0 * drawn[i] - 1.0) * half[i]);
+    TwoPlane { x, y, u, v }
 }
 
 impl PhotonSource for BackwardProbe<'_> {

@@ -7,11 +7,10 @@ use super::words::criterion;
 use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures::PictureFiles;
-use etendue_store::Failure;
-use etendue_store::Results;
 use etendue_store::exr::{Part, exr};
 use etendue_store::npz::Npz;
 use etendue_store::sealed::json;
+use etendue_store::{ArgumentStyle, Failure, Results};
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
 use serde_json::json as tree_of;
@@ -19,9 +18,40 @@ use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
 
+/// What is known about the bandwidth of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outcome {
+    Measured,
+    /// The pixel sees no light.
+    Dark,
+    /// Noise hides the bandwidth.
+    Noisy,
+    /// The bandwidth is below the limit of the window.
+    Smooth,
+    /// The picture varies above the highest frequency.
+    Fine,
+}
+
+impl Outcome {
+    fn of(picture: &PictureBandwidth) -> Self {
+        if picture.missed.is_some() {
+            Self::Fine
+        } else if picture.widest().is_some() {
+            Self::Measured
+        } else if picture.variation.is_some() {
+            Self::Smooth
+        } else if picture.noise_share().is_none() {
+            Self::Dark
+        } else {
+            Self::Noisy
+        }
+    }
+}
+
 /// The results for a pixel. A number is NaN if there is no light or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
+    outcome: Outcome,
     /// The bandwidth, in cycles per slope, of the picture minus its mean. It is taken along the
     /// direction in which it is largest; `error` is its standard error.
     measured: f64,
@@ -36,12 +66,14 @@ struct MapPoint {
     window: f64,
     /// Width of the window, pixels.
     pixels: f64,
-    /// The number of shading samples along a direction.
+    /// The number of shading samples along a direction; at least this number if the picture varies
+    /// above the highest frequency.
     samples: f64,
 }
 
 impl MapPoint {
     const UNKNOWN: Self = Self {
+        outcome: Outcome::Dark,
         measured: f64::NAN,
         error: f64::NAN,
         azimuth: f64::NAN,
@@ -88,7 +120,7 @@ pub fn map_bandwidths(
     drop(bar);
     let map = Array2::from_shape_vec((h, w), points).map_err(Failure::cannot_run)?;
     write(case, results, &map, reporter)?;
-    let words = words(&map);
+    let words = words(&map, request.source.arguments);
     Ok(BandwidthMap { folder, words })
 }
 
@@ -102,7 +134,12 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     };
     let known = |of: Option<f64>| of.unwrap_or(f64::NAN);
     let widest = picture.widest();
+    let enough = match picture.missed {
+        Some(_) => Some(picture.highest),
+        None => widest.map(|it| it.value.value),
+    };
     Ok(MapPoint {
+        outcome: Outcome::of(&picture),
         measured: known(widest.map(|it| it.value.value)),
         error: known(widest.map(|it| it.value.error)),
         azimuth: known(widest.map(|it| it.azimuth)),
@@ -110,7 +147,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
         criterion: known(criterion(&picture.surface)),
         window: picture.of_window(),
         pixels: picture.pixels,
-        samples: known(widest.map(|it| picture.samples(it.value.value))),
+        samples: known(enough.map(|bandwidth| picture.samples(bandwidth))),
     })
 }
 
@@ -173,7 +210,7 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "Measured in {}: the bandwidth of the picture minus its mean, along the direction with the largest bandwidth. In grey pixels, this bandwidth is below the bandwidth of the window. Criterion: the bandwidth by Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window if that is larger",
+            "Measured in {}: the bandwidth of the picture minus its mean, along the direction with the largest bandwidth. Grey pixels are dark, noisy or smooth, or vary above the highest frequency. Criterion: the bandwidth by Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window if that is larger",
             match case.request.window {
                 Some(pixels) => format!("windows {pixels} pixels wide"),
                 None => "the narrowest windows that show the bandwidth".to_owned(),
@@ -206,19 +243,35 @@ fn expected(point: &MapPoint) -> f64 {
 }
 
 /// Returns a comparison of measured and predicted bandwidths.
-fn words(map: &Array2<MapPoint>) -> String {
-    let seen = map
-        .iter()
-        .filter(|point| point.measured.is_finite())
-        .count();
+fn words(map: &Array2<MapPoint>, arguments: ArgumentStyle) -> String {
+    let count = |outcome| map.iter().filter(|point| point.outcome == outcome).count();
+    let [seen, dark, noisy, smooth, fine] = [
+        Outcome::Measured,
+        Outcome::Dark,
+        Outcome::Noisy,
+        Outcome::Smooth,
+        Outcome::Fine,
+    ]
+    .map(count);
     let ratio = |point: &MapPoint| point.measured / expected(point);
     let mut ratios: Vec<f64> = map.iter().map(ratio).filter(|x| x.is_finite()).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "bandwidths were measured at {seen} of {} pixels. The other pixels are dark or too noisy, or their bandwidth is below the bandwidth of the window. Of the measured pixels, {all} show surfaces with a lobe",
+        "bandwidths were measured at {seen} of {} pixels, of which {all} show surfaces with a lobe. Of the others, {dark} are dark, and {smooth} are smooth: their bandwidth is below the bandwidth of the window",
         map.len()
     )];
+    if noisy > 0 {
+        let rays = arguments.name("rays");
+        lines.push(format!(
+            "noise hides the bandwidth of {noisy} pixels: more {rays} would show it"
+        ));
+    }
+    if fine > 0 {
+        lines.push(format!(
+            "{fine} pixels vary above the highest frequency of the window: `samples` is the least number that they need"
+        ));
+    }
     if all > 0 {
         let at = |tenths: usize| ratios[(all - 1) * tenths / 10];
         let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();

@@ -2,7 +2,7 @@
 //! measurement.
 
 use super::scene::{BATCHES, ProbedScene};
-use etendue_field::Slices;
+use etendue_field::{Slices, TwoPlane, VirtualPlane};
 use etendue_paths::{BackwardProbe, Budget, Probe, Stop};
 use etendue_spectrum::bandwidth::Widest;
 use etendue_spectrum::directional::DirectionalBandwidth;
@@ -29,6 +29,14 @@ const MAX_NOISE: f64 = 0.1;
 /// A bandwidth with a larger relative standard error is not reported, because with few rays its
 /// jackknife is unreliable.
 const MAX_ERROR: f64 = 0.1;
+/// The highest frequencies are too low for a picture if they miss more than this share of its
+/// variation. The polar cells change the power by up to 3 %, and an edge has 5 % of its power
+/// beyond the highest frequency.
+const MISSED: f64 = 0.1;
+/// Number of rays for each pair of paths that finds the whole variation, and the largest number of
+/// such pairs.
+const RAYS_PER_PAIR: u64 = 8;
+const MOST_PAIRS: u64 = 1 << 16;
 /// The largest number of rays that are traced to choose the window.
 const RAYS_OF_TRIAL: u64 = 1 << 17;
 
@@ -43,6 +51,10 @@ pub(super) struct PictureBandwidth {
     pub(super) variation: Option<DirectionalBandwidth>,
     /// Whether the picture varies by more than noise.
     pub(super) varies: bool,
+    /// The share of the variation at frequencies above [`Self::highest`], if it is large.
+    pub(super) missed: Option<f64>,
+    /// The highest frequency that is measured, cycles per slope.
+    pub(super) highest: f64,
     /// The spectra of the picture, one for each batch of rays.
     pictures: Vec<Slices>,
     /// The bandwidth of the window alone.
@@ -78,8 +90,11 @@ impl PictureBandwidth {
     }
 
     /// Returns the largest bandwidth over directions, if it is above the limit that the window
-    /// sets.
+    /// sets and below the highest frequency.
     pub(super) fn widest(&self) -> Option<Widest<Uncertain>> {
+        if self.missed.is_some() {
+            return None;
+        }
         let widest = self.variation.as_ref()?.widest;
         let is_above = widest.value.value > SMOOTH * self.window.at(widest.azimuth);
         is_above.then_some(widest)
@@ -150,7 +165,7 @@ impl PictureBandwidth {
         let pair = |of: Uncertain| [of.value, of.error];
         let each = |of: &Option<DirectionalBandwidth>| of.as_ref().map(|of| of.along.clone());
         let widest = self.widest();
-        tree_of!({
+        let mut tree = tree_of!({
             "window_pixels": self.pixels,
             "variation": each(&self.variation),
             "all_power": each(&self.whole()),
@@ -161,7 +176,11 @@ impl PictureBandwidth {
             "unblurred": self.unblurred(),
             "varies": self.varies,
             "samples": widest.map(|it| self.samples(it.value.value)),
-        })
+        });
+        if let Some(share) = self.missed {
+            tree["missed"] = tree_of!({ "share": share, "above": self.highest });
+        }
+        tree
     }
 }
 
@@ -177,12 +196,19 @@ fn widened(
     let [w, h] = scene.camera.size.map(|n| n as f64);
     let widest = w.min(h).max(NARROWEST);
     let mut pixels = NARROWEST;
+    let mut narrower: Option<PictureBandwidth> = None;
     loop {
         let found = measured(scene, (pixel, pixels), (rays, seed), progress)?;
+        let is_missed = found.as_ref().is_some_and(|found| found.missed.is_some());
+        // The highest frequency of a wider window is lower.
+        if is_missed && narrower.is_some() {
+            return Ok(narrower);
+        }
         let is_last = found.as_ref().is_none_or(PictureBandwidth::is_clear);
-        if is_last || 2.0 * pixels > widest {
+        if is_last || is_missed || 2.0 * pixels > widest {
             return Ok(found);
         }
+        narrower = found;
         pixels *= 2.0;
     }
 }
@@ -204,8 +230,8 @@ fn measured(
         each: rays.div_ceil(u64::from(BATCHES)),
         seed,
     };
-    let rays = BackwardProbe::new(&probe, budget);
-    let found = measure(&rays, &probe.planes, 0..BATCHES, progress);
+    let backward = BackwardProbe::new(&probe, budget);
+    let found = measure(&backward, &probe.planes, 0..BATCHES, progress);
     let pictures: Vec<Slices> = found
         .at_plane(0)
         .map(|batch| batch.slices.clone())
@@ -217,6 +243,9 @@ fn measured(
     let varies = variation
         .as_ref()
         .map(|found| relative(found.power) < 1.0 / FOUND);
+    let pairs = (rays / RAYS_PER_PAIR).min(MOST_PAIRS);
+    let whole = whole_variation(&backward, plane, &pictures, pairs);
+    let missed = missed(whole, variation.as_ref().map(|found| found.power));
     let variation = variation.filter(|found| {
         found.noise <= MAX_NOISE * found.power.value && relative(found.widest.value) <= MAX_ERROR
     });
@@ -224,9 +253,52 @@ fn measured(
         pixels,
         variation,
         varies: varies.unwrap_or(false),
+        missed,
+        highest: plane.grid.nu.max(),
         pictures,
         window: DirectionalBandwidth::of_window(&plane.window, &plane.grid),
         pixel_slope: probe.pixel_slope,
         surface: probe.stops[0].clone(),
     }))
+}
+
+/// Returns the power of the picture minus its mean at all frequencies. By Parseval's theorem it is
+/// the integral of the square of the windowed picture.
+fn whole_variation(
+    rays: &BackwardProbe<'_>,
+    plane: &VirtualPlane,
+    pictures: &[Slices],
+    pairs: u64,
+) -> Uncertain {
+    let window = &plane.window;
+    let point = window.x.transform(0.0) * window.y.transform(0.0);
+    let angle = window.u.transform(0.0) * window.v.transform(0.0);
+    let sum: f64 = pictures.iter().map(Slices::at_zero).sum();
+    let mean = sum / (pictures.len() as f64 * point * angle);
+    let area = 4.0 * window.u.half_width() * window.v.half_width();
+    let of = |(ray, [a, b]): &(TwoPlane, [f64; 2])| {
+        let weight = window.u.value(ray.u) * window.v.value(ray.v);
+        point * point * area * weight * weight * (a - mean) * (b - mean)
+    };
+    let powers: Vec<f64> = rays.pairs(plane, pairs).iter().map(of).collect();
+    let count = powers.len() as f64;
+    let value = powers.iter().sum::<f64>() / count;
+    let squares: f64 = powers.iter().map(|power| (power - value).powi(2)).sum();
+    Uncertain {
+        value,
+        error: squares.sqrt() / count,
+    }
+}
+
+/// Returns the share of the whole variation that the measured power misses, if this share is large
+/// and not due to noise.
+fn missed(whole: Uncertain, measured: Option<Uncertain>) -> Option<f64> {
+    let none = Uncertain {
+        value: 0.0,
+        error: 0.0,
+    };
+    let measured = measured.unwrap_or(none);
+    let missed = whole.value - measured.value;
+    let is_found = missed > FOUND * whole.error.hypot(measured.error);
+    (is_found && missed > MISSED * whole.value).then_some(missed / whole.value)
 }

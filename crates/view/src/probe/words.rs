@@ -275,6 +275,8 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
             picture.spacing(value.value),
             picture.spacing(across.map_or(limit, |across| across.value)),
         ));
+    } else if picture.missed.is_some() {
+        lines.push(line("above", number(picture.highest), picture.highest));
     } else if picture.variation.is_some() {
         lines.push(line("below", number(limit), limit));
     }
@@ -286,21 +288,36 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
         }
         None => "  Eq. 20 describes lobes: it does not apply to this surface".to_owned(),
     });
-    let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
-    lines.push(advice.unwrap_or_else(|| {
-        if picture.variation.is_some() {
-            format!("the picture is smooth in this window; a wider window ({window}) shows the bandwidth of the picture")
-        } else if picture.varies {
-            format!("the picture varies, but noise hides its bandwidth: more {rays} would show it")
-        } else {
-            let share = picture.noise_share().filter(|share| *share < 1.0);
-            let share = share.map_or("all".to_owned(), |share| percent(share, 2));
-            format!(
-                "no variation is above the noise, which has {share} of the power: the picture is even, or more {rays} are needed"
-            )
-        }
-    }));
+    lines.push(advice.unwrap_or_else(|| unresolved(picture, arguments)));
     lines
+}
+
+/// Returns what is known of a picture whose bandwidth is not measured.
+fn unresolved(picture: &PictureBandwidth, arguments: ArgumentStyle) -> String {
+    let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
+    if let Some(share) = picture.missed {
+        let why = format!(
+            "{} of the variation is above the highest frequency of this window",
+            percent(share, 2)
+        );
+        if picture.samples(picture.highest) >= 1.0 {
+            format!("advice: place at least one shading sample in each pixel, because {why}")
+        } else {
+            format!("{why}; a narrower window ({window}) shows the bandwidth of the picture")
+        }
+    } else if picture.variation.is_some() {
+        format!(
+            "the picture is smooth in this window; a wider window ({window}) shows the bandwidth of the picture"
+        )
+    } else if picture.varies {
+        format!("the picture varies, but noise hides its bandwidth: more {rays} would show it")
+    } else {
+        let share = picture.noise_share().filter(|share| *share < 1.0);
+        let share = share.map_or("all".to_owned(), |share| percent(share, 2));
+        format!(
+            "no variation is above the noise, which has {share} of the power: the picture is even, or more {rays} are needed"
+        )
+    }
 }
 
 /// Returns a row for each plane with the entries of the covariance along x, where x lies in the
