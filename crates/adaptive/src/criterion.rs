@@ -176,6 +176,7 @@ mod tests {
                 is_flipped: false,
                 material: 0,
                 emission: None,
+                emits_on_both_sides: false,
             }],
             materials: vec![Material::Conductor(etendue_world::Conductor {
                 index: None,

@@ -24,6 +24,7 @@ fn ball() -> World {
             is_flipped: false,
             material: 0,
             emission: None,
+            emits_on_both_sides: false,
         }],
         materials: vec![Material::Diffuse {
             reflectance: Texture::Constant(0.5),
@@ -108,6 +109,7 @@ fn the_guide_shows_where_shadows_end() {
         is_flipped: false,
         material,
         emission: None,
+        emits_on_both_sides: false,
     };
     // The camera looks along Z: the floor is behind the card, and both face the camera.
     let facing = |z: f64, size: f64| {

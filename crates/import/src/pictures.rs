@@ -3,6 +3,7 @@
 mod bmp;
 mod hdr;
 mod jpeg;
+mod pfm;
 mod size;
 
 use crate::range::MAX_NUMBER;
@@ -107,11 +108,12 @@ pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
         "bmp" => bmp::read(bytes),
         "jpg" | "jpeg" => jpeg::read(bytes),
         "hdr" | "rgbe" => hdr::read(bytes),
+        "pfm" => pfm::read(bytes),
         "png" | "exr" => {
             read_channels(path, bytes).map_err(|fault| format!("is not a valid picture: {fault}"))
         }
         other => Err(format!(
-            "has extension {other:?}; allowed: bmp, exr, hdr, jpg, png"
+            "has extension {other:?}; allowed: bmp, exr, hdr, jpg, pfm, png"
         )),
     }
 }

@@ -205,6 +205,39 @@ fn jpeg_and_radiance_pictures_are_read() {
     }
 }
 
+/// Portable float maps begin with the lowest row. The sign of the scale gives the order of bytes.
+#[test]
+fn float_maps_are_read() {
+    let bytes = |header: &str, numbers: &[f32], swaps: bool| {
+        let mut bytes = header.as_bytes().to_vec();
+        bytes.extend(numbers.iter().flat_map(|v| match swaps {
+            true => v.to_be_bytes(),
+            false => v.to_le_bytes(),
+        }));
+        bytes
+    };
+    let grey = bytes("Pf\n1 2\n-1.0\n", &[0.25, 0.75], false);
+    let color = bytes("PF 1 1 0.5 ", &[0.5, 1.0, 0.25], true);
+    let short = bytes("Pf\n2 2\n-1\n", &[0.25], false);
+    let files = folder(&[("a.pfm", &grey), ("b.pfm", &color), ("c.pfm", &short)]);
+    let at = |file: &str, v: f64, color| {
+        reflectance(&bitmap(file, ""), files.path(), color).value(&DVec2::new(0.5, v).into())
+    };
+    let grey = [0.25, 0.75].map(|v| at("a.pfm", v, Color::Luminance));
+    assert_close(&grey, &[0.75, 0.25], 0.0);
+    let found = ALL.map(|c| at("b.pfm", 0.5, c));
+    assert_close(&found[1..], &[0.25, 0.5, 0.125], 0.0);
+    let shape = format!(
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\">{}</bsdf></shape>",
+        bitmap("c.pfm", "")
+    );
+    let causes = read_in(&shape, files.path(), Color::Luminance).unwrap_err();
+    assert!(
+        causes[0].contains("ends before its last pixel"),
+        "{causes:?}"
+    );
+}
+
 /// The test reads two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a
 /// palette. In a BMP file, rows are stored from the lowest to the highest, and colours are stored
 /// as blue, green and red. As in Mitsuba, v increases downwards.

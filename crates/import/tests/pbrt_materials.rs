@@ -105,6 +105,31 @@ fn glass_has_an_index() {
 }
 
 #[test]
+fn translucent_materials_reflect_and_transmit() {
+    let translucent = "Material \"diffusetransmission\"";
+    let of = |more: &str| match material(&format!("{translucent} {more}")) {
+        Material::DiffuseTransmission {
+            reflectance,
+            transmittance,
+        } => [reflectance, transmittance].map(|of| constant(&of)),
+        other => panic!("{other:?}"),
+    };
+    assert_close(&of(""), &[0.25, 0.25], 0.0);
+    // A spectrum of one value keeps it within the sums over wavelengths.
+    let given = of(
+        "\"spectrum reflectance\" [300 0.1 800 0.1] \"spectrum transmittance\" [300 0.6 800 0.6]",
+    );
+    assert_close(&given, &[0.1, 0.6], 2e-3);
+    let bright =
+        "\"spectrum reflectance\" [300 0.6 800 0.6] \"spectrum transmittance\" [300 0.6 800 0.6]";
+    let found = causes(&format!("{translucent} {bright}\nShape \"sphere\""));
+    assert!(
+        found[0].contains("reflectance and transmittance together go up to 1.19"),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn mixtures_have_amounts_of_the_second() {
     let two = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" \"conductor\"";
     let mix = "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.25";
@@ -123,13 +148,7 @@ fn mixtures_have_amounts_of_the_second() {
 
 #[test]
 fn what_has_no_equal_is_refused() {
-    for plugin in [
-        "hair",
-        "measured",
-        "subsurface",
-        "diffusetransmission",
-        "coatedconductor",
-    ] {
+    for plugin in ["hair", "measured", "subsurface", "coatedconductor"] {
         let found = causes(&format!(
             "Material \"{plugin}\"\nShape \"sphere\" Shape \"disk\""
         ));

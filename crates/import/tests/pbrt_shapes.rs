@@ -5,8 +5,9 @@
 use crate::common::{assert_close, folder};
 use crate::pbrt_scenes::{causes, notes, read_in, scene, shape, world};
 use etendue_import::Color;
-use etendue_world::{Geometry, Material, Shape, Triangles};
+use etendue_world::{Geometry, Material, Shape, Texture, Triangles};
 use glam::{DMat4, DVec2, DVec3};
+use std::f64::consts::PI;
 
 fn mesh(shape: &Shape) -> &Triangles {
     match &shape.geometry {
@@ -131,7 +132,7 @@ fn quadrics_have_sizes() {
             "Shape \"sphere\" \"float zmin\" 0",
             "zmin is 0: parts of spheres",
         ),
-        ("Shape \"sphere\" \"float phimax\" 90", "phimax is 90"),
+        ("Shape \"sphere\" \"float phimax\" 0", "phimax is 0"),
         (
             "Shape \"disk\" \"float innerradius\" 0.5",
             "innerradius is 0.5",
@@ -254,5 +255,43 @@ fn files_may_be_packed() {
         let inside = format!("Shape \"plymesh\" \"string filename\" \"{name}\"");
         let read = read_in(&scene("", &inside), folder.path(), Color::Luminance).unwrap();
         assert_eq!(mesh(&read.world.shapes[0]).corners(), [[0, 1, 2]]);
+    }
+}
+
+/// The azimuth of a sphere and of a cylinder is u, and that of a disc is v. A part of a revolution
+/// is opaque, and emits.
+#[test]
+fn parts_of_a_revolution_end_at_phimax() {
+    for (plugin, is_v) in [("sphere", false), ("cylinder", false), ("disk", true)] {
+        for phimax in [1.0, 90.0, 180.0, 181.0, 270.0, 359.0] {
+            let lamp = "AreaLightSource \"diffuse\" \"float power\" 8";
+            let world = world(&format!(
+                "{lamp} Shape \"{plugin}\" \"float phimax\" {phimax}"
+            ));
+            let shape = &world.shapes[0];
+            let Material::Mask { opacity, .. } = &world.materials[shape.material] else {
+                panic!("{:?}", world.materials);
+            };
+            let area = match plugin {
+                "sphere" => 4.0,
+                "cylinder" => 4.0,
+                _ => 1.0,
+            };
+            let radiance = 8.0 / (PI * PI * area * phimax / 360.0);
+            for i in 0..720 {
+                let azimuth = (f64::from(i) + 0.5) / 720.0;
+                for other in [0.01, 0.5, 0.99] {
+                    let uv = if is_v {
+                        [other, azimuth]
+                    } else {
+                        [azimuth, other]
+                    };
+                    let at = |texture: &Texture| texture.value(&DVec2::from(uv).into());
+                    let inside = f64::from(u8::from(360.0 * azimuth < phimax));
+                    let found = [at(opacity), at(shape.emission.as_ref().unwrap())];
+                    assert_close(&found, &[inside, inside * radiance], 1e-12);
+                }
+            }
+        }
     }
 }

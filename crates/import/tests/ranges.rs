@@ -185,23 +185,6 @@ fn normal_maps_of_gltf_are_refused() {
 }
 
 #[test]
-fn rotations_have_axes_of_unit_length() {
-    let turned = |axis: &str| {
-        format!(
-            "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate {axis} angle=\"30\"/></transform></shape>"
-        )
-    };
-    for (axis, length) in [
-        (r#"x="1" y="1""#, "length 1.414"),
-        (r#"x="0.5""#, "length 0.5"),
-        (r#"value="0, 0, 0""#, "length 0"),
-    ] {
-        assert_refused(&causes(&turned(axis)), "text:2:", length);
-    }
-    world(&turned(r#"value="0.7071 0.7071 0""#));
-}
-
-#[test]
 fn a_second_environment_is_refused() {
     let one = r#"<emitter type="constant"/>"#;
     world(one);

@@ -397,3 +397,21 @@ fn mesh_files_that_are_damaged_are_causes() {
     );
     assert!(causes[1].contains("has extension `obj`"), "{causes:#?}");
 }
+
+/// Mitsuba tilts the front of an emitting mesh by its vertex normals.
+#[test]
+fn emission_of_smooth_meshes_is_noted() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n";
+    let files = folder(&[("a.obj", obj.as_bytes())]);
+    let noted = |more: &str| {
+        let shape = format!(
+            "<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/>{more}<emitter type=\"area\"/></shape>"
+        );
+        read_in(&shape, files.path(), Color::Luminance)
+            .unwrap()
+            .notes
+            .len()
+    };
+    assert_eq!(noted(""), 1);
+    assert_eq!(noted("<boolean name=\"face_normals\" value=\"true\"/>"), 0);
+}

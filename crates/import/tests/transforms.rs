@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::{assert_close, causes, world};
+use crate::common::{assert_close, causes, notes, world};
 
 /// Returns the rows of the matrix `to_world` of a rectangle.
 fn rows(steps: &str) -> Vec<f64> {
@@ -62,6 +62,22 @@ fn matrices_are_written_row_by_row() {
     let all = "<matrix value=\"1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1\"/>";
     let expected = [1.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 6.0, 0.0, 0.0, 1.0, 7.0];
     assert_close(&rows(all), &expected, 0.0);
+}
+
+/// Dr.Jit's `rotate` computes cos α I + (1 − cos α) a aᵀ + sin α [a]ₓ with an axis a of any length.
+#[test]
+fn rotation_axes_of_any_length_distort_as_in_mitsuba() {
+    let half = "<rotate z=\"2\" angle=\"90\"/>";
+    let expected = [0.0, -2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0];
+    assert_close(&rows(half), &expected, 1e-12);
+    let shape = |axis: f64| {
+        format!(
+            "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate z=\"{axis}\" angle=\"90\"/></transform></shape>"
+        )
+    };
+    let noted = "text:2:52: the length of the rotation axis is not 1: as in Mitsuba 3, this also distorts shapes";
+    assert_eq!(notes(&shape(2.0)), [noted]);
+    assert_eq!(notes(&shape(1.0)), [""; 0]);
 }
 
 #[test]

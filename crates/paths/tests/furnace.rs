@@ -146,6 +146,14 @@ fn cases() -> Vec<Case> {
             blend(mirror(), glass(1.5, true, None)),
         ),
         ("white", Nothing, two_sided(white())),
+        (
+            "diffuse transmission",
+            Same,
+            Material::DiffuseTransmission {
+                reflectance: constant(0.3),
+                transmittance: constant(0.7),
+            },
+        ),
         ("mirror", Nothing, mirror()),
         ("plastic", Nothing, two_sided(plastic(None, true))),
         ("linear plastic", Nothing, two_sided(plastic(None, false))),
@@ -239,6 +247,7 @@ impl View {
             is_flipped: false,
             material: 0,
             emission: None,
+            emits_on_both_sides: false,
         };
         let world = World {
             shapes: vec![shape],

@@ -41,6 +41,7 @@ pub(crate) fn shape(
         is_flipped: false,
         material,
         emission: emission.map(Texture::Constant),
+        emits_on_both_sides: false,
     }
 }
 
@@ -244,6 +245,24 @@ fn surfaces_shine_by_their_area() {
         let (mean, _) = seen(&floor(vec![away], vec![]), ASIDE, DVec3::ZERO, 1000);
         assert!(mean.abs() < 1e-300, "{mean}");
     }
+}
+
+/// A lamp that emits on both sides gives the same light when its front is turned away, and fills
+/// its inside.
+#[test]
+fn lamps_may_emit_on_both_sides() {
+    let both = |geometry, to_world| Shape {
+        emits_on_both_sides: true,
+        ..shape(geometry, to_world, 1, Some(6.0))
+    };
+    let disc = both(Geometry::Disc, scaled(0.5, 2.0));
+    let radiance = 0.5 * 6.0 * 0.25 / 4.25;
+    assert_seen(&floor(vec![disc], vec![]), ASIDE, DVec3::ZERO, radiance);
+    let ball = both(Geometry::Sphere, scaled(0.5, 2.0));
+    let radiance = 0.5 * 6.0 * 0.25 / 4.0;
+    assert_seen(&floor(vec![ball], vec![]), ASIDE, DVec3::ZERO, radiance);
+    let around = floor(vec![both(Geometry::Sphere, scaled(5.0, 0.0))], vec![]);
+    assert_seen(&around, ASIDE, DVec3::ZERO, 0.5 * 6.0);
 }
 
 #[test]

@@ -106,5 +106,5 @@ pub struct SkyMap {
     pub radiance: Arc<LatLong>,
 }
 
-/// The radiance that the front of a surface emits, equal in all directions.
+/// The radiance that a surface emits, equal in all directions on a side.
 pub type EmittedRadiance = Texture;

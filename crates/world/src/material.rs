@@ -14,6 +14,13 @@ pub enum Material {
         /// The fraction of light that is reflected.
         reflectance: Texture,
     },
+    /// Lambert's BRDF on both sides, with a part of the light transmitted diffusely.
+    DiffuseTransmission {
+        /// The fraction of light that is reflected.
+        reflectance: Texture,
+        /// The fraction of light that is transmitted.
+        transmittance: Texture,
+    },
     /// A metal on the front.
     Conductor(Conductor),
     /// An interface between two media, which reflects and transmits light on both sides.

@@ -22,6 +22,8 @@ pub struct Shape {
     pub material: usize,
     /// Radiance that the front emits, W m⁻² sr⁻¹; `None` if the surface does not emit.
     pub emission: Option<EmittedRadiance>,
+    /// Whether the back emits as the front does.
+    pub emits_on_both_sides: bool,
 }
 
 /// The geometry of a surface, with its front and its texture coordinates (u, v).

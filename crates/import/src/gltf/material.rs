@@ -69,12 +69,7 @@ impl<'a> GltfReader<'a> {
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
-            // A surface that emits on both sides becomes two surfaces, each of which emits on its
-            // front.
-            true if !is_lit(draft.source) => {
-                Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness]))
-            }
-            true => metallic_roughness,
+            true => Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness])),
             false => {
                 self.note_once("surfaces that are not doubleSided scatter light on their front only; their backs, which glTF does not show, are black");
                 metallic_roughness

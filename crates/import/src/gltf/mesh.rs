@@ -6,7 +6,6 @@ use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
-use std::collections::BTreeMap;
 
 /// Maximum number of corners of a mesh, for which 32-bit indices suffice.
 const MAX_CORNERS: usize = u32::MAX as usize;
@@ -142,34 +141,5 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
             pairs.map(|pair| [pair[0], pair[1], listed[0]]).collect()
         }
         _ => Vec::new(),
-    }
-}
-
-/// Returns the triangles, flipped and moved back by `gap`. If several corners share a position,
-/// they also share the new position.
-pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
-    let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
-    let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();
-    let vertices = parts.vertices();
-    for corners in parts.corners() {
-        let [a, b, c] = corners.map(|i| vertices[i as usize]);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        for corner in [a, b, c] {
-            *sums.entry(bits(corner)).or_default() += normal;
-        }
-    }
-    let moved = vertices.iter().map(|v| {
-        let sum = sums.get(&bits(*v)).copied().unwrap_or_default();
-        *v - gap * sum.normalize_or_zero()
-    });
-    MeshParts {
-        vertices: moved.collect(),
-        corners: parts
-            .corners()
-            .iter()
-            .map(|[a, b, c]| [*a, *c, *b])
-            .collect(),
-        normals: parts.normals().map(|n| n.iter().map(|n| -*n).collect()),
-        uvs: parts.uvs().map(<[DVec2]>::to_vec),
     }
 }

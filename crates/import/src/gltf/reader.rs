@@ -32,8 +32,6 @@ pub(super) struct GltfReader<'a> {
     /// Meshes by mesh and primitive number; `None` if a primitive has no triangles, or if a cause
     /// of refusal was reported for the primitive.
     pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// The meshes of back sides, which are flipped and moved back.
-    pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
     /// Materials by number in the file; `None` if a cause of refusal was reported for the
     /// material. The default material has no number in the file.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
@@ -61,7 +59,6 @@ impl<'a> GltfReader<'a> {
             world: World::default(),
             buffers: HashMap::new(),
             meshes: HashMap::new(),
-            backs: HashMap::new(),
             materials: HashMap::new(),
             rasters: HashMap::new(),
             told: HashSet::new(),

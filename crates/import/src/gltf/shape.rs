@@ -1,6 +1,5 @@
 //! Conversion of the meshes of nodes to shapes.
 
-use super::mesh::back_of;
 use super::node::PlacedNode;
 use super::reader::{GltfReader, MAX_SHAPES};
 use super::surface::GltfSurface;
@@ -10,10 +9,6 @@ use ::gltf::json::validation::Checked;
 use etendue_world::{Geometry, Shape, Triangles};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
-
-/// If a surface emits on both sides, its back and front have this distance, relative to the size of
-/// the mesh.
-const GAP: f64 = 1e-5;
 
 /// Maximum number of characters of a name.
 const LONGEST: usize = 100;
@@ -74,9 +69,6 @@ impl<'a> GltfReader<'a> {
         let Some(triangles) = known else {
             return;
         };
-        if surface.emission.is_some() && surface.is_double_sided {
-            self.add_back(key, &triangles, placed.to_world, name, &surface, &path);
-        }
         self.add(triangles, placed.to_world, name, &surface);
     }
 
@@ -108,46 +100,7 @@ impl<'a> GltfReader<'a> {
             is_flipped: false,
             material: surface.material,
             emission: surface.emission.clone(),
+            emits_on_both_sides: surface.is_double_sided,
         });
     }
-
-    /// Adds the second of the two surfaces that represent a surface with emission on both sides.
-    /// Each of the two surfaces emits on its front.
-    fn add_back(
-        &mut self,
-        key: (usize, usize),
-        front: &Triangles,
-        to_world: DAffine3,
-        name: &str,
-        surface: &GltfSurface,
-        path: &str,
-    ) {
-        let known = match self.backs.get(&key) {
-            Some(known) => known.clone(),
-            None => {
-                let gap = GAP * extent(front);
-                let parts = back_of(front, gap);
-                let spent = self.files.spend(parts.bytes());
-                let fits = spent.map_err(|error| self.cause(path, error)).is_ok();
-                let made = parts.finish().filter(|_| fits).map(Arc::new);
-                let message = format!(
-                    "emits on both sides: its back becomes a separate surface, {gap:.3e} behind its front"
-                );
-                self.note(path, message);
-                self.backs.insert(key, made.clone());
-                made
-            }
-        };
-        if let Some(back) = known {
-            self.add(back, to_world, name, surface);
-        }
-    }
-}
-
-/// Returns the diagonal of the bounding box of a mesh.
-fn extent(mesh: &Triangles) -> f64 {
-    let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let grow = |[low, high]: [DVec3; 2], v: &DVec3| [low.min(*v), high.max(*v)];
-    let [low, high] = mesh.vertices().iter().fold(nothing, grow);
-    (high - low).length()
 }

@@ -2,7 +2,7 @@
 
 use super::object::Value;
 use super::source::SourceFile;
-use super::transform::{Attributes, allow, find, required, step};
+use super::transform::{Attributes, allow, find, is_rigid, required, step};
 use super::value;
 use super::xml::Tree;
 use crate::range::{MAX_NUMBER, holds};
@@ -22,7 +22,7 @@ impl Tree<'_> {
         if element == "transform" {
             allow(attributes, &["name"])?;
             return self
-                .transform(node)
+                .transform(node, source)
                 .map(|map| Value::Transform(Box::new(map)));
         }
         if let Some(child) = node.children().find(Node::is_element) {
@@ -60,7 +60,11 @@ impl Tree<'_> {
         })
     }
 
-    fn transform(&mut self, node: Node<'_, '_>) -> Result<DAffine3, String> {
+    fn transform(
+        &mut self,
+        node: Node<'_, '_>,
+        source: &mut SourceFile<'_>,
+    ) -> Result<DAffine3, String> {
         let mut made = DAffine3::IDENTITY;
         for child in node.children().filter(Node::is_element) {
             self.elements += 1;
@@ -71,6 +75,11 @@ impl Tree<'_> {
                 _ => step(name, &attributes),
             };
             let step = step.map_err(|error| format!("<{name}>: {error}"))?;
+            if name == "rotate" && !is_rigid(step) {
+                let place = source.cursor.place(child.range().start, &source.name);
+                let message = "the length of the rotation axis is not 1: as in Mitsuba 3, this also distorts shapes";
+                self.report.note(&place, message);
+            }
             made = step * made;
         }
         match holds(made) {

@@ -5,7 +5,7 @@ use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
 use crate::placement::{fault, is_similarity, similar};
 use crate::report::quoted;
-use etendue_world::{Geometry, Shape};
+use etendue_world::{Geometry, Shape, Triangles};
 use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -109,6 +109,13 @@ impl<'a> MitsubaReader<'a> {
             self.lost(object);
             return None;
         };
+        if let Geometry::Mesh(mesh) = &geometry
+            && emission.is_some()
+            && is_smooth(mesh)
+        {
+            let message = "the mesh emits with vertex normals: light leaves each triangle on its front, while Mitsuba uses the interpolated normal";
+            self.report.note(&object.place, message);
+        }
         let shape = Shape {
             name: object.id.clone().unwrap_or_default(),
             geometry,
@@ -116,6 +123,7 @@ impl<'a> MitsubaReader<'a> {
             is_flipped,
             material,
             emission,
+            emits_on_both_sides: false,
         };
         (is_in_group || self.is_sound(object, &shape)).then_some(shape)
     }
@@ -249,4 +257,19 @@ impl<'a> MitsubaReader<'a> {
         }
         self.emission(emitter, "radiance")
     }
+}
+
+/// Checks whether a mesh has vertex normals that are not those of its triangles.
+fn is_smooth(mesh: &Triangles) -> bool {
+    let Some(normals) = mesh.normals() else {
+        return false;
+    };
+    let [places, normals] = [mesh.vertices(), normals];
+    mesh.corners().iter().any(|corners| {
+        let [a, b, c] = corners.map(|i| places[i as usize]);
+        let own = (b - a).cross(c - a).normalize_or_zero();
+        // Normals of a file have few digits.
+        let is_own = |i: &u32| own.cross(normals[*i as usize]).length() < 1e-3;
+        !corners.iter().all(is_own)
+    })
 }

@@ -30,12 +30,14 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             let axis = vector(attributes, 0.0)?;
             let angle = value::number(required(attributes, "angle")?)?.to_radians();
             let length = axis.length();
-            if (length - 1.0).abs() > UNIT {
-                return Err(format!(
-                    "a rotation axis of length {length}; allowed: 1. Mitsuba 3 does not normalise the axis, so another length also distorts shapes"
-                ));
+            match (length - 1.0).abs() {
+                _ if length <= 0.0 => {
+                    Err("a rotation axis of length 0; allowed: above 0".to_owned())
+                }
+                ..=UNIT => Ok(rotation(axis / length, angle)),
+                // As in Mitsuba 3, the axis is not normalised.
+                _ => Ok(rotation(axis, angle)),
             }
-            Ok(rotation(axis / length, angle))
         }
         "lookat" => {
             allow(attributes, &["origin", "target", "up"])?;
@@ -76,7 +78,7 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-/// Returns the rotation about a unit axis (Rodrigues).
+/// Returns the rotation about a unit axis (Rodrigues). Another length of the axis also distorts.
 fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     let (sin, cos) = libm::sincos(angle);
     let column =

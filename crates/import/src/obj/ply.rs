@@ -39,6 +39,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
             is_flipped: false,
             material: 0,
             emission: None,
+            emits_on_both_sides: false,
         }],
         materials: vec![diffuse()],
         ..World::default()

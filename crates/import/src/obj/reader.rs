@@ -124,6 +124,7 @@ impl<'a> ObjReader<'a> {
             is_flipped: false,
             material: surface.material,
             emission: surface.emission,
+            emits_on_both_sides: false,
         });
     }
 

@@ -30,10 +30,6 @@ impl PbrtReader<'_> {
         if area.plugin != "diffuse" {
             return Err(area.unsupported(self.report, "diffuse"));
         }
-        if area.truth(self.report, "twosided", false)? {
-            let message = "a surface that emits on both sides is not supported";
-            return Err(area.fault(self.report, "twosided", message.to_owned()));
-        }
         if shape.entity.has("alpha") {
             let message = "alpha of a shape that emits light is not supported";
             return Err(shape.entity.fault(self.report, "alpha", message.to_owned()));
@@ -84,7 +80,8 @@ impl PbrtReader<'_> {
         let has_power = area.float(self.report, "power")?.is_some_and(|p| p > 0.0);
         match surface.area {
             Some(size) => {
-                let factor = self.wanted(area, "power", PI * size)?;
+                let sides = f64::from(1 + u8::from(area.truth(self.report, "twosided", false)?));
+                let factor = self.wanted(area, "power", sides * PI * size)?;
                 Ok(Some(Texture::Constant(radiance * factor)))
             }
             None if has_power => {

@@ -5,6 +5,7 @@ use super::keys::Uv;
 use super::reader::PbrtReader;
 use super::scene::MaterialOf;
 use super::texture::Ask;
+use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_world::{
@@ -21,8 +22,7 @@ const MAX_MATERIALS: usize = 1 << 20;
 const SMOOTH: f64 = 1e-3;
 
 /// Plugins supported as materials.
-const ALLOWED: &str =
-    "diffuse, coateddiffuse, conductor, dielectric, thindielectric, mix, interface";
+const ALLOWED: &str = "diffuse, diffusetransmission, coateddiffuse, conductor, dielectric, thindielectric, mix, interface";
 
 /// The index of pbrt's default material.
 const DEFAULT: usize = usize::MAX;
@@ -98,6 +98,7 @@ impl PbrtReader<'_> {
             "diffuse" => both_sides(Material::Diffuse {
                 reflectance: self.albedo_or(entity, "reflectance", 0.5, uv)?,
             }),
+            "diffusetransmission" => self.translucent(entity, uv)?,
             "conductor" => both_sides(Material::Conductor(self.conductor(entity, uv)?)),
             "coateddiffuse" => both_sides(Material::Plastic(self.coated(entity, uv)?)),
             "dielectric" => Material::Dielectric(self.dielectric(entity, false, uv)?),
@@ -113,6 +114,25 @@ impl PbrtReader<'_> {
                 return Err(CauseGiven);
             }
         }))
+    }
+
+    fn translucent(&mut self, entity: &Entity, uv: Uv) -> Read<Material> {
+        let one: (_, fn(f64) -> bool) = ("1", |scale| (scale - 1.0).abs() <= 0.0);
+        let scale = entity.float_within(self.report, "scale", 1.0, one);
+        let reflectance = self.albedo_or(entity, "reflectance", 0.25, uv);
+        let transmittance = self.albedo_or(entity, "transmittance", 0.25, uv);
+        scale?;
+        let (reflectance, transmittance) = (reflectance?, transmittance?);
+        let sum = reflectance.largest() + transmittance.largest();
+        if sum > MAX_SHARE {
+            let message =
+                format!("reflectance and transmittance together go up to {sum}; allowed: 0 to 1");
+            return Err(entity.fault(self.report, "transmittance", message));
+        }
+        Ok(Material::DiffuseTransmission {
+            reflectance,
+            transmittance,
+        })
     }
 
     fn conductor(&mut self, entity: &Entity, uv: Uv) -> Read<Conductor> {
@@ -295,6 +315,10 @@ pub(super) fn reads_uv(material: &Material) -> bool {
     };
     match material {
         Material::Diffuse { reflectance } => varies(reflectance),
+        Material::DiffuseTransmission {
+            reflectance,
+            transmittance,
+        } => varies(reflectance) || varies(transmittance),
         Material::Conductor(of) => varies(&of.reflectance) || rough(&of.roughness),
         Material::Dielectric(of) => rough(&of.roughness),
         Material::Plastic(of) => varies(&of.diffuse) || rough(&of.roughness),

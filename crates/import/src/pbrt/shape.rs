@@ -10,7 +10,7 @@ use super::texture::Ask;
 use crate::placement::fault;
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{EmittedRadiance, Geometry, Material, Texture};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -25,6 +25,9 @@ pub(super) struct PbrtSurface {
     /// If a light has a required power, pbrt divides the power by this area. `None` for a shape of
     /// several surfaces.
     pub(super) area: Option<f64>,
+    /// The part of the geometry that belongs to the shape, as its opacity; `None` if all of it
+    /// does.
+    pub(super) part: Option<Texture>,
 }
 
 impl PbrtReader<'_> {
@@ -111,13 +114,26 @@ impl PbrtReader<'_> {
                 .is_ok_and(|e| e.as_ref().is_some_and(varies));
         let surface = self.surface(shape, needs_uv).ok()?;
         let emission = self.powered(area, emission.ok()?, &surface).ok()?;
+        let (mut material, mut emission) = (material.ok()?, emission);
+        if let Some(part) = surface.part {
+            if needs_uv {
+                let message = "phimax of a shape with textures is not supported".to_owned();
+                let _ = entity.fault(self.report, "phimax", message);
+                return None;
+            }
+            emission = emission.map(|emission| times(&part, emission.largest()));
+            material = self.masked(material, part);
+        }
+        let is_two_sided = |area: &Entity| area.truth(self.report, "twosided", false);
+        let emits_on_both_sides = area.map_or(Ok(false), is_two_sided).ok()?;
         Some(etendue_world::Shape {
             name: String::new(),
             to_world: shape.to_world * surface.placement,
             is_flipped: self.is_flipped(shape, &surface.geometry, emission.is_some()),
             geometry: surface.geometry,
-            material: material.ok()?,
+            material,
             emission,
+            emits_on_both_sides,
         })
     }
 
@@ -151,6 +167,7 @@ impl PbrtReader<'_> {
             geometry: Geometry::Mesh(triangles),
             placement: DAffine3::IDENTITY,
             area,
+            part: None,
         };
         match entity.plugin.as_str() {
             "sphere" => self.sphere(entity),
@@ -166,16 +183,15 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "radius", 1.0, above)
     }
 
-    /// Adds a cause if a shape is not a full revolution.
-    fn goes_around(&self, entity: &Entity) -> Read<()> {
-        let whole: (_, fn(f64) -> bool) = ("360, all around", |a| a >= 360.0);
-        entity.float_within(self.report, "phimax", 360.0, whole)?;
-        Ok(())
+    /// Returns the share of a full revolution that a shape covers.
+    fn revolution(&self, entity: &Entity) -> Read<f64> {
+        let within: (_, fn(f64) -> bool) = ("above 0 to 360", |a| a > 0.0 && a <= 360.0);
+        Ok(entity.float_within(self.report, "phimax", 360.0, within)? / 360.0)
     }
 
     fn sphere(&self, entity: &Entity) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
-        self.goes_around(entity)?;
+        let around = self.revolution(entity)?;
         let radius = radius?;
         for (name, end) in [("zmin", -radius), ("zmax", radius)] {
             let z = entity.float_or(self.report, name, end)?;
@@ -187,7 +203,8 @@ impl PbrtReader<'_> {
         Ok(PbrtSurface {
             geometry: Geometry::Sphere,
             placement: DAffine3::from_scale(DVec3::splat(radius)),
-            area: Some(4.0 * PI * radius * radius),
+            area: Some(around * 4.0 * PI * radius * radius),
+            part: sector(around, DVec2::X),
         })
     }
 
@@ -196,14 +213,15 @@ impl PbrtReader<'_> {
         let height = entity.float_or(self.report, "height", 0.0);
         let none: (_, fn(f64) -> bool) = ("0", |r| r == 0.0);
         let inner = entity.float_within(self.report, "innerradius", 0.0, none);
-        self.goes_around(entity)?;
+        let around = self.revolution(entity)?;
         let (radius, height) = (radius?, height?);
         inner?;
         let scale = DAffine3::from_scale(DVec3::new(radius, radius, 1.0));
         Ok(PbrtSurface {
             geometry: Geometry::Disc,
             placement: DAffine3::from_translation(height * DVec3::Z) * scale,
-            area: Some(PI * radius * radius),
+            area: Some(around * PI * radius * radius),
+            part: sector(around, DVec2::Y),
         })
     }
 
@@ -211,7 +229,7 @@ impl PbrtReader<'_> {
         let radius = self.radius(entity);
         let ends = [("zmin", -1.0), ("zmax", 1.0)]
             .map(|(name, end)| entity.float_or(self.report, name, end));
-        self.goes_around(entity)?;
+        let around = self.revolution(entity)?;
         let radius = radius?;
         let [a, b] = ends;
         let (a, b) = (a?, b?);
@@ -220,7 +238,39 @@ impl PbrtReader<'_> {
         Ok(PbrtSurface {
             geometry: Geometry::Cylinder,
             placement: DAffine3::from_translation(low * DVec3::Z) * scale,
-            area: Some(2.0 * PI * radius * (high - low)),
+            area: Some(around * 2.0 * PI * radius * (high - low)),
+            part: sector(around, DVec2::X),
         })
+    }
+}
+
+/// Returns a texture that is 1 on the first `share` of a revolution and 0 on the rest, or `None`
+/// for a full revolution. The product of (u, v) and `axis` is the azimuth divided by 2π.
+fn sector(share: f64, axis: DVec2) -> Option<Texture> {
+    // A checkerboard has two squares for each unit. The longer part of the revolution fills the
+    // first square or the second, and the shorter part a piece of the other.
+    let (start, length, values) = match share {
+        1.0.. => return None,
+        0.5.. => (0.0, share, [1.0, 0.0]),
+        _ => (share, 1.0 - share, [0.0, 1.0]),
+    };
+    let scaled = 0.5 / length * axis;
+    Some(Texture::Checkerboard {
+        to_uv: DAffine2::from_mat2_translation(
+            DMat2::from_cols(DVec2::X * scaled.x, DVec2::X * scaled.y),
+            DVec2::new(-0.5 * start / length, 0.25),
+        ),
+        values,
+    })
+}
+
+/// Returns a checkerboard times a number.
+fn times(part: &Texture, factor: f64) -> Texture {
+    match part {
+        Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {
+            to_uv: *to_uv,
+            values: values.map(|value| value * factor),
+        },
+        other => other.clone(),
     }
 }

@@ -64,9 +64,9 @@ impl LightSampler {
 
 impl SampledLight {
     fn emit(&self, geometry: &SceneGeometry, place: [f64; 4], draw: &Draw<'_>) -> Option<Emitted> {
-        let [a, b, c, _] = place;
+        let [a, b, ..] = place;
         match self {
-            Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, [a, b, c])?)),
+            Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, place)?)),
             Self::ShiningSphere(ball) => Some(draw.flashed(ball.emit(geometry, [a, b]))),
             Self::Point {
                 position,

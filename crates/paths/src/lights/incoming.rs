@@ -26,8 +26,8 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     (between / distance, distance)
 }
 
-/// Returns the radiance that a shape emits in a direction from a given point. The
-/// radiance is the same in all directions on the front.
+/// Returns the radiance that the front of a shape emits in a direction from a given point. The
+/// radiance is the same in all directions.
 #[inline]
 pub(super) fn emitted(emission: &Texture, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {

@@ -124,10 +124,15 @@ fn shining(shape: &Shape, number: usize, geometry: &SceneGeometry) -> Option<Sam
     let emission: Texture = shape.emission.clone()?;
     let placed = geometry.placed(number);
     Some(match shape.geometry {
-        Geometry::Sphere if !shape.is_flipped => {
+        Geometry::Sphere if !shape.is_flipped && !shape.emits_on_both_sides => {
             SampledLight::ShiningSphere(ShiningSphere::new(number, &shape.to_world, emission))
         }
-        _ => SampledLight::ShiningShape(ShiningShape::new(number, &placed.areas(), emission)),
+        _ => SampledLight::ShiningShape(ShiningShape::new(
+            number,
+            &placed.areas(),
+            emission,
+            shape.emits_on_both_sides,
+        )),
     })
 }
 

@@ -11,14 +11,17 @@ use glam::DVec3;
 pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
+    /// Whether the back emits as the front does.
+    is_two_sided: bool,
     /// The distribution that draws pieces of the shape in proportion to their area.
     pieces: DiscreteDistribution,
 }
 
 impl ShiningShape {
-    pub(super) fn new(shape: usize, areas: &[f64], emission: Texture) -> Self {
+    pub(super) fn new(shape: usize, areas: &[f64], emission: Texture, is_two_sided: bool) -> Self {
         Self {
             shape,
+            is_two_sided,
             emission,
             pieces: DiscreteDistribution::new(areas.iter().copied()),
         }
@@ -38,7 +41,7 @@ impl ShiningShape {
         let (place, normal, point) = self.place(geometry, [a, b, c])?;
         let (toward, distance) = way(at, place);
         let density = self.density(distance, normal.dot(toward));
-        let radiance = emitted(&self.emission, &point, normal, -toward);
+        let radiance = self.radiance(&point, normal, -toward);
         (radiance > 0.0 && density.is_finite()).then(|| Incoming {
             toward,
             distance,
@@ -59,14 +62,29 @@ impl ShiningShape {
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
-    /// Returns a point, its normal, and the radiance at this point divided by the density.
+    /// Returns a point, its normal on the side that emits, and the radiance at this point divided
+    /// by the density. The last random number chooses the side.
     pub(super) fn emit(
         &self,
         geometry: &SceneGeometry,
-        random: [f64; 3],
+        [a, b, c, side]: [f64; 4],
     ) -> Option<(DVec3, DVec3, f64)> {
-        let (place, normal, point) = self.place(geometry, random)?;
-        Some((place, normal, self.emission.value(&point) * self.area()))
+        let (place, normal, point) = self.place(geometry, [a, b, c])?;
+        let shine = self.emission.value(&point) * self.area();
+        Some(match self.is_two_sided {
+            true if side < 0.5 => (place, -normal, 2.0 * shine),
+            true => (place, normal, 2.0 * shine),
+            false => (place, normal, shine),
+        })
+    }
+
+    /// Returns the radiance emitted in a direction.
+    #[inline]
+    fn radiance(&self, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {
+        match self.is_two_sided {
+            true => self.emission.value(point),
+            false => emitted(&self.emission, point, normal, away),
+        }
     }
 
     /// Returns the density, per solid angle, of a point at a distance. `cosine` is the cosine of
@@ -78,7 +96,7 @@ impl ShiningShape {
 
     #[inline]
     pub(super) fn of_hit(&self, along: DVec3, hit: &Hit) -> (f64, f64) {
-        let radiance = emitted(&self.emission, &hit.point, hit.normal, -along);
+        let radiance = self.radiance(&hit.point, hit.normal, -along);
         (radiance, self.density(hit.distance, hit.normal.dot(along)))
     }
 }

@@ -27,6 +27,7 @@ use turn::to_front;
 #[derive(Clone, Debug)]
 pub(crate) enum Scatter {
     Diffuse(Texture),
+    DiffuseTransmission([Texture; 2]),
     Conductor(world::Conductor),
     Dielectric(world::Dielectric),
     Plastic(Box<Coated>),
@@ -43,6 +44,10 @@ impl From<&Material> for Scatter {
         let both = |of: &[Material; 2]| Box::new([Self::from(&of[0]), Self::from(&of[1])]);
         match material {
             Material::Diffuse { reflectance } => Self::Diffuse(reflectance.clone()),
+            Material::DiffuseTransmission {
+                reflectance,
+                transmittance,
+            } => Self::DiffuseTransmission([reflectance.clone(), transmittance.clone()]),
             Material::Conductor(conductor) => Self::Conductor(conductor.clone()),
             Material::Dielectric(dielectric) => Self::Dielectric(dielectric.clone()),
             Material::Plastic(plastic) => Self::Plastic(Box::new(Coated::new(plastic))),
@@ -88,6 +93,15 @@ impl Scatter {
                 (factor(of, point, turned(wi)) * value, density)
             }),
             Self::Principled(of) => PrincipledSide::new(of, point, wo).value_and_density(wi, wo),
+            Self::DiffuseTransmission(of) => {
+                let [reflected, transmitted] = of.each_ref().map(|of| of.value(point));
+                let share = share(reflected, reflected + transmitted);
+                let lobe = lambertian::density(wi.abs());
+                match wi.z * wo.z > 0.0 {
+                    true => (reflected * lobe, share * lobe),
+                    false => (transmitted * lobe, (1.0 - share) * lobe),
+                }
+            }
             _ if !is_front => (0.0, 0.0),
             Self::Diffuse(reflectance) => {
                 let density = lambertian::density(wi);
@@ -147,6 +161,20 @@ impl Scatter {
                 })
             }
             Self::Principled(of) => PrincipledSide::new(of, point, wo).sample(wo, random),
+            Self::DiffuseTransmission(of) => {
+                let [reflected, transmitted] = of.each_ref().map(|of| of.value(point));
+                let share = share(reflected, reflected + transmitted);
+                let wi = to_front(wo)(lambertian::sample([a, b]));
+                let (wi, part) = match c < share {
+                    true => (wi, share),
+                    false => (-wi, 1.0 - share),
+                };
+                Some(BsdfSample {
+                    wi,
+                    weight: reflected + transmitted,
+                    density: Some(part * lambertian::density(wi.abs())),
+                })
+            }
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
                 let wi = lambertian::sample([a, b]);
@@ -248,6 +276,7 @@ impl Scatter {
                 Reflects::Lobe(distribution.lobe((a * b).sqrt()))
             }
             Self::Principled(_) => Reflects::Nothing,
+            Self::DiffuseTransmission(_) => Reflects::Diffuse,
             _ if wo.z <= 0.0 => Reflects::Nothing,
             Self::Diffuse(_) => Reflects::Diffuse,
             Self::Conductor(of) => rough(of.roughness.as_ref()),
@@ -350,7 +379,11 @@ impl Scatter {
             Self::Dielectric(of) => of.is_thin || of.roughness.is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().all(Self::is_smooth),
             Self::Mask(_, of) => of.is_smooth(),
-            Self::Diffuse(_) | Self::Plastic(_) | Self::Principled(_) | Self::Phong(_) => false,
+            Self::Diffuse(_)
+            | Self::DiffuseTransmission(_)
+            | Self::Plastic(_)
+            | Self::Principled(_)
+            | Self::Phong(_) => false,
         }
     }
 }

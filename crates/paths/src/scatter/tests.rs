@@ -60,6 +60,13 @@ fn materials() -> Vec<(&'static str, Material)> {
     });
     vec![
         ("diffuse", diffuse()),
+        (
+            "diffuse transmission",
+            Material::DiffuseTransmission {
+                reflectance: constant(0.2),
+                transmittance: constant(0.5),
+            },
+        ),
         ("ggx", metal(rough(Ggx, [0.3, 0.1]))),
         ("beckmann", metal(rough(Beckmann, [0.2, 0.4]))),
         ("glass", glass(1.5, rough(Ggx, [0.3, 0.3]))),

@@ -169,6 +169,7 @@ mod tests {
                 is_flipped: false,
                 material: 0,
                 emission: None,
+                emits_on_both_sides: false,
             }
         });
         // Meshes of one shape are not shared, so that their triangles are pieces.
