@@ -12,6 +12,7 @@
 mod bsdf;
 mod conductor;
 mod dielectric;
+mod diffuse_transmission;
 mod fresnel;
 pub mod lambertian;
 mod metallic_roughness;
@@ -23,6 +24,7 @@ mod principled;
 pub use bsdf::{Bsdf, BsdfSample};
 pub use conductor::{Conductor, mirror};
 pub use dielectric::{RoughDielectric, SmoothDielectric};
+pub use diffuse_transmission::DiffuseTransmission;
 pub use fresnel::reflectance;
 pub use metallic_roughness::MetallicRoughness;
 pub use microfacet::Microfacets;

@@ -16,8 +16,8 @@ use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
 use glam::DVec3;
 use place::{
-    Coated, conductor, factor, fresnel, is_mirrored, metallic_roughness, phong, principled,
-    rough_dielectric, share, smooth_dielectric,
+    Coated, conductor, diffuse_transmission, factor, fresnel, is_mirrored, metallic_roughness,
+    phong, principled, rough_dielectric, share, smooth_dielectric,
 };
 use principled_side::PrincipledSide;
 pub use reflects::Reflects;
@@ -94,13 +94,8 @@ impl Scatter {
             }),
             Self::Principled(of) => PrincipledSide::new(of, point, wo).value_and_density(wi, wo),
             Self::DiffuseTransmission(of) => {
-                let [reflected, transmitted] = of.each_ref().map(|of| of.value(point));
-                let share = share(reflected, reflected + transmitted);
-                let lobe = lambertian::density(wi.abs());
-                match wi.z * wo.z > 0.0 {
-                    true => (reflected * lobe, share * lobe),
-                    false => (transmitted * lobe, (1.0 - share) * lobe),
-                }
+                let turned = to_front(wo);
+                both(&diffuse_transmission(of, point), turned(wi), turned(wo))
             }
             _ if !is_front => (0.0, 0.0),
             Self::Diffuse(reflectance) => {
@@ -162,17 +157,11 @@ impl Scatter {
             }
             Self::Principled(of) => PrincipledSide::new(of, point, wo).sample(wo, random),
             Self::DiffuseTransmission(of) => {
-                let [reflected, transmitted] = of.each_ref().map(|of| of.value(point));
-                let share = share(reflected, reflected + transmitted);
-                let wi = to_front(wo)(lambertian::sample([a, b]));
-                let (wi, part) = match c < share {
-                    true => (wi, share),
-                    false => (-wi, 1.0 - share),
-                };
+                let turned = to_front(wo);
+                let bounce = diffuse_transmission(of, point).sample(turned(wo), random)?;
                 Some(BsdfSample {
-                    wi,
-                    weight: reflected + transmitted,
-                    density: Some(part * lambertian::density(wi.abs())),
+                    wi: turned(bounce.wi),
+                    ..bounce
                 })
             }
             _ if wo.z <= 0.0 => None,

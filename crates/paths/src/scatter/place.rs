@@ -2,8 +2,8 @@
 
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_scatter::{
-    Bsdf, Coat, Conductor, MetallicRoughness, Microfacets, ModifiedPhong, Phong, Plastic,
-    Principled, RoughDielectric, SmoothDielectric,
+    Bsdf, Coat, Conductor, DiffuseTransmission, MetallicRoughness, Microfacets, ModifiedPhong,
+    Phong, Plastic, Principled, RoughDielectric, SmoothDielectric,
 };
 use etendue_world::{self as world, Roughness, Texture, TexturePoint};
 use glam::DVec3;
@@ -105,6 +105,17 @@ pub(super) fn principled(of: &world::Principled, point: &TexturePoint) -> Princi
         sheen: of.sheen.value(point),
         clearcoat: of.clearcoat.value(point),
         coat_alpha: 0.1 - 0.099 * of.gloss.value(point),
+    }
+}
+
+/// Returns diffuse reflection and transmission at a point.
+pub(super) fn diffuse_transmission(
+    [reflectance, transmittance]: &[Texture; 2],
+    point: &TexturePoint,
+) -> DiffuseTransmission {
+    DiffuseTransmission {
+        reflectance: reflectance.value(point),
+        transmittance: transmittance.value(point),
     }
 }
 

@@ -1,8 +1,8 @@
 //! All models of the crate, with narrow and wide lobes, for tests.
 
 use crate::{
-    Bsdf, Coat, Conductor, MetallicRoughness, Microfacets, ModifiedPhong, Phong, Plastic,
-    Principled, RoughDielectric, lambertian,
+    Bsdf, Coat, Conductor, DiffuseTransmission, MetallicRoughness, Microfacets, ModifiedPhong,
+    Phong, Plastic, Principled, RoughDielectric, lambertian,
 };
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_sampling::chi_square::{ChiSquare, SphereCells};
@@ -289,6 +289,11 @@ pub(super) fn all() -> Vec<Model> {
         dielectric(beckmann([0.5, 0.2]), 1.3),
         conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
     ];
+    let translucent = DiffuseTransmission {
+        reflectance: 0.2,
+        transmittance: 0.5,
+    };
+    models.push(model(format!("{translucent:?}"), 0.7 + 1e-9, translucent));
     models.extend([
         metallic_roughness(None, 0.8, 0.0),
         metallic_roughness(Some(ggx([0.04, 0.04])), 1.0, 0.0),
