@@ -58,7 +58,7 @@ pub fn picture(bytes: &[u8]) {
         (b"BM", "bmp"),
     ];
     if let Some((_, ending)) = first.iter().find(|(magic, _)| bytes.starts_with(magic)) {
-        let _ = read_channels(&Path::new("picture").with_extension(ending), bytes);
+        let _ = read_channels(&Path::new("picture").with_extension(ending), bytes, u64::MAX);
     }
 }
 

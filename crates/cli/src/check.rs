@@ -22,10 +22,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let inputs = load::inputs(&args.scene.source(), &scene);
     let picture = args.draw.as_ref().map(|path| {
         let bytes = pictures::drawn_scene(&scene, path)?;
-        let kind = match path.extension().and_then(|extension| extension.to_str()) {
-            Some("svg") => SealKind::Markup,
-            _ => SealKind::Png,
-        };
+        let kind = SealKind::of(path).unwrap_or(SealKind::Png);
         let file = OutputFile::claim_sealed(path, args.force.force, &inputs, kind)?;
         Ok((path, bytes, file))
     });
@@ -49,7 +46,8 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
     let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;
     format!(
-        "\nexpected on {threads} threads: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, at most {gigabytes:.2} GB"
+        "\nexpected on {}: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, at most {gigabytes:.2} GB",
+        limits::counted(threads)
     )
 }
 

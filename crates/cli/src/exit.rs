@@ -7,7 +7,16 @@ use std::path::Path;
 
 /// Prints a command-line error, or the requested help or version; returns the exit code.
 pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
-    match error.print() {
+    // Arguments may hold characters that are not safe on a terminal.
+    let text = error.render().to_string();
+    let safe = printable(text.trim_end(), usize::MAX);
+    let printed = if error.use_stderr() && safe != text.trim_end() {
+        tell(&safe);
+        Ok(())
+    } else {
+        error.print()
+    };
+    match printed {
         Err(e) if !error.use_stderr() && e.kind() != ErrorKind::BrokenPipe => ended(
             Err(Failure::write(Path::new("to standard output"), e)),
             false,

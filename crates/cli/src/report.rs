@@ -44,6 +44,11 @@ pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), 
 fn address(folder: &Path, from: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let [folder, from] = [folder, from].map(absolute);
-    let inside = folder.strip_prefix(&from).unwrap_or(&folder);
-    format!("{}/", inside.display())
+    let (mut above, mut up) = (&*from, String::new());
+    while !folder.starts_with(above) {
+        up.push_str("../");
+        above = above.parent().unwrap_or(Path::new(""));
+    }
+    let below = folder.strip_prefix(above).unwrap_or(&folder);
+    format!("{up}{}/", below.display())
 }

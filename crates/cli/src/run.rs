@@ -22,8 +22,8 @@ use etendue_scene::{Color, Scene};
 use etendue_store::Failure;
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{ArgumentStyle, Plan, Results, SUMMARY};
-use std::path::Path;
+use etendue_store::{ArgumentStyle, Plan, Results, SUMMARY, below};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Runs `etendue run`; returns the exit code.
@@ -41,7 +41,8 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
     let name = args.scene.path.file_stem().unwrap_or_default();
     let folder = args.out.or_named(name);
     let colors = [Color::Red, Color::Green, Color::Blue];
-    let folders = colors.map(|color| folder.join(color.name()));
+    let folders = colors.iter().map(|color| below(&folder, color.name()));
+    let folders: Vec<PathBuf> = folders.collect::<Result<_, _>>()?;
     let page = folder.join(NAME);
     if page.exists() {
         // A page that cannot be replaced is refused before the runs.

@@ -19,16 +19,16 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         )));
     }
     let out = args.out.or_named(&scene.name);
-    let below = |name: &str| shell_word(&out.join(name).to_string_lossy());
+    let below = |name: &str| word(&out.join(name).to_string_lossy());
     let work = SplitWork {
-        name: shell_word(&scene.name),
-        scene: scene_words(args),
+        name: word(&scene.name)?,
+        scene: scene_words(args)?,
         parts,
         batches,
         // The beginning of the folder name of each part, to which digits are appended.
-        part: below("parts/"),
-        predicted: below("predicted"),
-        out: shell_word(&out.to_string_lossy()),
+        part: below("parts/")?,
+        predicted: below("predicted")?,
+        out: word(&out.to_string_lossy())?,
     };
     deliver(&if args.slurm {
         work.slurm()
@@ -38,8 +38,19 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
+/// Returns a word of a script, quoted for a shell. A line break would end a line of the script, and
+/// could end a here-document.
+fn word(text: &str) -> Result<String, Failure> {
+    if text.contains(char::is_control) {
+        return Err(Failure::bad_input(format!(
+            "{text:?} would stand in a script; allowed: words without line breaks and other control characters"
+        )));
+    }
+    Ok(shell_word(text))
+}
+
 /// Returns the scene and the measurement options as words of a command line.
-fn scene_words(args: &SplitArgs) -> String {
+fn scene_words(args: &SplitArgs) -> Result<String, Failure> {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
     for (path, value) in &args.scene.set {
         words.extend(["--set".to_owned(), format!("{path}={value}")]);
@@ -62,8 +73,8 @@ fn scene_words(args: &SplitArgs) -> String {
         let name = args.photons.method.name();
         words.extend(["--method".to_owned(), name.to_owned()]);
     }
-    let words = words.iter().map(|word| shell_word(word));
-    words.collect::<Vec<_>>().join(" ")
+    let words = words.iter().map(|text| word(text));
+    Ok(words.collect::<Result<Vec<_>, _>>()?.join(" "))
 }
 
 /// The words of the commands for the parts, quoted for a shell.

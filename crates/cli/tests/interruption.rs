@@ -128,3 +128,30 @@ fn a_signal_leaves_no_lock() {
         assert!(!out.join(".etendue.lock").exists(), "after {moment}0 µs");
     }
 }
+
+/// If no file can be opened at any moment of a run, the run ends, and leaves no folder.
+#[test]
+fn few_open_files_end_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_etendue");
+    let scene = scene("travel.ron");
+    let mut failed = 0;
+    for files in 4..=12 {
+        let script = format!(
+            "ulimit -n {files}; exec {program} run {} --photons 1000 --threads 1 --quiet --out {files}/out",
+            scene.display(),
+        );
+        let mut command = Command::new("sh");
+        let command = command.args(["-c", &script]).current_dir(folder.path());
+        let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+        let code = code(&mut child);
+        assert!(code.is_some(), "{files} open files: the run did not end");
+        if code == Some(3) {
+            failed += 1;
+            let left = folder.path().join(files.to_string());
+            assert!(!left.exists(), "{files} open files: {left:?} stays");
+        }
+    }
+    // Fewer files may suffice on other systems.
+    assert!(failed > 0);
+}

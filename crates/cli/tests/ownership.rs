@@ -410,3 +410,37 @@ fn bad_input_leaves_no_folder_behind() {
     );
     assert!(!folder.path().join("out").exists());
 }
+
+/// The folders of the channels are below the folder that the user names.
+#[test]
+fn channels_are_not_written_through_links() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir_all(at("elsewhere")).unwrap();
+    fs::create_dir_all(at("out")).unwrap();
+    symlink("../elsewhere", at("out/green")).unwrap();
+    for more in ["", " --force", " --resume"] {
+        stays(
+            folder.path(),
+            &format!("run s.ron --rgb --out out{more} {ENDLESS}"),
+            &["out/green", "a link"],
+        );
+    }
+    assert_eq!(fs::read_dir(at("elsewhere")).unwrap().count(), 0);
+}
+
+/// `run --rgb` writes a page where `run` writes its own.
+#[test]
+fn a_page_that_bears_its_mark_is_replaced_by_a_run() {
+    let folder = folder();
+    let page = folder.path().join("out/report.html");
+    passes(folder.path(), "run s.ron --rgb --out out");
+    let channels = fs::read(&page).unwrap();
+    fs::write(&page, [&channels[..], b" "].concat()).unwrap();
+    stays(folder.path(), "run s.ron --out out", &["report.html"]);
+    fs::write(&page, channels).unwrap();
+    passes(folder.path(), "run s.ron --out out");
+    let listed = json(&folder.path().join("out/summary.json"));
+    let hash = blake3::hash(&fs::read(&page).unwrap()).to_hex().to_string();
+    assert_eq!(listed["files"]["report.html"], hash);
+}

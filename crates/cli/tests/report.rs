@@ -210,3 +210,23 @@ fn call_report(path: &Path, arguments: &str) -> std::process::Output {
         .output()
         .unwrap()
 }
+
+/// The page leads to folders beside it by relative paths, in which no name is an address.
+#[test]
+fn a_page_leads_to_other_folders_by_relative_paths() {
+    let folder = runs();
+    let path = folder.path();
+    fs::rename(path.join("a"), path.join("javascript:alert(1)")).unwrap();
+    fs::create_dir(path.join("pages")).unwrap();
+    for (out, address) in [
+        ("all.html", "javascript:alert(1)/"),
+        ("pages/all.html", "../javascript:alert(1)/"),
+    ] {
+        let line = format!("report javascript:alert(1) --out {out}");
+        let output = call_report(path, &line);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let page = fs::read_to_string(path.join(out)).unwrap();
+        let attribute = format!("data-folder=\"{address}\"");
+        assert!(page.contains(&attribute), "{out}: {attribute}");
+    }
+}

@@ -116,3 +116,32 @@ fn more_parts_than_batches_are_refused() {
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("has 64 batches"), "{message}");
 }
+
+/// A line break in a path could end a line of the script, or a here-document in it.
+#[test]
+fn control_characters_do_not_enter_scripts() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let name = "a\nEND\ntouch pwned\n.ron";
+    for name in ["small.ron", name] {
+        fs::write(path.join(name), SCENE).unwrap();
+    }
+    for (scene, out, set) in [
+        ("small.ron", "out\nEND\ntouch pwned\n", "run.seed=1"),
+        ("small.ron", "out\r", "run.seed=1"),
+        (name, "out", "run.seed=1"),
+        ("small.ron", "out", "run.seed=1\n"),
+    ] {
+        for more in [&["--slurm"][..], &[]] {
+            let output = etendue()
+                .current_dir(path)
+                .args(["split", scene, "--parts", "2", "--out", out, "--set", set])
+                .args(more)
+                .output()
+                .unwrap();
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(2), "{message}");
+            assert!(output.stdout.is_empty(), "{scene:?} {out:?} {set:?}");
+        }
+    }
+}

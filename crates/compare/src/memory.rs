@@ -121,7 +121,8 @@ fn meshes(scene: &Scene) -> f64 {
         let normals = mesh.smooth.as_ref().map_or(0.0, |_| NORMALS);
         mesh.triangles.len() as f64 * (TRIANGLE + normals)
     });
-    each.sum()
+    // The sum of no numbers is −0.
+    0.0 + each.sum::<f64>()
 }
 
 fn cells(grid: &SliceGrid) -> f64 {

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Maximum number of bytes that one import reads or unpacks, over all files.
+/// Maximum number of bytes that one import reads, unpacks or keeps, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
 /// The files that a scene may refer to. After links are followed, all files of a scene must lie
@@ -13,19 +13,23 @@ const MOST_BYTES: u64 = 4 << 30;
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
+    /// The number of bytes that may be read, unpacked or kept.
+    most: u64,
     left: Cell<u64>,
 }
 
 impl Files {
-    /// Creates access to the files below the folder `root`.
-    pub(crate) fn below(root: &Path) -> io::Result<Self> {
+    /// Creates access to the files below the folder `root`, within `memory` bytes.
+    pub(crate) fn below(root: &Path, memory: Option<u64>) -> io::Result<Self> {
+        let most = memory.map_or(MOST_BYTES, |memory| memory.min(MOST_BYTES));
         let root = match root.as_os_str() {
             empty if empty.is_empty() => Path::new("."),
             _ => root,
         };
         Ok(Self {
             root: root.canonicalize()?,
-            left: Cell::new(MOST_BYTES),
+            most,
+            left: Cell::new(most),
         })
     }
 
@@ -79,7 +83,13 @@ impl Files {
         let left = self.left.get().checked_sub(bytes);
         self.left.set(left.unwrap_or_default());
         left.map(|_| ()).ok_or_else(|| {
-            format!("exceeds the limit: at most {MOST_BYTES} bytes are read for one scene")
+            let most = self.most;
+            let why = if most < MOST_BYTES {
+                ", the free memory,"
+            } else {
+                ""
+            };
+            format!("exceeds the limit: at most {most} bytes{why} are read for one scene")
         })
     }
 }

@@ -18,7 +18,6 @@
 //! Limits: 2²⁰ shapes, 2²⁰ lights, and the byte limit of an import.
 
 mod accessor;
-mod alpha;
 mod camera;
 mod container;
 mod glass;

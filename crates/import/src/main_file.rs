@@ -42,7 +42,7 @@ impl<'a> MainFile<'a> {
         let unread = |error: io::Error| Refused::because(given, error.to_string());
         let root = options.root.as_deref().unwrap_or(folder);
         Ok(Self {
-            files: Files::below(root).map_err(unread)?,
+            files: Files::below(root, options.memory).map_err(unread)?,
             path: given.canonicalize().map_err(unread)?,
             name: name.to_owned(),
             given,

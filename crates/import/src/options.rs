@@ -22,6 +22,9 @@ pub struct Options {
     /// number. For lights, each channel is multiplied by the same channel of the equal-energy
     /// white, (1.2048, 0.9483, 0.9089).
     pub color: Color,
+    /// The memory that the files of a scene and their content may take, bytes; at most 4 GiB, which
+    /// `None` stands for.
+    pub memory: Option<u64>,
     /// Values of Mitsuba's `$parameters`, which override the values in the file.
     pub set: Vec<(String, String)>,
 }

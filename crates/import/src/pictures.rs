@@ -4,12 +4,11 @@ mod bmp;
 mod hdr;
 mod jpeg;
 mod pfm;
-mod size;
 
 use crate::range::MAX_NUMBER;
 use crate::{Color, files::Files};
 use etendue_field::Raster;
-use etendue_scene::{Channels, read_channels};
+use etendue_scene::{Channels, Fault, PictureSize, Samples, read_channels};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -80,42 +79,70 @@ impl TransferCurve {
 
 fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
-    let channels = decode(path, &bytes)?;
-    if !channels.values.iter().all(|v| v.abs() <= MAX_NUMBER) {
+    let channels = decode(path, &bytes, files.left())?;
+    if let Samples::Numbers(numbers) = &channels.samples
+        && !numbers.iter().all(|v| f64::from(v.abs()) <= MAX_NUMBER)
+    {
         return Err(format!(
             "has pixels out of range; allowed: up to {MAX_NUMBER:e}"
         ));
     }
-    let linear = |v: f64| match curve {
-        TransferCurve::Srgb if channels.are_levels => linear(v),
-        TransferCurve::Gamma(exponent) if channels.are_levels => libm::pow(v, exponent),
-        _ => v,
+    let curve = |level: f64| match curve {
+        TransferCurve::Srgb => linear(level),
+        TransferCurve::Gamma(exponent) => libm::pow(level, exponent),
+        TransferCurve::Linear => level,
     };
-    let grey = channels.count == 1;
+    let grey = channels.is_grey();
     // The value of a grey pixel is used directly, because a luminance computed from three equal
     // values would have a rounding error.
     let number = |rgb: [f64; 3]| match grey {
-        true => linear(rgb[0]),
-        false => color.of(rgb.map(linear)),
+        true => rgb[0],
+        false => color.of(rgb),
     };
-    channels.raster(number).map_err(|fault| fault.to_string())
+    counted(files, channels.raster(curve, number))
 }
 
-/// Decodes the channels of a picture; the extension of `path` determines the format.
-pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
+/// Counts the memory of a raster that is kept.
+pub(crate) fn counted(files: &Files, raster: Result<Raster, Fault>) -> Result<Raster, String> {
+    let raster = raster.map_err(|fault| fault.to_string())?;
+    files.spend(size_of_val(raster.values()) as u64)?;
+    Ok(raster)
+}
+
+/// Decodes the channels of a picture; the extension of `path` determines the format. `memory` is
+/// the memory for the picture and for one number of each pixel, in bytes.
+pub(crate) fn decode(path: &Path, bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
-        "bmp" => bmp::read(bytes),
-        "jpg" | "jpeg" => jpeg::read(bytes),
-        "hdr" | "rgbe" => hdr::read(bytes),
-        "pfm" => pfm::read(bytes),
-        "png" | "exr" => {
-            read_channels(path, bytes).map_err(|fault| format!("is not a valid picture: {fault}"))
-        }
+        "bmp" => bmp::read(bytes, memory),
+        "jpg" | "jpeg" => jpeg::read(bytes, memory),
+        "hdr" | "rgbe" => hdr::read(bytes, memory),
+        "pfm" => pfm::read(bytes, memory),
+        "png" | "exr" => read_channels(path, bytes, memory).map_err(invalid),
         other => Err(format!(
             "has extension {other:?}; allowed: bmp, exr, hdr, jpg, pfm, png"
         )),
     }
+}
+
+/// Refuses a picture whose stated size is not allowed.
+fn check_size(
+    (width, height): (usize, usize),
+    [channels, bytes]: [usize; 2],
+    length: usize,
+    memory: u64,
+) -> Result<(), String> {
+    let size = PictureSize {
+        pixels: width.checked_mul(height),
+        channels,
+        bytes,
+        packed: None,
+    };
+    size.check(length, memory).map_err(invalid)
+}
+
+fn invalid(fault: Fault) -> String {
+    format!("is not a valid picture: {fault}")
 }
 
 /// Converts an sRGB level to linear light (IEC 61966-2-1).

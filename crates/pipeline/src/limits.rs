@@ -53,6 +53,12 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     }
 }
 
+/// Returns a number of threads in words.
+#[must_use]
+pub fn counted(threads: usize) -> String {
+    format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
+}
+
 /// Fails if a run of the scene on `threads` threads would not fit into the memory of this machine.
 pub fn check_memory(
     scene: &Scene,
@@ -64,6 +70,7 @@ pub fn check_memory(
     if needed.total() <= available as f64 {
         return Ok(());
     }
+    let threads = counted(threads);
     let gigabytes = |bytes: f64| format!("{:.2} GB", bytes / 1e9);
     let Memory {
         batches,
@@ -73,7 +80,7 @@ pub fn check_memory(
         meshes,
     } = needed;
     Err(Failure::cannot_run(format!(
-        "{}: a run on {threads} threads needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
+        "{}: a run on {threads} needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
         scene.name,
         gigabytes(needed.total()),
         gigabytes(batches),

@@ -38,7 +38,7 @@ pub use etendue_scenefile::{
     unit,
 };
 pub use mesh::{DetailedMesh, Mesh, MeshAttribute, ObjFile, ObjPart};
-pub use picture::{Channels, read_channels};
+pub use picture::{Channels, PictureSize, Samples, read_channels};
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;
 pub use scene::{

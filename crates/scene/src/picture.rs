@@ -16,36 +16,105 @@ const MAX_NUMBERS: usize = 1 << 27;
 /// make the program allocate more memory than the file can fill.
 const MOST_PER_BYTE: usize = 1032;
 
-/// A picture whose pixels are grey, or red, green and blue.
+/// A picture, with the values of its pixels as they are in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels {
     /// Number of pixels in a row.
     pub width: usize,
     /// Number of rows.
     pub height: usize,
-    /// Values of the pixels; each pixel has one or three values.
-    pub values: Vec<f64>,
-    /// Values per pixel, 1 or 3.
+    /// Values of the pixels, row by row.
+    pub samples: Samples,
+    /// Values per pixel: 1 for grey, 2 for grey and alpha, 3 for red, green and blue, and 4 for
+    /// these and alpha.
     pub count: usize,
-    /// Whether the values are levels from 0 to 1, as encoded by the file's transfer curve. If they
-    /// are not levels, the values are proportional to light.
-    pub are_levels: bool,
+}
+
+/// The values of the pixels of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// Levels of 8 bits, as encoded by the file's transfer curve.
+    Bytes(Vec<u8>),
+    /// Levels of 16 bits, each as two bytes with the higher byte first.
+    Words(Vec<u8>),
+    /// Numbers that are proportional to light.
+    Numbers(Vec<f32>),
+}
+
+impl Samples {
+    fn len(&self) -> usize {
+        match self {
+            Self::Bytes(bytes) => bytes.len(),
+            Self::Words(bytes) => bytes.len() / 2,
+            Self::Numbers(numbers) => numbers.len(),
+        }
+    }
+
+    /// Returns `curve` of all levels that a value may have, scaled to 1; none for numbers.
+    fn levels(&self, curve: impl Fn(f64) -> f64) -> Vec<f64> {
+        let all = |most: u16| (0..=most).map(move |n| f64::from(n) / f64::from(most));
+        match self {
+            Self::Bytes(_) => all(u8::MAX.into()).map(curve).collect(),
+            Self::Words(_) => all(u16::MAX).map(curve).collect(),
+            Self::Numbers(_) => Vec::new(),
+        }
+    }
+
+    /// Returns a value, which is a number or one of the `levels`.
+    #[inline]
+    fn value(&self, index: usize, levels: &[f64]) -> f64 {
+        match self {
+            Self::Bytes(bytes) => levels[usize::from(bytes[index])],
+            Self::Words(bytes) => {
+                let word = [bytes[2 * index], bytes[2 * index + 1]];
+                levels[usize::from(u16::from_be_bytes(word))]
+            }
+            Self::Numbers(numbers) => f64::from(numbers[index]),
+        }
+    }
 }
 
 impl Channels {
-    /// Returns the picture as one number for each pixel, computed by `number`.
+    /// Checks whether the pixels have no colour.
+    #[must_use]
+    pub fn is_grey(&self) -> bool {
+        self.count < 3
+    }
+
+    /// Returns the picture as one number for each pixel, computed by `number` from red, green and
+    /// blue. Levels from 0 to 1 become light by `curve`; other values are proportional to light.
     ///
     /// # Errors
     /// When the picture has no pixels.
-    pub fn raster(&self, number: impl Fn([f64; 3]) -> f64) -> Result<Raster, Fault> {
-        let values = match self.count {
-            1 => self.values.iter().map(|v| number([*v; 3])).collect(),
-            _ => {
-                let pixels = self.values.chunks_exact(3);
-                pixels.map(|p| number([p[0], p[1], p[2]])).collect()
-            }
-        };
-        raster(self.width, self.height, values)
+    pub fn raster(
+        &self,
+        curve: impl Fn(f64) -> f64,
+        number: impl Fn([f64; 3]) -> f64,
+    ) -> Result<Raster, Fault> {
+        let others = if self.is_grey() { [0, 0] } else { [1, 2] };
+        let levels = self.samples.levels(curve);
+        let value = |at| self.samples.value(at, &levels);
+        self.pixels(|at| number([value(at), value(at + others[0]), value(at + others[1])]))
+    }
+
+    /// Returns the number that `number` computes from the alpha of each pixel, which is 1 in
+    /// pictures without alpha.
+    ///
+    /// # Errors
+    /// When the picture has no pixels.
+    pub fn alphas(&self, number: impl Fn(f64) -> f64) -> Result<Raster, Fault> {
+        let alpha = self.count.is_multiple_of(2).then(|| self.count - 1);
+        let levels = self.samples.levels(&number);
+        self.pixels(|at| match alpha {
+            Some(alpha) => self.samples.value(at + alpha, &levels),
+            None => number(1.0),
+        })
+    }
+
+    /// Returns the raster of a function of the position of each pixel's first value.
+    fn pixels(&self, number: impl Fn(usize) -> f64) -> Result<Raster, Fault> {
+        let starts = (0..self.samples.len()).step_by(self.count.max(1));
+        raster(self.width, self.height, starts.map(number).collect())
     }
 }
 
@@ -60,16 +129,17 @@ pub(crate) fn parse(
     bytes: &[u8],
     extensions: &[&str],
     color: Color,
+    memory: u64,
 ) -> Result<Raster, Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
-    let channels = read_channels(file, bytes)?;
-    match channels.count {
-        1 => raster(channels.width, channels.height, channels.values),
-        _ => channels.raster(|rgb| color.of(rgb)),
+    let channels = read_channels(file, bytes, memory)?;
+    match channels.is_grey() {
+        true => channels.raster(|level| level, |rgb| rgb[0]),
+        false => channels.raster(|level| level, |rgb| color.of(rgb)),
     }
 }
 
@@ -77,14 +147,15 @@ pub(crate) fn parse(
 /// determines the format.
 ///
 /// An OpenEXR file gives the first layer with channels R, G and B, or Y, over the entire data
-/// window. A PNG file gives grey or colour of 8 or 16 bits. Alpha is ignored.
+/// window. A PNG file gives grey or colour of 8 or 16 bits, and alpha. `memory` is the memory for
+/// the picture and for one number of each pixel, in bytes.
 ///
 /// # Errors
 /// When the file is damaged, or when it is larger than allowed.
-pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
+pub fn read_channels(file: &Path, bytes: &[u8], memory: u64) -> Result<Channels, Fault> {
     match extension(file).as_str() {
-        "png" => png(bytes),
-        "exr" => exr(bytes),
+        "png" => png(bytes, memory),
+        "exr" => exr(bytes, memory),
         other => Err(fault("the extension", format!("{other:?}"), "exr, png")),
     }
 }
@@ -94,21 +165,49 @@ fn extension(file: &Path) -> String {
     extension.to_ascii_lowercase()
 }
 
-/// Refuses a picture that has too many values, or more values than its file of `length` bytes can
-/// hold.
-fn limited(numbers: Option<usize>, length: usize) -> Result<(), Fault> {
-    let most = MAX_NUMBERS.min(length.saturating_mul(MOST_PER_BYTE));
-    match numbers {
-        Some(numbers) if numbers <= most => Ok(()),
-        _ => {
-            let shown = numbers.map_or("countless".to_owned(), |n| n.to_string());
-            let allowed = format!("at most {most} numbers in a file of {length} bytes");
-            Err(fault(
+/// The size of a picture, as its file states it.
+#[derive(Clone, Copy, Debug)]
+pub struct PictureSize {
+    /// Number of pixels; `None` if there are too many to count.
+    pub pixels: Option<usize>,
+    /// Values per pixel.
+    pub channels: usize,
+    /// Bytes of a value while the picture is read.
+    pub bytes: usize,
+    /// Number of bytes or values that the file holds compressed, if this is not one for each value.
+    pub packed: Option<usize>,
+}
+
+impl PictureSize {
+    /// Refuses a picture before it is decoded: a picture that has no pixels or too many values,
+    /// that has more values than its file of `length` bytes can hold, or that takes more than
+    /// `memory` bytes together with one number for each pixel.
+    ///
+    /// # Errors
+    /// Describes the size and the limit.
+    pub fn check(self, length: usize, memory: u64) -> Result<(), Fault> {
+        let numbers = self.pixels.and_then(|n| n.checked_mul(self.channels));
+        let possible = length.saturating_mul(MOST_PER_BYTE);
+        let fits = |n: &usize| *n <= MAX_NUMBERS && self.packed.unwrap_or(*n) <= possible;
+        let (Some(pixels), Some(numbers @ 1..)) = (self.pixels, numbers.filter(fits)) else {
+            return Err(fault(
                 "the number of pixels times the number of channels",
-                shown,
-                allowed,
-            ))
+                numbers.map_or("countless".to_owned(), |n| n.to_string()),
+                format!("1 to {MAX_NUMBERS}, and no more than {length} bytes can hold"),
+            ));
+        };
+        let needed = (size_of::<f64>() * pixels + self.bytes * numbers) as u64;
+        if needed > memory {
+            return Err(Fault {
+                memory: true,
+                ..fault(
+                    "the memory to read the picture",
+                    format!("{needed} bytes"),
+                    format!("at most {memory} bytes, which are left"),
+                )
+            });
         }
+        Ok(())
     }
 }
 
@@ -118,7 +217,7 @@ fn raster(width: usize, height: usize, values: Vec<f64>) -> Result<Raster, Fault
         .ok_or_else(|| fault("the size", format!("{width} × {height}"), allowed))
 }
 
-fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
+fn exr(bytes: &[u8], memory: u64) -> Result<Channels, Fault> {
     let unsound = |error: exr::error::Error| {
         fault(
             "the file",
@@ -131,7 +230,13 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
         let pixels = header.layer_size.0.checked_mul(header.layer_size.1)?;
         pixels.checked_mul(header.channels.list.len())
     });
-    limited(sizes.sum::<Option<usize>>(), bytes.len())?;
+    let size = PictureSize {
+        pixels: sizes.sum(),
+        channels: 1,
+        bytes: 2 * size_of::<f32>(),
+        packed: None,
+    };
+    size.check(bytes.len(), memory)?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -145,13 +250,12 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
         list.map(|channel| channel.name.to_string()).collect()
     };
     for layer in &image.layer_data {
-        if let Some((count, values)) = colours(&layer.channel_data) {
+        if let Some((count, numbers)) = colours(&layer.channel_data) {
             return Ok(Channels {
                 width: layer.size.0,
                 height: layer.size.1,
-                values,
+                samples: Samples::Numbers(numbers),
                 count,
-                are_levels: false,
             });
         }
     }
@@ -169,22 +273,22 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
 
 /// Returns the number of values per pixel of a layer, and these values; `None` if the channels
 /// are missing.
-fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
+fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f32>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();
         list.find(|channel| channel.name.eq(name))
     };
     let Some(((red, green), blue)) = channel("R").zip(channel("G")).zip(channel("B")) else {
         let grey = channel("Y")?.sample_data.values_as_f32();
-        return Some((1, grey.map(f64::from).collect()));
+        return Some((1, grey.collect()));
     };
     let [red, green, blue] = [red, green, blue].map(|c| c.sample_data.values_as_f32());
     let pixels = red.zip(green).zip(blue);
-    let values = pixels.flat_map(|((r, g), b)| [r, g, b].map(f64::from));
+    let values = pixels.flat_map(|((r, g), b)| [r, g, b]);
     Some((3, values.collect()))
 }
 
-fn png(bytes: &[u8]) -> Result<Channels, Fault> {
+fn png(bytes: &[u8], memory: u64) -> Result<Channels, Fault> {
     let unsound = |error: png::DecodingError| {
         fault("the file", format!("damaged ({error})"), "a PNG picture")
     };
@@ -194,37 +298,33 @@ fn png(bytes: &[u8]) -> Result<Channels, Fault> {
     let info = decoder.read_header_info().map_err(unsound)?;
     let [width, height] =
         [info.width, info.height].map(|n| usize::try_from(n).unwrap_or(MAX_NUMBERS));
-    let pixels = width.checked_mul(height);
-    limited(pixels, bytes.len())?;
-    limited(pixels.and_then(|n| n.checked_mul(4)), usize::MAX)?;
+    let packed = height.checked_mul(info.raw_row_length());
+    let mut size = PictureSize {
+        pixels: width.checked_mul(height),
+        channels: 1,
+        bytes: 1,
+        packed: Some(packed.unwrap_or(usize::MAX)),
+    };
+    // The reader allocates memory for a row.
+    size.check(bytes.len(), memory)?;
     let mut reader = decoder.read_info().map_err(unsound)?;
-    let size = reader.output_buffer_size();
-    limited(size.map(|bytes| bytes / 2), bytes.len())?;
-    let mut buffer = vec![0; size.unwrap_or_default()];
-    let frame = reader.next_frame(&mut buffer).map_err(unsound)?;
-    let levels: Vec<f64> = match frame.bit_depth {
-        png::BitDepth::Sixteen => {
-            let words = buffer.chunks_exact(2);
-            words
-                .map(|w| f64::from(u16::from_be_bytes([w[0], w[1]])) / 65_535.0)
-                .collect()
-        }
-        _ => buffer.iter().map(|b| f64::from(*b) / 255.0).collect(),
+    let (color, depth) = reader.output_color_type();
+    size.channels = color.samples();
+    size.bytes = if depth == png::BitDepth::Sixteen {
+        2
+    } else {
+        1
     };
-    let (count, values) = match frame.color_type {
-        png::ColorType::Grayscale => (1, levels),
-        png::ColorType::GrayscaleAlpha => (1, levels.chunks_exact(2).map(|p| p[0]).collect()),
-        png::ColorType::Rgba => {
-            let pixels = levels.chunks_exact(4);
-            (3, pixels.flat_map(|p| [p[0], p[1], p[2]]).collect())
-        }
-        _ => (3, levels),
-    };
+    size.check(bytes.len(), memory)?;
+    let mut buffer = vec![0; reader.output_buffer_size().unwrap_or_default()];
+    reader.next_frame(&mut buffer).map_err(unsound)?;
     Ok(Channels {
         width,
         height,
-        values,
-        count,
-        are_levels: true,
+        samples: match depth {
+            png::BitDepth::Sixteen => Samples::Words(buffer),
+            _ => Samples::Bytes(buffer),
+        },
+        count: size.channels,
     })
 }

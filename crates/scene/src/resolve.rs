@@ -53,9 +53,10 @@ pub fn resolve(
         faults: &mut faults,
         folder,
         color: file.run.color,
+        memory,
         inputs: BTreeMap::new(),
     }
-    .scene(name, file, memory);
+    .scene(name, file);
     match scene {
         Some(scene) if faults.all.is_empty() => Ok(scene),
         _ => Err(SceneError::Values(faults.once())),
@@ -73,12 +74,14 @@ struct Resolver<'a> {
     folder: &'a Path,
     /// The number of each colour that is measured.
     color: Color,
+    /// The memory of this machine, in bytes.
+    memory: u64,
     /// The BLAKE3 hashes of the files that were read, by the names of these files in the scene.
     inputs: BTreeMap<String, String>,
 }
 
 impl Resolver<'_> {
-    fn scene(&mut self, name: &str, file: SceneFile, memory: u64) -> Option<Scene> {
+    fn scene(&mut self, name: &str, file: SceneFile) -> Option<Scene> {
         if !self.counts(&file) {
             return None;
         }
@@ -111,7 +114,7 @@ impl Resolver<'_> {
         self.names(&file, &stops);
         self.distinct(&file, &stops);
         let planes = self.planes(&file, &path, &stops);
-        self.memory(&planes, file.run.batches, memory);
+        self.memory(&planes, file.run.batches);
 
         blockers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         frame?;

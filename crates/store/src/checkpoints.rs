@@ -12,8 +12,8 @@ use crate::Method;
 use crate::batches::{Held, files, read_files};
 use crate::machine::available_memory;
 use crate::npz::NpzFile;
+use crate::results::{LINKED, inside, make_folders, remove_folders};
 use crate::version::VERSION;
-use crate::{LINKED, inside};
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};
 use etendue_spectrum::{Batch, Measurement, PartialBatch};
@@ -125,15 +125,18 @@ impl CheckpointStore {
         }
         let bytes = packed(&self.planes, batch)?;
         let name = CheckpointName::new(batch.index, parts, &bytes);
+        let made = make_folders(&self.folder).map_err(|e| Failure::write(&self.folder, e))?;
         let put = || {
-            fs::create_dir_all(&self.folder)?;
             let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
             file.write_all(&bytes)?;
             file.as_file().sync_all()?;
             let path = self.folder.join(name.to_string());
             file.persist(path).map_err(|error| error.error)
         };
-        put().map_err(|e| Failure::write(&self.folder, e))?;
+        put().map_err(|e| {
+            remove_folders(&made);
+            Failure::write(&self.folder, e)
+        })?;
         for other in self.names() {
             if other.batch == name.batch && name.is_beyond(&other) {
                 // Failure is ignored: a file that remains is harmless, and another process may

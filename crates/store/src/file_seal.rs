@@ -2,6 +2,8 @@
 //! file. If the hash matches, the file has not changed since this program wrote it, and may be
 //! replaced.
 
+use std::path::Path;
+
 /// The kind of file, which determines how the mark is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SealKind {
@@ -21,6 +23,16 @@ const LAST: usize = 12;
 const DIGITS: usize = 64;
 
 impl SealKind {
+    /// Returns the kind of a page or a picture, by the extension of its file.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Self> {
+        match file.extension()?.to_str()? {
+            "html" | "svg" => Some(Self::Markup),
+            "png" => Some(Self::Png),
+            _ => None,
+        }
+    }
+
     /// Returns the file with its mark.
     #[must_use]
     pub fn sealed(self, bytes: &[u8]) -> Vec<u8> {

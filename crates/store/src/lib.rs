@@ -35,7 +35,7 @@ pub use argument_style::ArgumentStyle;
 pub use failure::{CANNOT_RUN, Failure};
 pub use method::Method;
 pub use results::{
-    COVARIANCE, EXPORT, FIGURE, Finished, LINKED, MAX_INDEX_BYTES, MEASUREMENT, PICTURE,
-    PREDICTION, PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, hash_of, inside,
+    COVARIANCE, EXPORT, FIGURE, Finished, MAX_INDEX_BYTES, MEASUREMENT, PICTURE, PREDICTION, PROBE,
+    Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, below, hash_of,
 };
 pub use version::VERSION;

@@ -9,6 +9,7 @@
 mod claim;
 mod commit;
 
+use crate::file_seal::SealKind;
 use crate::lock::Lock;
 use crate::{ArgumentStyle, Failure};
 use crate::{lock, sealed, unfinished};
@@ -51,7 +52,7 @@ const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
 /// The message if nothing can be written below a folder.
-pub const LINKED: &str = "a link or a file is in the place of a folder";
+pub(crate) const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// The time for which another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -81,8 +82,8 @@ pub struct Results {
     hashes: BTreeMap<String, String>,
     /// Suffixes of planned files that are not written.
     left_out: &'static [&'static str],
-    /// Whether the folder was newly created.
-    is_new: bool,
+    /// The folders that were created for the results, and that are removed if they stay empty.
+    made: Vec<PathBuf>,
     /// Files that etendue did not write. They were replaced when the moves of a dead process were
     /// completed.
     replaced: Vec<String>,
@@ -121,18 +122,21 @@ impl Results {
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
             return Err(Failure::write(folder, "it exists and is not a folder"));
         }
-        let is_new = !folder.exists();
-        fs::create_dir_all(folder).map_err(failure)?;
-        let canonical = folder.canonicalize().map_err(failure)?;
-        let path = canonical.join(LOCK);
-        let lock = unfinished::begin(vec![path.clone()], || Lock::take(&path, folder))?;
+        let made = make_folders(folder).map_err(failure)?;
+        let locked = || {
+            let canonical = folder.canonicalize().map_err(failure)?;
+            let path = canonical.join(LOCK);
+            let lock = unfinished::begin(vec![path.clone()], || Lock::take(&path, folder))?;
+            Ok((canonical, lock))
+        };
+        let (canonical, lock) = locked().inspect_err(|_| remove_folders(&made))?;
         let mut results = Self {
             folder: canonical,
             shown: folder.to_owned(),
             plan,
             hashes: BTreeMap::new(),
             left_out: &[],
-            is_new,
+            made,
             replaced: Vec::new(),
             lock: Some(lock),
         };
@@ -149,11 +153,7 @@ impl Results {
     /// Claims a folder `name` inside `out`. The user chooses `out`; below `out`, nothing is
     /// written through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
-        let folder = out.join(name);
-        if inside(out, &format!("{name}/{}", plan.index)).is_none() {
-            return Err(Failure::write(&folder, LINKED));
-        }
-        Self::claim(&folder, plan)
+        Self::claim(&below(out, name)?, plan)
     }
 
     /// Claims a folder, but waits while another process writes there, and warns if the wait is
@@ -254,7 +254,7 @@ impl Results {
         self.refuse_inputs()?;
         self.refuse_foreign()?;
         let moved = unfinished::undisturbed(|| self.commit())?;
-        self.is_new = false;
+        self.made.clear();
         let mut replaced = std::mem::take(&mut self.replaced);
         replaced.extend(moved.replaced);
         Ok(Finished {
@@ -308,16 +308,40 @@ impl Drop for Results {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
         unfinished::ended(|| drop(self.lock.take()));
-        if self.is_new {
-            // The folder is removed only if it is empty.
-            let _ = fs::remove_dir(&self.folder);
-        }
+        remove_folders(&self.made);
+    }
+}
+
+/// Creates a folder and the folders above it. Returns those that were not there, the innermost
+/// first.
+pub(crate) fn make_folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let above = folder.ancestors();
+    let missing = above.take_while(|path| *path != Path::new("") && !path.exists());
+    let missing = missing.map(Path::to_owned).collect();
+    fs::create_dir_all(folder).inspect_err(|_| remove_folders(&missing))?;
+    Ok(missing)
+}
+
+/// Removes those of the folders that are empty.
+pub(crate) fn remove_folders(folders: &Vec<PathBuf>) {
+    for folder in folders {
+        let _ = fs::remove_dir(folder);
+    }
+}
+
+/// Returns the path of the folder `name` inside `out`. Fails if this path leads out of `out`,
+/// through `..` or through a link.
+pub fn below(out: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let folder = out.join(name);
+    match inside(out, &format!("{name}/file")) {
+        Some(_) => Ok(folder),
+        None => Err(Failure::write(&folder, LINKED)),
     }
 }
 
 /// Returns the path of a file of a folder. Returns `None` if the path leads out of the folder,
 /// through `..` or through a link.
-pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();
     while let Some(component) = components.next() {
@@ -368,9 +392,22 @@ fn has_hash(path: &Path, hash: &str) -> bool {
 
 /// Returns the content of a regular file that ends with its own hash.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
+    regular_bytes(path).filter(|bytes| sealed::is_sealed(bytes))
+}
+
+/// Checks whether etendue wrote a file that no index lists: the seconds of a comparison, or a page
+/// or a picture that bears its own mark.
+fn bears_mark(name: &str, path: &Path) -> bool {
+    if name == TIMING {
+        return sealed_bytes(path).is_some();
+    }
+    let kind = SealKind::of(Path::new(name));
+    kind.is_some_and(|kind| regular_bytes(path).is_some_and(|bytes| kind.is_sealed(&bytes)))
+}
+
+fn regular_bytes(path: &Path) -> Option<Vec<u8>> {
     let bytes = || read_file(path, MAX_INDEX_BYTES).ok();
-    let bytes = is_regular(path).then(bytes).flatten();
-    bytes.filter(|bytes| sealed::is_sealed(bytes))
+    is_regular(path).then(bytes).flatten()
 }
 
 /// Returns the folders, below the results folder, that hold these files.

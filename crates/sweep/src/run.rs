@@ -14,9 +14,7 @@ use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::VERSION;
 use etendue_store::sealed::json;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{
-    Failure, LINKED, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, inside, unfinished,
-};
+use etendue_store::{Failure, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, below, unfinished};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -187,10 +185,7 @@ fn folders(
 ) -> Result<Vec<String>, Failure> {
     let name = |(scene, point): (&Scene, &SweepPoint)| {
         let name = format!("points/{}", name_of(scene, point, request));
-        match inside(folder, &format!("{name}/{SUMMARY}")) {
-            Some(_) => Ok(name),
-            None => Err(Failure::write(&folder.join(name), LINKED)),
-        }
+        below(folder, &name).map(|_| name)
     };
     all.scenes.iter().zip(&all.points).map(name).collect()
 }

@@ -1,7 +1,7 @@
 //! Reads scenes of other programs, to render pictures and to probe light fields.
 
 use etendue_import::{Imported, Options, import};
-use etendue_store::{ArgumentStyle, Failure};
+use etendue_store::{ArgumentStyle, Failure, machine};
 use etendue_world::{Camera, Light, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::PathBuf;
@@ -81,7 +81,11 @@ pub(crate) fn no_light(arguments: ArgumentStyle) -> String {
 
 /// Reads a scene; all reasons for a refusal are reported together.
 pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
-    let mut imported = import(&source.path, &source.options).map_err(Failure::bad_input)?;
+    let options = Options {
+        memory: Some(machine::available_memory()),
+        ..source.options.clone()
+    };
+    let mut imported = import(&source.path, &options).map_err(Failure::bad_input)?;
     if source.bounces.is_some() {
         imported.world.depth = source.bounces;
     }

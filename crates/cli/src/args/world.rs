@@ -113,6 +113,7 @@ impl WorldArgs {
                 root: self.root.clone(),
                 color: self.color,
                 set: self.set.clone(),
+                ..Options::default()
             },
             bounces: self.bounces,
             sky: self.sky,

@@ -2,7 +2,7 @@
 
 use super::rays::CheckRay;
 use crate::chain::stands_before;
-use etendue_field::{Patch, VirtualPlane};
+use etendue_field::{Mask, Patch, Shape, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -83,6 +83,44 @@ pub(super) struct Surroundings<'a> {
     pub(super) objects: Vec<(Object, SurroundingForm<'a>)>,
     /// Blockers that theory includes at every place where light meets them.
     pub(super) taken: Vec<TakenLayer>,
+    /// The shapes of each layer of the scene.
+    rows: Vec<Rows<'a>>,
+}
+
+/// The shapes of a layer of blockers in the order of their lower edges, so that a point is tested
+/// against the shapes of its row alone.
+struct Rows<'a> {
+    /// Shapes with their lower edges.
+    shapes: Vec<(f64, &'a Shape)>,
+    /// The largest height of a shape.
+    tallest: f64,
+}
+
+impl<'a> Rows<'a> {
+    fn new(mask: &'a Mask) -> Self {
+        let shapes: &[Shape] = match mask {
+            Mask::Opaque { shapes, .. } => shapes,
+            Mask::Grating(_) | Mask::Aperture(_) => &[],
+        };
+        let bounds = shapes.iter().map(|shape| (shape.bounds(), shape));
+        let lower = bounds.map(|(b, shape)| (b.center[1] - 0.5 * b.size[1], shape));
+        let mut lower: Vec<(f64, &Shape)> = lower.collect();
+        lower.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let heights = shapes.iter().map(|shape| shape.bounds().size[1]);
+        Self {
+            shapes: lower,
+            tallest: heights.fold(0.0, f64::max),
+        }
+    }
+
+    fn contain(&self, x: f64, y: f64) -> bool {
+        let margin = ROUNDING * (y.abs() + self.tallest);
+        let first = y - self.tallest - margin;
+        let from = self.shapes.partition_point(|(low, _)| *low < first);
+        let row = self.shapes[from..].iter();
+        let mut row = row.take_while(|(low, _)| *low <= y + margin);
+        row.any(|(_, shape)| shape.contains(x, y))
+    }
 }
 
 /// Blockers that light meets at places where the central ray does not meet them.
@@ -127,6 +165,7 @@ impl<'a> Surroundings<'a> {
             plane,
             objects,
             taken: Vec::new(),
+            rows: scene.blockers.iter().map(|b| Rows::new(&b.mask)).collect(),
         }
     }
 
@@ -247,8 +286,15 @@ impl<'a> Surroundings<'a> {
 
     fn transmittance(&self, ray: &CheckRay, index: usize) -> f64 {
         let at = self.crossing(ray, index).map(|t| ray.at(t));
-        let mask = &self.scene.blockers[index].mask;
-        at.map_or(1.0, |at| mask.transmittance(at.x, at.y))
+        let through = |at: DVec3| match &self.scene.blockers[index].mask {
+            Mask::Opaque { half_planes, .. } => {
+                let stops = self.rows[index].contain(at.x, at.y)
+                    || half_planes.iter().any(|half| half.contains(at.x, at.y));
+                f64::from(u8::from(!stops))
+            }
+            mask => mask.transmittance(at.x, at.y),
+        };
+        at.map_or(1.0, through)
     }
 }
 

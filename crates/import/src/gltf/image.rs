@@ -5,7 +5,7 @@ use super::raster_key::RasterKey;
 use super::reader::GltfReader;
 use crate::pictures;
 use etendue_field::Raster;
-use etendue_scene::Channels;
+use etendue_scene::{Channels, Fault};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -41,38 +41,29 @@ impl GltfReader<'_> {
             (None, None) => return Err("has neither uri nor bufferView".to_owned()),
         };
         let extension = extension(&bytes).ok_or("is no PNG or JPEG picture")?;
-        let raster = match level {
-            TextureChannel::Alpha { factor, cutoff } => {
-                let number = |alpha: f64| cut(factor * alpha, cutoff);
-                super::alpha::read(extension, &bytes, number)?
-            }
-            _ => {
-                let channels = pictures::decode(
-                    Path::new("image").with_extension(extension).as_path(),
-                    &bytes,
-                )?;
-                self.numbers_of(&channels, level)?
-            }
-        };
-        self.files.spend(size_of_val(raster.values()) as u64)?;
-        Ok(raster)
+        let name = Path::new("image").with_extension(extension);
+        let channels = pictures::decode(&name, &bytes, self.files.left())?;
+        pictures::counted(self.files, self.numbers_of(&channels, level))
     }
 
-    fn numbers_of(&self, channels: &Channels, level: TextureChannel) -> Result<Raster, String> {
+    fn numbers_of(&self, channels: &Channels, level: TextureChannel) -> Result<Raster, Fault> {
         let color = self.color;
-        let is_grey = channels.count == 1;
-        let raster = channels.raster(|rgb| match level {
+        let is_grey = channels.is_grey();
+        if let TextureChannel::Alpha { factor, cutoff } = level {
+            return channels.alphas(|alpha| cut(factor * alpha, cutoff));
+        }
+        let light = |value: f64| match level {
+            TextureChannel::Color(_) => pictures::linear(value),
+            _ => value,
+        };
+        channels.raster(light, |rgb| match level {
             // The value of a grey pixel is used directly, because a luminance computed from three
             // equal values would have a rounding error.
-            TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
-            TextureChannel::Color(factor) => {
-                let linear = rgb.map(pictures::linear);
-                color.of([0, 1, 2].map(|i| linear[i] * factor[i]))
-            }
+            TextureChannel::Color(factor) if is_grey => rgb[0] * color.of(factor),
+            TextureChannel::Color(factor) => color.of([0, 1, 2].map(|i| rgb[i] * factor[i])),
             TextureChannel::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
             TextureChannel::Blue(factor) => factor * rgb[2],
             TextureChannel::Alpha { .. } => 1.0,
-        });
-        raster.map_err(|fault| fault.to_string())
+        })
     }
 }

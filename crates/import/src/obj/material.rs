@@ -5,7 +5,7 @@ use super::map::MtlMap;
 use super::ply::diffuse;
 use super::reader::ObjReader;
 use super::surface::ObjSurface;
-use crate::pictures::{decode, linear};
+use crate::pictures::{counted, decode, linear};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
 use etendue_field::Raster;
 use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
@@ -178,22 +178,23 @@ impl ObjReader<'_> {
             .files
             .find(std::slice::from_ref(&map.folder), &map.file)?;
         let bytes = self.files.read(&path)?;
-        let channels = decode(&path, &bytes)?;
-        let is_curved = channels.are_levels && !raw;
-        let light = |level: f64| if is_curved { linear(level) } else { level };
-        let is_grey = channels.count == 1;
-        let raster = channels.raster(|rgb| match is_grey {
-            true => light(rgb[0]) * self.color.of(factor),
-            false => self.color.of([0, 1, 2].map(|i| factor[i] * light(rgb[i]))),
+        let channels = decode(&path, &bytes, self.files.left())?;
+        let light = |level: f64| if raw { level } else { linear(level) };
+        let is_grey = channels.is_grey();
+        let raster = channels.raster(light, |rgb| match is_grey {
+            true => rgb[0] * self.color.of(factor),
+            false => self.color.of([0, 1, 2].map(|i| factor[i] * rgb[i])),
         });
-        let raster = raster.map_err(|fault| fault.to_string())?;
-        let values = raster.values();
-        if !values.iter().all(|v| (0.0..=MAX_NUMBER).contains(v)) {
+        let raster = counted(self.files, raster)?;
+        if !raster
+            .values()
+            .iter()
+            .all(|v| (0.0..=MAX_NUMBER).contains(v))
+        {
             return Err(format!(
                 "has pixels out of range; allowed: 0 to {MAX_NUMBER:e}"
             ));
         }
-        self.files.spend(size_of_val(values) as u64)?;
         Ok(raster)
     }
 }

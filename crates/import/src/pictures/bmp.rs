@@ -1,21 +1,22 @@
 //! BMP pictures.
 
-use super::size::check_size;
-use etendue_scene::Channels;
+use super::check_size;
+use etendue_scene::{Channels, Samples};
 use zune_bmp::BmpDecoder;
 use zune_core::bytestream::ZCursor;
 use zune_core::options::DecoderOptions;
 
 /// Reads a picture. Transparency is ignored, because programs that write BMP files rarely set the
 /// transparency of pixels.
-pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let damaged = |error: zune_bmp::BmpDecoderErrors| format!("is damaged ({error:?})");
     let mut decoder = BmpDecoder::new_with_options(ZCursor::new(bytes), DecoderOptions::default());
     decoder.decode_headers().map_err(damaged)?;
     let (width, height) = decoder.dimensions().ok_or("has no size")?;
-    check_size(width, height, bytes.len())?;
     let space = decoder.colorspace().ok_or("has no colours")?;
     let each = space.num_components();
+    // The colours are copied without their transparency.
+    check_size((width, height), [each, 2], bytes.len(), memory)?;
     let levels = decoder.decode().map_err(damaged)?;
     if levels.len() != each * width * height || !matches!(each, 1 | 3 | 4) {
         return Err("does not have the number of pixels that its header states".to_owned());
@@ -25,8 +26,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     Ok(Channels {
         width,
         height,
-        values: colors.map(|level| f64::from(*level) / 255.0).collect(),
+        samples: Samples::Bytes(colors.copied().collect()),
         count,
-        are_levels: true,
     })
 }

@@ -1,13 +1,13 @@
 //! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with a shared
 //! exponent.
 
-use super::size::check_size;
-use etendue_scene::Channels;
+use super::check_size;
+use etendue_scene::{Channels, Samples};
 
 /// Maximum number of header lines.
 const MOST_LINES: usize = 1000;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let mut rest = bytes;
     if !line(&mut rest).is_some_and(|first| first.starts_with(b"#?")) {
         return Err("does not begin with the characters `#?`".to_owned());
@@ -25,21 +25,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     let (width, height) = line(&mut rest)
         .and_then(size)
         .ok_or("has no size in the form -Y height +X width")?;
-    check_size(width, height, bytes.len())?;
-    let mut values = Vec::new();
+    check_size((width, height), [3, 4], bytes.len(), memory)?;
+    let mut numbers = Vec::new();
     for _ in 0..height {
         for [r, g, b, e] in row(&mut rest, width).ok_or("ends before its last pixel")? {
-            let unit = libm::ldexp(1.0, i32::from(e) - 136);
+            // These products are exact.
+            let unit = libm::ldexpf(1.0, i32::from(e) - 136);
             let scale = if e == 0 { 0.0 } else { unit };
-            values.extend([r, g, b].map(|v| f64::from(v) * scale));
+            numbers.extend([r, g, b].map(|v| f32::from(v) * scale));
         }
     }
     Ok(Channels {
         width,
         height,
-        values,
+        samples: Samples::Numbers(numbers),
         count: 3,
-        are_levels: false,
     })
 }
 

@@ -1,9 +1,9 @@
 //! Portable float maps (Debevec 1998): 32-bit numbers, beginning with the lowest row.
 
-use super::size::check_size;
-use etendue_scene::Channels;
+use super::check_size;
+use etendue_scene::{Channels, Samples};
 
-pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let mut rest = bytes;
     let mut next = || word(&mut rest).ok_or("ends within its header");
     let count = match next()? {
@@ -13,15 +13,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     };
     let mut size = || next()?.parse().map_err(|_| "has no size");
     let (width, height): (usize, usize) = (size()?, size()?);
-    let scale: f64 = next()?.parse().map_err(|_| "has no scale")?;
-    check_size(width, height, bytes.len())?;
+    let scale: f32 = next()?.parse().map_err(|_| "has no scale")?;
+    check_size((width, height), [count, 4], bytes.len(), memory)?;
     // A negative scale means that the lowest byte comes first.
     let number = |bytes: &[u8; 4]| {
         let number = match scale < 0.0 {
             true => f32::from_le_bytes(*bytes),
             false => f32::from_be_bytes(*bytes),
         };
-        f64::from(number) * scale.abs()
+        number * scale.abs()
     };
     let row = width * count;
     let numbers = rest.as_chunks().0.get(..row * height);
@@ -29,9 +29,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     Ok(Channels {
         width,
         height,
-        values: rows.rev().flatten().map(number).collect(),
+        samples: Samples::Numbers(rows.rev().flatten().map(number).collect()),
         count,
-        are_levels: false,
     })
 }
 

@@ -1,7 +1,9 @@
 "use strict";
 // Draws the runs whose data stand in this page. Spectra are held for ρ ≥ 0: S(−ρ, −ν) = S*(ρ, ν).
 const read = (element) => JSON.parse(element.textContent);
-const runs = [...document.querySelectorAll("script.run-data")].map((element) => ({ ...read(element), folder: element.dataset.folder }));
+const all = [...document.querySelectorAll("script.run-data")].map((element) => ({ ...read(element), folder: element.dataset.folder }));
+/** Those whose data can be drawn. */
+const runs = [];
 const colors = read(document.getElementById("colors"));
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const floats = (text) => new Float32Array(bytes(text).buffer);
@@ -33,6 +35,10 @@ class Grid {
   constructor(axes, values) {
     [this.x, this.y] = axes;
     this.values = values;
+    if (values.length !== this.columns() * this.y.count) throw new RangeError("a picture has another size than its axes");
+  }
+  columns() {
+    return this.x.count;
   }
   /** The value at cell (i, j). */
   value(i, j) {
@@ -42,6 +48,9 @@ class Grid {
 
 /** One that holds ρ ≥ 0 alone. */
 class HalfGrid extends Grid {
+  columns() {
+    return (this.x.count + 1) / 2;
+  }
   value(i, j) {
     const half = (this.x.count - 1) / 2;
     const [a, b] = i >= half ? [i - half, j] : [half - i, this.y.count - 1 - j];
@@ -256,7 +265,7 @@ const fields = (value, path = "") => {
 };
 /** What distinguishes a run from the others of a scene of the same name. */
 const differences = (run) => {
-  const alike = runs.filter((other) => other.scene === run.scene).map((other) => new Map(fields(other.scene_file)));
+  const alike = all.filter((other) => other.scene === run.scene).map((other) => new Map(fields(other.scene_file)));
   const own = new Map(fields(run.scene_file));
   const names = [...new Set(alike.flatMap((other) => [...other.keys()]))];
   const differing = names.filter((name) => alike.some((other) => other.get(name) !== own.get(name)));
@@ -264,8 +273,7 @@ const differences = (run) => {
   return [...shown, ...(differing.length > 6 ? [`${differing.length - 6} more fields`] : [])].join(", ");
 };
 
-const showRun = (run) => {
-  const article = make("article", null, document.getElementById("runs"), { class: "run" });
+const showRun = (run, article) => {
   const differing = differences(run);
   make("h2", differing ? `${run.scene}: ${differing}` : run.scene, article);
   const source = run.provenance.split("\n");
@@ -276,8 +284,10 @@ const showRun = (run) => {
   const src = `data:image/svg+xml,${encodeURIComponent(run.path)}`;
   make("img", null, make("div", null, article, { class: "path" }), { src, alt: "light fields and spectra along the path" });
   if (run.explorer !== null) {
-    // Beside its results; a file has no other address than its own.
-    const href = `${encodeURI(run.folder)}explorer.html#${run.explorer}`;
+    // Beside its results; a file has no other address than its own. The address begins with ./, because a folder's
+    // name may look like another kind of address.
+    const folder = run.folder.split("/").map(encodeURIComponent).join("/");
+    const href = `./${folder}explorer.html#${encodeURI(run.explorer)}`;
     make("a", "this scene in the explorer, to be dragged", make("p", null, article), { href, class: "explorer" });
   }
   const [planes, parameters] = run.tables;
@@ -292,7 +302,23 @@ const showRun = (run) => {
   make("pre", JSON.stringify(run.scene_file, null, 2), scene);
 };
 
-runs.forEach(showRun);
+/** A run that cannot be drawn does not hide the others. */
+const tryRun = (run) => {
+  const article = make("article", null, document.getElementById("runs"), { class: "run" });
+  const before = [pictures.length, panels.length];
+  try {
+    showRun(run, article);
+    pictures.slice(before[0]).forEach((picture) => picture.draw());
+    runs.push(run);
+  } catch (error) {
+    [pictures.length, panels.length] = before;
+    article.replaceChildren();
+    make("h2", `${run.folder}: the data of this run cannot be shown`, article);
+    make("p", String(error), article, { class: "verdict fail" });
+  }
+};
+
+all.forEach(tryRun);
 const azimuth = document.getElementById("azimuth");
 const most = runs.flatMap((run) => run.planes.map((plane) => plane.azimuths)).sort((a, b) => b.length - a.length)[0] || [];
 if (runs.some((run) => run.planes.some((plane) => plane.slices))) {

@@ -1,7 +1,7 @@
 //! Collects the faults of a scene file.
 
-use etendue_scenefile::Fault;
 use etendue_scenefile::limits;
+use etendue_scenefile::{Fault, fault};
 use etendue_scenefile::{number, shown};
 use std::collections::HashSet;
 use std::fmt::Debug;
@@ -24,14 +24,18 @@ impl Faults {
         value: impl Into<String>,
         allowed: impl Into<String>,
     ) {
-        let field = field.into();
+        self.add_fault(fault(field, value.into(), allowed));
+    }
+
+    pub(super) fn add_fault(&mut self, fault: Fault) {
+        let field = fault.field;
         self.astray |= field.starts_with("path.") || field.starts_with("light.center");
         self.displaced |= self.astray || is_of_place(&field);
         self.all.push(Fault {
             field: shown(field, limits::VALUE),
-            value: shown(value.into(), limits::VALUE),
-            allowed: shown(allowed.into(), limits::ALLOWED),
-            memory: false,
+            value: shown(fault.value, limits::VALUE),
+            allowed: shown(fault.allowed, limits::ALLOWED),
+            memory: fault.memory,
         });
     }
 

@@ -6,6 +6,17 @@ use etendue_scenefile::HoleFile;
 use etendue_scenefile::limits;
 
 impl Resolver<'_> {
+    /// Checks the number of corners of a hole.
+    pub(super) fn corners(&mut self, of: &str, file: &HoleFile) {
+        if let HoleFile::Polygon { corners } = file
+            && !(3..=limits::HOLE_CORNERS).contains(&corners.len())
+        {
+            let allowed = format!("3 to {} corners", limits::HOLE_CORNERS);
+            let found = format!("{} corners", corners.len());
+            self.faults.add(format!("{of}.corners"), found, allowed);
+        }
+    }
+
     /// Returns the hole of an aperture, with coordinates as in the file; `None` if the hole is not
     /// allowed.
     pub(super) fn hole(&mut self, of: &str, file: &HoleFile) -> Option<Hole> {
@@ -20,17 +31,10 @@ impl Resolver<'_> {
             }
             HoleFile::Polygon { corners } => corners,
         };
-        let field = format!("{of}.corners");
-        if !(3..=limits::HOLE_CORNERS).contains(&corners.len()) {
-            let allowed = format!("3 to {} corners", limits::HOLE_CORNERS);
-            let found = format!("{} corners", corners.len());
-            self.faults.add(field, found, allowed);
-            return None;
-        }
         let polygon = ConvexPolygon::new(corners.clone());
         if polygon.is_none() && self.faults.all.is_empty() {
             self.faults.add(
-                field,
+                format!("{of}.corners"),
                 format!("{} corners that form no convex polygon", corners.len()),
                 "corners in order around a convex polygon, no three of them on a line",
             );

@@ -40,6 +40,11 @@ impl Resolver<'_> {
         ] {
             self.at_most(field, count as u64, what, most as u64);
         }
+        for (i, blockers) in file.blockers.iter().enumerate() {
+            if let BlockersFile::Aperture { hole, .. } = blockers {
+                self.corners(&format!("blockers[{i}].hole"), hole);
+            }
+        }
         // A single layer with too many shapes is reported later, when that layer is checked.
         let most = limits::SHAPES as u64;
         let shapes = file.blockers.iter().map(|b| shapes(b).min(most)).sum();

@@ -1,23 +1,52 @@
 //! Resolves further lights, each to a scene in which it is the only light.
 
 use super::faults::vector;
+use super::planes::gigabytes;
 use super::{Resolver, SAME_PLANE};
 use crate::scene::{Leg, MeshObject, Scene};
 use crate::triangles::Triangles;
 use etendue_field::{Frame, Light, Shape, tidy};
-use etendue_scenefile::LightFile;
+use etendue_scenefile::{Fault, LightFile, fault};
 use glam::DVec3;
 
 /// A light without offset may stand this far from the central ray, as a share of the length of
 /// the first leg. The offset is a rounding error of the frame.
 const ON_RAY: f64 = 1e-9;
+/// Bytes of a triangle and its part of the hierarchy, which is built anew.
+const TRIANGLE: f64 = 150.0;
 
 impl Resolver<'_> {
     /// Returns a scene for each further light of a scene.
     pub(super) fn other_lights(&mut self, scene: &Scene) -> Vec<Scene> {
+        self.copies(scene);
         let others = scene.file.other_lights.iter().enumerate();
         let others = others.filter_map(|(i, light)| self.other_light(i, light, scene));
         others.collect()
+    }
+
+    /// Checks that the meshes fit in memory once for each light at a depth of its own.
+    fn copies(&mut self, scene: &Scene) {
+        let lights = scene.file.other_lights.iter();
+        let depths = lights.map(|light| scene.path.frame.to_local(light.center().into()).z);
+        let copies = depths.filter(|depth| *depth != 0.0).count();
+        let triangles = scene.meshes.iter().map(|mesh| mesh.triangles.len());
+        let bytes = (triangles.sum::<usize>() * copies) as f64 * TRIANGLE;
+        if bytes > self.memory as f64 {
+            self.faults.add_fault(Fault {
+                memory: true,
+                ..fault(
+                    "other_lights",
+                    format!(
+                        "{copies} lights, which need {} for copies of all meshes",
+                        gigabytes(bytes)
+                    ),
+                    format!(
+                        "at most the available memory, {}",
+                        gigabytes(self.memory as f64)
+                    ),
+                )
+            });
+        }
     }
 
     fn other_light(&mut self, number: usize, file: &LightFile, scene: &Scene) -> Option<Scene> {
@@ -51,6 +80,10 @@ impl Resolver<'_> {
         };
         self.depth(&name, depth, scene);
         let planes = scene.planes.iter();
+        if !self.faults.all.is_empty() {
+            // To move a large scene takes long.
+            return None;
+        }
         let mut planes: Vec<_> = planes.filter(|p| p.distance >= depth).cloned().collect();
         for plane in &mut planes {
             plane.distance -= depth;

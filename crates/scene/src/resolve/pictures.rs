@@ -6,9 +6,9 @@ use crate::picture;
 use etendue_field::{
     Environment, EnvironmentMap, Frame, LatLong, Light, Pattern, Picture, Raster, SphericalGaussian,
 };
-use etendue_scenefile::EnvironmentFile;
 use etendue_scenefile::limits::MAX_NUMBER;
 use etendue_scenefile::number;
+use etendue_scenefile::{EnvironmentFile, Fault};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
@@ -123,11 +123,12 @@ impl Resolver<'_> {
         most: f64,
     ) -> Option<Raster> {
         let bytes = self.named_file(of, path)?;
-        let raster =
-            picture::parse(Path::new(path), &bytes, extensions, self.color).map_err(|fault| {
-                let field = format!("{of}, {path:?}: {}", fault.field);
-                self.faults.add(field, fault.value, fault.allowed);
-            });
+        let file = Path::new(path);
+        let raster = picture::parse(file, &bytes, extensions, self.color, self.memory);
+        let raster = raster.map_err(|fault| {
+            let field = format!("{of}, {path:?}: {}", fault.field);
+            self.faults.add_fault(Fault { field, ..fault });
+        });
         let raster = raster.ok()?;
         let mut values = raster.values().iter();
         if let Some(pixel) = values.position(|value| !(0.0..=most).contains(value)) {

@@ -364,7 +364,8 @@ impl Resolver<'_> {
 
     /// Checks that the spectra of all batches fit in memory, because all spectra are kept until
     /// the errors are known.
-    pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
+    pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32) {
+        let memory = self.memory;
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
         // Memory holds the spectra of all batches and their residuals. A hundred further copies of
@@ -389,7 +390,7 @@ impl Resolver<'_> {
     }
 }
 
-fn gigabytes(bytes: f64) -> String {
+pub(super) fn gigabytes(bytes: f64) -> String {
     format!("{:.1} GB", bytes / 1e9)
 }
 

@@ -1,6 +1,6 @@
 //! Checks the content of a results folder before anything is written to it.
 
-use super::{LINKED, Results, TIMING, UNFINISHED, has_hash, inside, listed, sealed_bytes};
+use super::{LINKED, Results, UNFINISHED, bears_mark, has_hash, inside, listed};
 use crate::Failure;
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -87,7 +87,7 @@ impl Results {
         match earlier.get(name) {
             Some(hash) => has_hash(path, hash),
             None if name == self.plan.index => listed(path).is_some(),
-            None => name == TIMING && sealed_bytes(path).is_some(),
+            None => bears_mark(name, path),
         }
     }
 }

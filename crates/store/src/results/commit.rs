@@ -6,7 +6,7 @@
 //! undone if one move fails.
 
 use super::{
-    LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
+    LINKED, Results, TIMING, UNFINISHED, bears_mark, has_hash, is_regular, listed, parents,
 };
 use crate::{ArgumentStyle, Failure};
 use std::fs::{self, File};
@@ -137,10 +137,6 @@ impl Results {
                 }
             }
         }
-        let timing = self.folder.join(TIMING);
-        if waits(TIMING) && sealed_bytes(&timing).is_some() {
-            moved.file(timing, self.aside(TIMING))?;
-        }
         let timing = TIMING.to_owned();
         for name in new.keys().chain([&timing]).filter(|name| waits(name)) {
             self.place(self.staged(name), name, moved)?;
@@ -153,17 +149,20 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `force`, a file that etendue did not write is first
-    /// moved aside.
+    /// Moves a new file to its name. A file that bears a mark is first moved aside; with `force`,
+    /// also a file that etendue did not write.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
             Failure::write(&shown, LINKED)
         })?;
-        if self.plan.force && is_regular(&to) {
+        let is_own = bears_mark(name, &to);
+        if is_own || self.plan.force && is_regular(&to) {
             let replaced = self.folder.join(UNFINISHED).join("replaced");
             moved.file(to.clone(), replaced.join(name))?;
-            moved.replaced.push(name.to_owned());
+            if !is_own {
+                moved.replaced.push(name.to_owned());
+            }
         }
         moved.file(from, to)
     }

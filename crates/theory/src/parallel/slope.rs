@@ -9,6 +9,7 @@
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
 use std::f64::consts::{PI, TAU};
+use std::sync::{Mutex, PoisonError};
 
 /// The elimination stops at this residual, relative to the largest value of the function.
 const RANK_RESIDUAL: f64 = 6e-9;
@@ -24,6 +25,13 @@ const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
 /// The largest allowed coefficient of a cosine series. Terms with larger coefficients would nearly
 /// cancel, which amplifies rounding errors.
 const LARGEST_COEFFICIENT: f64 = 30.0;
+
+/// Maximum number of expansions that are kept.
+const MOST_KEPT: usize = 64;
+
+/// The expansions computed last, with their profiles and powers. Estimates of work and predictions
+/// ask for the same expansion many times.
+static KEPT: Mutex<Vec<([Profile; 2], f64, Slope)>> = Mutex::new(Vec::new());
 
 /// The function W(u) W(v) (1 + u² + v²)^p inside a window.
 #[derive(Clone, Debug)]
@@ -47,6 +55,23 @@ impl Slope {
                 is_profile: true,
             };
         }
+        let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |known: &&([Profile; 2], f64, Self)| {
+            known.0.iter().eq(profiles) && known.1.total_cmp(&power).is_eq()
+        };
+        if let Some((.., slope)) = kept().iter().find(is_same) {
+            return slope.clone();
+        }
+        let slope = Self::expanded(profiles, power);
+        let mut kept = kept();
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((profiles.map(Clone::clone), power, slope.clone()));
+        slope
+    }
+
+    fn expanded(profiles: [&Profile; 2], power: f64) -> Self {
         let nodes = profiles.map(|p| nodes(p.half_width()));
         let value = |u: f64, v: f64| {
             profiles[0].value(u) * profiles[1].value(v) * libm::pow(1.0 + u * u + v * v, power)
