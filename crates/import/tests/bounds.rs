@@ -92,3 +92,43 @@ fn notes_are_bounded() {
     assert_eq!(many.len(), 101);
     assert_eq!(many[100], "text: and 4900 more notes");
 }
+
+/// Pictures of a scene share its memory: a million pixels take 8 MB each as numbers, and 8 MB more
+/// while their file is read.
+#[test]
+fn pictures_are_counted_before_they_are_decoded() {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1000, 1000);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&vec![128; 8_000_000]).unwrap();
+    writer.finish().unwrap();
+    let shape = |i: usize| {
+        format!(
+            r#"<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="{i}.png"/></texture></bsdf></shape>"#
+        )
+    };
+    let scene: String = (0..4).map(shape).collect();
+    let scene = format!("<scene version=\"3.0.0\">{scene}</scene>");
+    let names: Vec<String> = (0..4).map(|i| format!("{i}.png")).collect();
+    let mut files: Vec<(&str, &[u8])> = names.iter().map(|n| (&**n, &*bytes)).collect();
+    files.push(("s.xml", scene.as_bytes()));
+    let folder = folder(&files);
+    let read = |memory: u64| {
+        let options = Options {
+            memory: Some(memory),
+            ..Options::default()
+        };
+        import(&folder.path().join("s.xml"), &options)
+    };
+    // The files themselves take less than a megabyte.
+    assert!(read(3 * 8_000_000 + 16_000_000 + 1_000_000).is_ok());
+    let refused = read(2 * 8_000_000 + 16_000_000 - 1).unwrap_err();
+    assert_eq!(refused.causes.len(), 2, "{refused}");
+    let message = &refused.causes[0].message;
+    assert!(
+        message.contains("the memory to read the picture is 16000000 bytes"),
+        "{message}"
+    );
+}

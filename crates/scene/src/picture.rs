@@ -301,11 +301,12 @@ fn png(bytes: &[u8], memory: u64) -> Result<Channels, Fault> {
     let packed = height.checked_mul(info.raw_row_length());
     let mut size = PictureSize {
         pixels: width.checked_mul(height),
-        channels: 1,
-        bytes: 1,
+        channels: 4,
+        bytes: 0,
         packed: Some(packed.unwrap_or(usize::MAX)),
     };
-    // The reader allocates memory for a row.
+    // The reader allocates memory for a row, so the size is checked first, as if every pixel had
+    // four values.
     size.check(bytes.len(), memory)?;
     let mut reader = decoder.read_info().map_err(unsound)?;
     let (color, depth) = reader.output_color_type();

@@ -32,7 +32,12 @@ fn text(map: &str) -> String {
 }
 
 fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
-    resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
+    resolved_within(u64::MAX, text, folder)
+}
+
+/// Resolves a scene on a machine with the given memory.
+fn resolved_within(memory: u64, text: &str, folder: &Path) -> Result<Scene, SceneError> {
+    resolve("test", SceneFile::parse(text)?, folder, memory)
 }
 
 /// Writes an OpenEXR file of channels with the same size.
@@ -414,4 +419,28 @@ fn a_picture_without_dark_pixels_is_refused_as_a_mask() {
         error,
         "blockers[0].file is \"wall.png\" with 0 opaque rectangles; allowed: a picture whose pixels below 0.5 form 1 to 100000 rectangles"
     );
+}
+
+/// A picture is counted before it is decoded: its pixels as the file holds them, and one number of
+/// eight bytes for each.
+#[test]
+fn a_picture_that_does_not_fit_into_memory_is_refused() {
+    let folder = folder();
+    let file = folder.path().join("wall.png");
+    // 3 × 2 pixels of four channels with two bytes each.
+    let bytes = [128; 48];
+    write_png(&file, png::ColorType::Rgba, png::BitDepth::Sixteen, &bytes);
+    let needed = 3 * 2 * (4 * 2 + 8);
+    let error = resolved_within(needed - 1, &text(LOBES), folder.path()).unwrap_err();
+    let SceneError::Values(faults) = &error else {
+        panic!("{error}")
+    };
+    let of_picture = faults
+        .iter()
+        .find(|f| f.field.contains("wall.png"))
+        .unwrap();
+    assert!(of_picture.memory, "{error}");
+    assert_eq!(of_picture.value, format!("{needed} bytes"));
+    let error = resolved_within(needed, &text(LOBES), folder.path()).unwrap_err();
+    assert!(!error.to_string().contains("wall.png"), "{error}");
 }

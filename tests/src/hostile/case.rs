@@ -46,6 +46,8 @@ pub(crate) struct Attack {
     pub(crate) arguments: Vec<String>,
     /// A second command, which is run on the input if the first command accepts it.
     pub(crate) then: Option<Vec<String>>,
+    /// The number of files that the second command may open at once; `None` if all it needs.
+    pub(crate) open_files: Option<usize>,
     /// The files before the mutation, if a run on these files may also be slow; a slow run on
     /// mutated files is then not a fault.
     pub(crate) sound: Option<Folder>,
@@ -65,7 +67,8 @@ pub(crate) enum HostileFault {
     /// The process wrote a file outside the folder of results, or wrote any file although its
     /// exit code is 2.
     Wrote,
-    /// The process wrote no error message, or a message that is long or has control characters.
+    /// The process wrote no error message, or a message that is long or has control characters, or
+    /// a script with a line from an argument.
     Message,
     /// The process accepted a damaged input, and its result differs from the result for the valid
     /// input.
@@ -91,6 +94,9 @@ pub(crate) struct CaseOutcome {
     /// The command lines of a case and their outcomes, for inspection.
     pub(crate) log: String,
 }
+
+/// A word that some arguments contain at the beginning of a line.
+pub(crate) const INJECTED: &str = "INJECTED";
 
 /// Name of the input folder, which is inside the folder of the case.
 const WORK: &str = "work";
@@ -142,7 +148,19 @@ fn step(
     outcome: &mut CaseOutcome,
 ) -> io::Result<Ended> {
     let place = at.join("case");
-    let ended = child::call(program, &place.join(WORK), arguments, at)?;
+    let files = attack
+        .open_files
+        .filter(|_| attack.then.as_deref() == Some(arguments));
+    let work = place.join(WORK);
+    let ended = match files {
+        None => child::call(program, &work, arguments, at)?,
+        Some(files) => {
+            let script = format!("ulimit -n {files}; exec \"$0\" \"$@\"");
+            let program = program.to_string_lossy().into_owned();
+            let line = [&["-c".to_owned(), script, program], arguments].concat();
+            child::call(Path::new("sh"), &work, &line, at)?
+        }
+    };
     let mut faults = faults(&ended);
     let mut wrong = wrote(attack, arguments, &ended, &place)?;
     if !wrong.is_empty() {
@@ -191,6 +209,8 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     let known = matches!(ended.code, None | Some(0..=4));
     let refused = matches!(ended.code, Some(2 | 3)) && !panicked && !aborted;
     let control = |c: char| c.is_control() && c != '\n';
+    let script = String::from_utf8_lossy(&ended.stdout);
+    let injected = script.lines().any(|line| line.starts_with(INJECTED));
     let unfit = message.trim().is_empty()
         || message.len() > 8192
         || message.contains(control)
@@ -200,7 +220,7 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
         (HostileFault::Abort, aborted),
         (HostileFault::Slow, slow),
         (HostileFault::Large, large),
-        (HostileFault::Message, refused && unfit),
+        (HostileFault::Message, injected || refused && unfit),
     ]
     .into_iter()
     .filter_map(|(fault, is)| is.then_some(fault))

@@ -35,6 +35,8 @@ const TEXTURE: &str = r#"(
 
 /// Width and height of the pictures.
 const SIZE: [usize; 2] = [16, 8];
+/// Number of pixels of a large picture, across and down.
+const LARGE: [usize; 2] = [8000, 4000];
 
 /// Valid pictures: OpenEXR, then PNG.
 pub(crate) fn seeds() -> io::Result<[Vec<Vec<u8>>; 2]> {
@@ -65,10 +67,16 @@ pub(crate) fn seeds() -> io::Result<[Vec<Vec<u8>>; 2]> {
     ] {
         for depth in [png::BitDepth::Eight, png::BitDepth::Sixteen] {
             if (color, depth) != (png::ColorType::Indexed, png::BitDepth::Sixteen) {
-                png.push(one_png(color, depth)?);
+                png.push(one_png(SIZE, color, depth)?);
             }
         }
     }
+    // A small file with many pixels.
+    png.push(one_png(
+        LARGE,
+        png::ColorType::Rgba,
+        png::BitDepth::Sixteen,
+    )?);
     Ok([exr, png])
 }
 
@@ -110,9 +118,9 @@ fn one_exr(
     Ok(bytes.into_inner())
 }
 
-fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
+fn one_png(size: [usize; 2], color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let [width, height] = SIZE.map(|n| u32::try_from(n).unwrap_or(1));
+    let [width, height] = size.map(|n| u32::try_from(n).unwrap_or(1));
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
@@ -124,7 +132,7 @@ fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
     } else {
         1
     };
-    let count = SIZE[0] * SIZE[1] * color.samples() * wide;
+    let count = size[0] * size[1] * color.samples() * wide;
     let data: Vec<u8> = (0..count).map(|i| (i % 251).to_le_bytes()[0]).collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&data)?;

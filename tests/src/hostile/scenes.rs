@@ -1,6 +1,6 @@
 //! Mutated scene files, and the scenes of the repository from which they are derived.
 
-use super::case::Attack;
+use super::case::{Attack, INJECTED};
 use super::dice::Dice;
 use super::folder::Folder;
 use super::text;
@@ -41,6 +41,9 @@ const WORDS: [&str; 30] = [
     "Plain",
     "true",
 ];
+
+/// Names of folders for results. In some of them, a line begins.
+const FOLDERS: [&str; 5] = ["out", "a\nEND\nLINE", "a\rLINE", "a'\nLINE", "'; LINE"];
 
 /// Returns the texts of all scenes of the repository, without their comments.
 pub(crate) fn seeds() -> io::Result<Vec<String>> {
@@ -89,10 +92,17 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     ]);
     // Two azimuths are enough to test how the program treats values of fields.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
+    let mut then: Vec<String> = words(&run);
+    if dice.one_in(8) {
+        then = words("split scene.ron --parts 2 --out");
+        then.push(FOLDERS[dice.below(FOLDERS.len())].replace("LINE", INJECTED));
+        then.extend(dice.one_in(2).then(|| "--slurm".to_owned()));
+    }
     Attack {
         files,
         arguments: words("check scene.ron"),
-        then: dice.one_in(8).then(|| words(&run)),
+        then: dice.one_in(8).then_some(then),
+        open_files: dice.one_in(2).then(|| 3 + dice.below(13)),
         sound: None,
         summary: None,
     }

@@ -114,6 +114,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         files,
         arguments: words(COMPARE),
         then: None,
+        open_files: None,
         sound: None,
         summary,
     })
