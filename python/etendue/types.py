@@ -116,7 +116,7 @@ class BlockersMeshFields(TypedDict):
 
 
 class BlockersPicture(TypedDict):
-    """Opaque pixels of a picture: a pixel is opaque if its value, or the luminance or selected channel of its colour, is below 0.5; alpha is ignored. X points to the right of the picture and Y to its top; outside, all is clear."""
+    """Opaque pixels of a picture: a pixel is opaque if its value, or the luminance or selected channel of its colour, is below 0.5; alpha is ignored. The levels of a PNG file count as they are stored, without the transfer curve of sRGB. X points to the right of the picture and Y to its top; outside, all is clear."""
 
     Picture: "BlockersPictureFields"
 
@@ -576,7 +576,7 @@ class PatternCosineFields(TypedDict):
 
 
 class PatternPicture(TypedDict):
-    """A picture centred on the vertex, with the value 0 outside. X points to its right and Y to its top, as seen from the side that the surface faces."""
+    """A picture centred on the vertex, with the value 0 outside. The levels of a PNG file count as they are stored, without the transfer curve of sRGB. X points to its right and Y to its top, as seen from the side that the surface faces."""
 
     Picture: "PatternPictureFields"
 
@@ -764,7 +764,7 @@ class SurfaceMeshFields(TypedDict):
 
 
 class SurfaceRectangle(TypedDict):
-    """A Lambertian rectangle, with edges along X and Y by default."""
+    """A Lambertian rectangle, with edges along X and Y by default. For a mirror or a glossy surface, use `Smooth` with `form: Plane`."""
 
     Rectangle: "SurfaceRectangleFields"
 
@@ -869,7 +869,7 @@ MeshSource = Union["MeshSourceFile", "MeshSourceParaboloid", "MeshSourceStar"]
 """The source of a mesh."""
 
 Orientation = Union[Literal["Orthogonal"], Literal["Tangent"], Literal["LocalNormals"], Literal["Mirrored"]]
-"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md). Directions point away from the surface, so the directions of arriving light are reversed. A direction has the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation."""
+"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md). Directions point away from the surface, so the directions of arriving light are reversed. A direction has the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation. The coordinates of a ray are its position along T and B, θ − θ₁ and φ, where θ₁ is the θ of the central ray; the window and the spectrum are those of θ − θ₁ and φ."""
 
 Pattern = Union["PatternCosine", "PatternCheckerboard", "PatternPicture"]
 """A number from 0 to 1 at each place of a surface."""

@@ -31,18 +31,20 @@ pub enum Quantity {
 ///
 /// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md). Directions
 /// point away from the surface, so the directions of arriving light are reversed. A direction has
-/// the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation.
+/// the form cos φ (sin θ T + cos θ N) + sin φ B, which is the plane-sphere parameterisation. The
+/// coordinates of a ray are its position along T and B, θ − θ₁ and φ, where θ₁ is the θ of the
+/// central ray; the window and the spectrum are those of θ − θ₁ and φ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane orthogonal to the central ray, in two-plane parameterisation.
     #[default]
     Orthogonal,
-    /// The tangent plane at the point where the central ray hits the surface. Positions are along T
-    /// and B, and angles are relative to the normal N at this point.
+    /// The tangent plane at the point where the central ray hits the surface. Positions are those
+    /// on this plane; θ and φ are measured from the normal N at this point.
     Tangent,
-    /// The surface itself. Positions along T and B are the coordinates of the point that the ray
-    /// hits. Angles are relative to the normal at the point that the ray hits; T and B are turned
-    /// together with the normal, by the smallest angle.
+    /// The surface itself. Positions are the coordinates of the point that the ray hits. θ and φ
+    /// are measured from the normal at the point that the ray hits, but θ₁ from the normal N; T and
+    /// B are turned together with the normal, by the smallest angle.
     LocalNormals,
     /// As `LocalNormals`, but arriving light is rotated about the normal into the direction of mirror
     /// reflection (Durand et al. 2005, Fig. 10, step 4).
@@ -74,8 +76,8 @@ pub struct VirtualPlane {
     pub quantity: Quantity,
     /// The reference for the plane's coordinates.
     pub orientation: Orientation,
-    /// The angle θ of the central ray on a surface, radians; 0 on an orthogonal plane. The
-    /// coordinates of rays are (x, y, θ − longitude, φ).
+    /// The angle θ₁ of the central ray on a surface, radians; 0 on an orthogonal plane. The
+    /// coordinates of rays are (x, y, θ − θ₁, φ).
     pub longitude: f64,
     /// The plane's frame, whose origin O is on the central ray. D is along the central ray; on a
     /// surface, X = T, Y = B and D = N.

@@ -63,8 +63,9 @@ pub enum BlockersFile {
         fill: f64,
     },
     /// Opaque pixels of a picture: a pixel is opaque if its value, or the luminance or selected
-    /// channel of its colour, is below 0.5; alpha is ignored. X points to the right of the picture
-    /// and Y to its top; outside, all is clear.
+    /// channel of its colour, is below 0.5; alpha is ignored. The levels of a PNG file count as they
+    /// are stored, without the transfer curve of sRGB. X points to the right of the picture and Y
+    /// to its top; outside, all is clear.
     Picture {
         /// Name.
         #[schemars(transform = name_of_blockers)]

@@ -53,7 +53,8 @@ pub enum MeshSource {
 #[serde(rename = "Surface", deny_unknown_fields)]
 #[schemars(transform = told("a surface", r#"Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))"#))]
 pub enum SurfaceFile {
-    /// A Lambertian rectangle, with edges along X and Y by default.
+    /// A Lambertian rectangle, with edges along X and Y by default. For a mirror or a glossy
+    /// surface, use `Smooth` with `form: Plane`.
     Rectangle {
         /// Name by which the path and the planes refer to the surface.
         #[schemars(transform = name)]
@@ -298,8 +299,9 @@ pub enum PatternFile {
     },
     /// A checkerboard of the values 1 and 0 with this period, which is twice the side of a square.
     Checkerboard(f64),
-    /// A picture centred on the vertex, with the value 0 outside. X points to its right and Y to its
-    /// top, as seen from the side that the surface faces.
+    /// A picture centred on the vertex, with the value 0 outside. The levels of a PNG file count as
+    /// they are stored, without the transfer curve of sRGB. X points to its right and Y to its top,
+    /// as seen from the side that the surface faces.
     Picture {
         /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
         /// and must stay inside its folder.
