@@ -404,6 +404,22 @@ fn dark_pixels_are_opaque() {
     }
 }
 
+/// A red filter stops green light, and is clear for red light.
+#[test]
+fn a_filter_is_clear_in_its_own_channel() {
+    let folder = folder();
+    let file = folder.path().join("wall.png");
+    let pixels = [255, 0, 0].repeat(6);
+    write_png(&file, png::ColorType::Rgb, png::BitDepth::Eight, &pixels);
+    for (color, passes) in [("Red", 1.0), ("Green", 0.0), ("Luminance", 0.0)] {
+        let file = SceneFile::parse(MASKED).unwrap();
+        let file = file.with("run.color", color).unwrap();
+        let scene = resolve("test", file, folder.path(), u64::MAX).unwrap();
+        let found = scene.blockers[0].mask.transmittance(0.1, 0.0);
+        assert!(found.total_cmp(&passes).is_eq(), "{color}: {found}");
+    }
+}
+
 #[test]
 fn a_picture_without_dark_pixels_is_refused_as_a_mask() {
     let folder = folder();

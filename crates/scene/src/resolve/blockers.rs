@@ -8,7 +8,7 @@ use crate::scene::BlockerLayer;
 use etendue_field::{Disc, Frame, Grating, HalfPlane, Hole, Mask, Rectangle, Shape, tidy};
 use etendue_scenefile::limits;
 use etendue_scenefile::number;
-use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
+use etendue_scenefile::{BlockersFile, Color, HalfName, LightFile, SceneFile, ShapeFile};
 use glam::DVec3;
 
 /// The approximate number of rectangles into which a prediction divides a disc of a mask.
@@ -183,10 +183,12 @@ impl Resolver<'_> {
             return Vec::new();
         };
         let rectangles = dark_rectangles(&raster, center, size);
-        if !(1..=limits::SHAPES).contains(&rectangles.len()) {
+        // A colour filter is clear in one channel.
+        let least = usize::from(self.color == Color::Luminance);
+        if !(least..=limits::SHAPES).contains(&rectangles.len()) {
             let found = format!("{file:?} with {} opaque rectangles", rectangles.len());
             let allowed = format!(
-                "a picture whose pixels below 0.5 form 1 to {} rectangles",
+                "a picture whose pixels below 0.5 form {least} to {} rectangles",
                 limits::SHAPES
             );
             self.faults.add(field, found, allowed);
@@ -293,7 +295,8 @@ impl Resolver<'_> {
             LightFile::Disc { .. } => STRIPS,
             _ => 1.0,
         };
-        let product: f64 = light * layers.iter().map(terms).product::<f64>();
+        let terms = layers.iter().map(terms);
+        let product: f64 = light * terms.map(|terms| terms.max(1.0)).product::<f64>();
         if product > limits::PRODUCTS {
             let most = limits::PRODUCTS;
             let allowed = format!(
