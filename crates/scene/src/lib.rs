@@ -34,8 +34,8 @@ pub use etendue_scenefile::{
     EnvironmentFile, EventFile, Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile,
     HalfName, HoleFile, ImageFile, LightFile, LobeFile, MeshSource, PathFile, PatternFile, Place,
     PlaneFile, RunFile, Sampling, SceneError, SceneFile, SceneFormat, ShapeFile,
-    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, limits, nearest, page, schema, shown,
-    unit,
+    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, dotted, limits, nearest, page,
+    schema, shown, unit,
 };
 pub use mesh::{DetailedMesh, Mesh, MeshAttribute, ObjFile, ObjPart};
 pub use picture::{Channels, PictureSize, Samples, read_channels};

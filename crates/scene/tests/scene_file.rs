@@ -279,7 +279,10 @@ fn overrides_reach_every_kind_of_field() {
         other => panic!("an area light became {other:?}"),
     };
     assert_eq!(area("light.radiance", "2").1, 2.0);
-    assert_eq!(squares_of(&scene("blockers.0.count.1", "3")).len(), 60);
+    // A field is named as in `--set`, or as in messages.
+    for path in ["blockers.0.count.1", "blockers[0].count[1]"] {
+        assert_eq!(squares_of(&scene(path, "3")).len(), 60);
+    }
     assert_eq!(
         scene("frequencies.rho.spacing", "0.5").planes[0]
             .grid
@@ -309,6 +312,7 @@ fn overrides_reach_every_kind_of_field() {
     for (path, value, part) in [
         ("run.photon", "3", "photons"),
         ("planes.9.name", "a", "0 to 4"),
+        ("planes[9].name", "a", "0 to 4"),
         ("run.photons", "many", "invalid type"),
         ("window.x.Box", "0.2", "allowed: Hann, or the whole item"),
         ("description.a", "b", "nothing: a value has no fields"),

@@ -31,5 +31,6 @@ pub use file::{
 };
 pub use hints::unit;
 pub use page::page;
+pub use place::dotted;
 pub use schema::schema;
 pub use suggestion::{did_you_mean, nearest};

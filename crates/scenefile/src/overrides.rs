@@ -1,14 +1,17 @@
 //! Sets fields given on the command line.
 
 use crate::display::shown;
-use crate::messages::unfit;
+use crate::hints::wanted;
+use crate::messages::{path_of, unfit};
+use crate::place::dotted;
 use crate::suggestion::did_you_mean;
 use crate::whole_number::whole;
 use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 
 impl SceneFile {
-    /// Returns the scene file with the field at `path` (such as `blockers.0.fill`) set to `value`.
+    /// Returns the scene file with the field at `path` (such as `blockers.0.fill`, or
+    /// `blockers[0].fill` as in messages) set to `value`.
     ///
     /// Names of variants (`Rectangle`, `JitteredSquares`) may be left out of the path.
     ///
@@ -22,7 +25,16 @@ impl SceneFile {
         };
         let mut tree = self.tree().map_err(|e| fault(e.to_string()))?;
         set(&mut tree, path, value).map_err(fault)?;
-        serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
+        serde_path_to_error::deserialize(tree).map_err(|error| {
+            let count = |brackets: &str| value.chars().filter(|c| brackets.contains(*c)).count();
+            fault(match count("([") > count(")]") {
+                true => format!(
+                    "a bracket is still open; allowed: {}",
+                    wanted(&path_of(error.path()))
+                ),
+                false => unfit(&error),
+            })
+        })
     }
 
     /// Returns the scene file after several fields have been set, one after the other, by
@@ -71,7 +83,7 @@ impl SceneFile {
 /// Sets the value at `path` below a node.
 fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     let mut place = tree;
-    for name in path.split('.') {
+    for name in dotted(path).split('.') {
         let refusal = refusal(place, name);
         place = step(place, name).ok_or(refusal)?;
     }

@@ -14,6 +14,12 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) value: &'a str,
 }
 
+/// Returns a path such as `blockers[0].fill` in the notation of `--set`: `blockers.0.fill`.
+#[must_use]
+pub fn dotted(path: &str) -> String {
+    path.replace('[', ".").replace(']', "")
+}
+
 /// Splits a path such as `blockers[0].fill` or `blockers.0.fill` into names and indices. Names of
 /// variants are left out, and the result ends before the first invalid name.
 pub(crate) fn steps(path: &str) -> Vec<&str> {

@@ -1,6 +1,7 @@
 //! The values that fields of a scene take in a sweep.
 
 use etendue_field::tidy;
+use etendue_scene::dotted;
 use etendue_store::{ArgumentStyle, Failure};
 
 /// A field of the scene and its values.
@@ -36,7 +37,7 @@ pub fn setting(text: &str) -> Result<Setting, String> {
 /// Returns the setting of a field to one or several values. `values` has the notation that `--set`
 /// of a sweep accepts after `PATH=`.
 pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<Setting, String> {
-    let [path, values] = [path, values].map(|part| part.trim().to_owned());
+    let (path, values) = (dotted(path.trim()), values.trim().to_owned());
     let is_plain = !values.contains(['(', '[', '"']);
     let is_range = is_plain
         && values
@@ -71,7 +72,7 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
         .split_once('=')
         .ok_or_else(|| allowed("no field is named", ArgumentStyle::Command))?;
     Ok(Sweep {
-        path: path.trim().to_owned(),
+        path: dotted(path.trim()),
         values: values_of(values).map_err(|why| allowed(&why, ArgumentStyle::Command))?,
     })
 }
@@ -91,7 +92,10 @@ impl Sweep {
             None if !(1..=MAX_POINTS).contains(&values.len()) => {
                 refused(&format!("there are {} values", values.len()))
             }
-            None => Ok(Self { path, values }),
+            None => Ok(Self {
+                path: dotted(&path),
+                values,
+            }),
         }
     }
 }
