@@ -1,9 +1,9 @@
-//! Finds planes that no light reaches because of objects on the first leg.
+//! Finds planes that no light reaches, because of objects on the first leg or black surfaces.
 
 use crate::chain::stands_before;
 use crate::theories::Theory;
 use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
-use etendue_scene::{BlockerLayer, Object, Scene};
+use etendue_scene::{BlockerLayer, Event, Object, Scene};
 
 /// The lowest and highest coordinate of a rectangle along each of two axes.
 type Extent = [[f64; 2]; 2];
@@ -25,6 +25,11 @@ const MOST_PARTS: usize = 4096;
 /// set of these rays to a convex polygon, which is empty if no ray passes. No ray passes either if a
 /// layer covers every place where rays cross its plane.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
+    let visited = scene.path.legs[1..=plane.leg].iter();
+    let mut visited = visited.filter_map(|leg| Some(leg.leaves.as_ref()?.object));
+    if let Some(black) = visited.find(|object| is_black(scene, *object)) {
+        return Some(format!("{} reflects no light", scene.name_of(black)));
+    }
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
         stands_before(layer.distance, scene, plane) && theory.has_all_light_meet(layer)
@@ -55,6 +60,18 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         .into_iter()
         .find(|layer| covers(layer, &sections, scene, plane));
     covering.map(|layer| format!("{} blocks all paths of light", layer.name))
+}
+
+/// Checks whether a surface reflects no light because each of its albedos is 0.
+fn is_black(scene: &Scene, object: Object) -> bool {
+    match object {
+        Object::Surface(i) => scene.surfaces[i].albedo <= 0.0,
+        Object::Mesh(i) => scene.meshes[i].albedo.is_some_and(|albedo| albedo <= 0.0),
+        Object::Patch(i) => match &scene.patches[i].event {
+            Event::Reflects(sum) => sum.terms.iter().all(|term| term.brdf.albedo <= 0.0),
+            Event::Specular(_) => false,
+        },
+    }
 }
 
 /// Returns the edges across an axis beyond which a mask is opaque: the edges of half-planes, or the

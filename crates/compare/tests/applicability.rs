@@ -263,6 +263,38 @@ fn darkness_has_a_reason() {
     }
 }
 
+/// A surface whose albedos are all 0 sends no light on, whatever its kind.
+#[test]
+fn surfaces_that_reflect_no_light_leave_darkness() {
+    let smooth = |event: &str| {
+        format!(
+            r#"Smooth(name: "floor", center: (0, 0, 1), {AT_45}, form: Plane, aperture: 0.4, event: {event})"#
+        )
+    };
+    let sum = |albedo: f64| {
+        smooth(&format!(
+            "Sum(terms: [(brdf: (lobe: Phong(20), albedo: 0)), (brdf: (lobe: Lambertian, albedo: {albedo}))])"
+        ))
+    };
+    let rectangle = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (4, 4), albedo: 0)"#;
+    for (surface, is_dark) in [
+        (rectangle, true),
+        (
+            &smooth("Reflects(brdf: (lobe: Lambertian, albedo: 0))"),
+            true,
+        ),
+        (&sum(0.0), true),
+        (&sum(0.1), false),
+        (&smooth("Mirror"), false),
+    ] {
+        for (at, is_after) in [(r#"After("floor")"#, true), (r#"Before("floor")"#, false)] {
+            let found = of(&scene(LIGHT, "", surface, r#""floor""#, at, 0.1));
+            let reason = (is_dark && is_after).then_some("floor reflects no light");
+            assert_eq!(found.dark.as_deref(), reason, "{surface} {at}");
+        }
+    }
+}
+
 /// A light that is kilometres wide shines past a half-plane that would cover its middle.
 #[test]
 fn a_huge_light_is_not_taken_for_dark() {
