@@ -1,6 +1,6 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{Hole, Light, Patch, Shape};
+use etendue_field::{Hole, Light, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// an element of a system.
@@ -18,8 +18,8 @@ pub enum Parameter {
     /// the plane. If the length changes, all elements after the leg and the plane move along D.
     Travel(usize),
     /// The size of the first shape of an opaque mask, or of the hole of an aperture. For a
-    /// rectangle, it is the side along X; for a disc, it is the radius; for a polygon, it is the
-    /// extent along X. All shapes of the mask scale by the same factor about their centres, and a
+    /// rectangle, it is the side along X; for a bar, which is a rectangle of unlimited length, it
+    /// is the width; for a disc, it is the radius; for a polygon, it is the extent along X. All shapes of the mask scale by the same factor about their centres, and a
     /// polygon scales about its centroid.
     BlockerSide(usize),
     /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
@@ -90,7 +90,7 @@ impl Parameter {
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
         match (self, light) {
             (Self::SourceSize, Light::Area { shape, .. }) => {
-                Some(format!("{} of {name}", size_word(shape)))
+                Some(format!("{} of {name}", size_of(shape).0))
             }
             (Self::SpotExponent, _) => Some(format!("exponent of {name}")),
             (Self::ImageWidth, _) => Some("width of image".to_owned()),
@@ -144,21 +144,24 @@ fn same(a: f64, b: f64) -> bool {
 /// The new value of a parameter as a function of the old one.
 pub(crate) type New<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// Returns the word for the size of a shape in parameter names.
-pub(crate) fn size_word(shape: &Shape) -> &'static str {
+/// The largest side that a scene can state. A rectangle with a larger side is a bar.
+const MAX_SIDE: f64 = 1e9;
+
+/// Returns the size of a shape that is a parameter, with the word for this size in the parameter's
+/// name.
+pub(crate) fn size_of(shape: &Shape) -> (&'static str, f64) {
     match shape {
-        Shape::Rectangle(_) => "side",
-        Shape::Disc(_) => "radius",
+        Shape::Rectangle(Rectangle { size: [x, y], .. }) if x.max(*y) > MAX_SIDE => {
+            ("width", x.min(*y))
+        }
+        Shape::Rectangle(rectangle) => ("side", rectangle.size[0]),
+        Shape::Disc(disc) => ("radius", disc.radius),
     }
 }
 
-/// Sets the size of the first shape, which is its side along X or its radius, and scales all shapes
-/// by the same factor.
+/// Sets the size of the first shape, and scales all shapes by the same factor.
 pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
-    let size = match &shapes[0] {
-        Shape::Rectangle(rectangle) => rectangle.size[0],
-        Shape::Disc(disc) => disc.radius,
-    };
+    let (_, size) = size_of(&shapes[0]);
     let factor = new(size) / size;
     for shape in shapes {
         match shape {
@@ -171,7 +174,7 @@ pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
 /// Returns the word for the size of a hole in parameter names.
 pub(crate) fn hole_word(hole: &Hole) -> &'static str {
     match hole {
-        Hole::Shape(shape) => size_word(shape),
+        Hole::Shape(shape) => size_of(shape).0,
         Hole::Polygon(_) => "width",
     }
 }

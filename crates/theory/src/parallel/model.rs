@@ -4,7 +4,7 @@ use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
-use crate::parameter::{New, Parameter, hole_word, resize, resize_hole, size_word};
+use crate::parameter::{New, Parameter, hole_word, resize, resize_hole, size_of};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
@@ -46,7 +46,7 @@ impl Model for Chain {
             (_, Some(Operator::Visibility { name, mask })) => match (parameter, mask) {
                 (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) => {
                     let shape = shapes.first();
-                    shape.map(|shape| format!("{} of {name}", size_word(shape)))
+                    shape.map(|shape| format!("{} of {name}", size_of(shape).0))
                 }
                 (Parameter::BlockerSide(_), Mask::Aperture(hole)) => {
                     Some(format!("{} of {name}", hole_word(hole)))
@@ -246,6 +246,21 @@ mod tests {
                 "travel b to c"
             ]
         );
+    }
+
+    /// Tests that the size of bars is their width, along either axis, and not their length.
+    #[test]
+    fn the_size_of_bars_is_their_width() {
+        for size in [[0.05, 2e9], [2e9, 0.05]] {
+            let bar = Rectangle {
+                center: [0.0; 2],
+                size,
+            };
+            let chain = chain(0.2, &[(1.0, vec![bar]), (0.5, vec![])]);
+            let parameter = Parameter::BlockerSide(1);
+            assert_eq!(chain.name(parameter), "width of b");
+            assert_eq!(chain.value(parameter), Some(0.05));
+        }
     }
 
     /// Tests that a chain with a wide disc behind a narrow window is predicted by nets, because a
