@@ -97,6 +97,16 @@ impl FirstOrderChain {
     }
 }
 
+impl FirstOrderReport {
+    /// Returns the square of `excess`, with the sign of `excess`, and the standard error of this
+    /// square.
+    #[must_use]
+    pub fn squared_excess(&self) -> Option<[f64; 2]> {
+        let [square, high] = [self.excess?, self.excess_bound?].map(|root| root * root.abs());
+        Some([square, (high - square) / NINETY_FIVE])
+    }
+}
+
 impl FirstOrder {
     pub(crate) fn new(
         scene: &Scene,

@@ -59,11 +59,16 @@ pub fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return format!("{value}");
     }
-    if error < MIN_PLAIN_ERROR {
-        return format!("{value:.1e} ± {error:.1e}");
+    let places = decimals(error);
+    if error >= MIN_PLAIN_ERROR {
+        return format!("{} ± {error:.places$}", fixed(value, places));
     }
-    let digits = decimals(error);
-    format!("{} ± {error:.digits$}", fixed(value, digits))
+    if value.abs() >= MIN_PLAIN_ERROR.sqrt() {
+        return format!("{} ± {error:.1e}", fixed(value, places));
+    }
+    let [size, least] = [value.abs(), error].map(|x| libm::log10(x).floor());
+    let digits = whole(size - least + 1.0).max(1);
+    format!("{value:.digits$e} ± {error:.1e}")
 }
 
 /// Returns the whole part of a number. The result is 0 for negative numbers and NaN, and saturates
@@ -102,6 +107,15 @@ mod tests {
         assert_eq!(brief(-3.000_2e-12), "-3.0002e-12");
         assert_eq!(brief(2e7), "2e7");
         assert_eq!(uncertain(9e-17, 8.5e-16), "9.0e-17 ± 8.5e-16");
+        assert_eq!(uncertain(0.0, 8.5e-16), "0.0e0 ± 8.5e-16");
+        assert_eq!(
+            uncertain(-0.962_242_323_7, 1.9e-9),
+            "-0.9622423237 ± 1.9e-9"
+        );
+        assert_eq!(
+            uncertain(1.234_567_89e-5, 2.1e-12),
+            "1.23456789e-5 ± 2.1e-12"
+        );
         assert_eq!(uncertain(0.199_999_56, 8.5e-7), "0.19999956 ± 0.00000085");
     }
 

@@ -122,14 +122,35 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns the difference between the photons and the first-order chain, without the part due to
-/// noise, and the expected value of this difference.
+/// Returns the difference between the photons and the first-order chain, and the expected value of
+/// this difference.
 pub fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
         return "–".to_owned();
     };
     let error = 100.0 * first_order.chain.error;
-    format!("{} ({error:.3} %)", percent(first_order.excess))
+    format!("{} ({error:.3} %)", off_by(first_order))
+}
+
+/// Errors below this limit, in per cent, are too small for the digits of [`percent`].
+const LEAST_ERROR: f64 = 5e-4;
+
+/// Returns the difference between the photons and the first-order chain, without the part due to
+/// noise. If its square is below two standard errors, the text is an upper bound.
+pub fn off_by(chain: &FirstOrderReport) -> String {
+    let Some([square, error]) = chain.squared_excess() else {
+        return percent(None);
+    };
+    if square > 2.0 * error {
+        let excess = square.sqrt();
+        let error = 100.0 * error / (2.0 * excess);
+        return match error < LEAST_ERROR {
+            true => percent(Some(excess)),
+            false => uncertain(100.0 * excess, error) + " %",
+        };
+    }
+    let most = (square.max(0.0) + 2.0 * error).sqrt();
+    format!("< {}", percent(Some(most)))
 }
 
 /// Returns a table of the parameters of the chain, as measured by the photons.
@@ -341,6 +362,7 @@ pub fn spaced(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use etendue_compare::FirstOrderChain;
 
     #[test]
     fn what_photons_cannot_tell_is_not_shown() {
@@ -359,6 +381,37 @@ mod tests {
         assert_eq!(shown(1.0, 1.0, 6.3e-6)[1], "0.0024 %");
         assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
         assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1 m"]);
+    }
+
+    #[test]
+    fn a_difference_below_its_noise_is_a_bound() {
+        let shown = |excess: f64, excess_bound: f64| {
+            off_by(&FirstOrderReport {
+                chain: FirstOrderChain {
+                    error: 0.0,
+                    defect: 0.0,
+                    radiance_defect: 0.0,
+                    matrix: [[0.0; 4]; 4],
+                    covariance: [None; 2],
+                    foci: Vec::new(),
+                    as_printed: false,
+                },
+                excess: Some(excess),
+                excess_bound: Some(excess_bound),
+                resolvable: None,
+                p_value: None,
+                exact: Verdict::Pass,
+                verdict: Verdict::Pass,
+            })
+        };
+        // The standard error of the square is 1e-5: the bound is 1.645 of these errors above.
+        let bound = |square: f64| (square + 1.645e-5).sqrt();
+        // √0.1225 = 0.35, with the error 1e-5 / (2 · 0.35).
+        assert_eq!(shown(0.35, bound(0.1225)), "35.0000 ± 0.0014 %");
+        assert_eq!(shown(3.5, bound(12.25)), "350.000 %");
+        // √(0 + 2e-5) = 0.00447.
+        assert_eq!(shown(0.0, bound(0.0)), "< 0.447 %");
+        assert_eq!(shown(-0.003, bound(-9e-6)), "< 0.447 %");
     }
 
     #[test]

@@ -243,7 +243,7 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let chain = report.first_order.as_ref();
     let mut lines = match chain.filter(|chain| chain.verdict == Verdict::Fail) {
         Some(chain) => vec![
-            format!("chain fails by {}", table::percent(chain.excess)),
+            format!("chain fails by {}", table::off_by(chain)),
             format!("computed: {}", percent(chain.chain.error, 3)),
             format!("rays: {}", p_value(report)),
         ],
