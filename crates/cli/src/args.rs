@@ -20,7 +20,7 @@ pub(crate) use variance::{VarianceArgs, files, samplers};
 pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
 use clap::error::{ContextKind, ContextValue};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 use etendue_scene::nearest;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -140,7 +140,14 @@ impl Cli {
     fn grouped_command() -> clap::Command {
         let command = <Self as CommandFactory>::command();
         let list = grouped(&command);
-        command.before_help(list.trim_end().to_owned())
+        let command = command.before_help(list.trim_end().to_owned());
+        // A negative number is a value outside of its range, and not an unknown option.
+        let has_value = |arg: &Arg| arg.get_action().takes_values();
+        let with_sign = |arg: Arg| match has_value(&arg) {
+            true => arg.allow_negative_numbers(true),
+            false => arg,
+        };
+        command.mut_subcommands(|command| command.mut_args(with_sign))
     }
 
     /// Parses a command line whose first word is the name of the program.
@@ -157,20 +164,15 @@ impl Cli {
     }
 }
 
-/// Adds to an error the name of the command that was probably meant, because clap itself does not
-/// detect swapped letters.
+/// Adds to an error the name of the command that was probably meant. Clap itself does not detect
+/// swapped letters, and takes `rn` for `render`.
 fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
     let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
-    let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();
-    if let (Some(ContextValue::String(unknown)), false) = (unknown, has_tip) {
-        let meant = nearest(&unknown, names.iter().map(String::as_str));
-        let meant: Vec<String> = meant.map(str::to_owned).into_iter().collect();
-        if !meant.is_empty() {
-            error.insert(
-                ContextKind::SuggestedSubcommand,
-                ContextValue::Strings(meant),
-            );
-        }
+    if let Some(ContextValue::String(unknown)) = unknown
+        && let Some(meant) = nearest(&unknown, names.iter().map(String::as_str))
+    {
+        let meant = ContextValue::Strings(vec![meant.to_owned()]);
+        error.insert(ContextKind::SuggestedSubcommand, meant);
     }
     error
 }
@@ -198,7 +200,12 @@ mod tests {
 
     #[test]
     fn a_misspelled_command_is_suggested() {
-        for (written, meant) in [("rnu", "run"), ("reprot", "report"), ("swep", "sweep")] {
+        for (written, meant) in [
+            ("rnu", "run"),
+            ("rn", "run"),
+            ("reprot", "report"),
+            ("swep", "sweep"),
+        ] {
             let error = Cli::parse_line(["etendue", written])
                 .unwrap_err()
                 .to_string();

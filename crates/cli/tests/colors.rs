@@ -20,6 +20,12 @@ fn channels_share_their_photons() {
         &format!("run {colors} {SHORT_RUN} --rgb --save photons --out out"),
     );
     assert_eq!(output.status.code(), Some(0), "{output:?}");
+    for command in ["report out --out page.html", "diff out out/red"] {
+        let output = call(path, command);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("allowed: one of out/red, "), "{message}");
+    }
     // Albedos of red and blue squares in each channel, times the radiance of the light.
     for (channel, radiance, albedos) in [
         ("red", 1.0, [0.8, 0.15]),

@@ -453,8 +453,26 @@ fn bad_arguments_are_refused() {
         (vec!["--out", below_a_file], 3, "cannot write"),
         (vec!["--photons", "many"], 2, "whole number"),
         (vec!["--photons", "0"], 2, "run.photons"),
-        (vec!["--threads", "0"], 2, "1..=1024"),
+        (vec!["--threads", "0"], 2, "a whole number from 1 to 1024"),
+        (vec!["--seed", "-1"], 2, "'--seed <N>': allowed: a whole"),
+        (vec!["--target-error", "-1%"], 2, "must be a share"),
+        (vec!["--time", "5"], 2, "allowed: a number with its unit"),
         (vec!["--set", "blockers.0.fil=1"], 2, "fill"),
+        (
+            vec!["--set", "blockers[0].fill=2"],
+            2,
+            "blockers[0].fill is 2",
+        ),
+        (
+            vec!["--set", "light.size=(1,2"],
+            2,
+            "a bracket is still open",
+        ),
+        (
+            vec!["--set", "surfaces=[]"],
+            2,
+            "allowed: a surface, but the scene has none",
+        ),
         (vec!["--set", "blockers"], 2, "PATH=VALUE"),
         (vec!["--save", "everything"], 2, "photons"),
         (vec!["--expect", "success"], 2, "disagreement"),
@@ -472,11 +490,30 @@ fn bad_arguments_are_refused() {
             "{arguments:?}: {part} not in: {message}"
         );
     }
-    let missing = etendue()
-        .args(["run", "no/such/scene.ron"])
-        .output()
-        .unwrap();
-    assert_eq!(missing.status.code(), Some(2));
+    for (content, part) in [
+        (None, "cannot read"),
+        (Some(&b" \n"[..]), "the file is empty; allowed: a scene"),
+        (Some(b"\x89PNG\xff"), "it is not text; allowed: a scene"),
+    ] {
+        let path = folder.path().join("scene.ron");
+        content.map(|content| fs::write(&path, content).unwrap());
+        let output = etendue().arg("run").arg(&path).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(part), "{part} not in: {message}");
+    }
+    // A negative number is a value, and not an option.
+    for (option, value) in [("--pixel", "-3,5"), ("--depth", "99"), ("--window", "-3")] {
+        let scene = scene("worlds/glossy.xml");
+        let output = etendue()
+            .args(["probe", scene.to_str().unwrap(), option, value])
+            .output()
+            .unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        let part = format!("invalid value '{value}' for '{option}");
+        assert!(message.contains(&part), "{message}");
+        assert!(message.contains("allowed: "), "{message}");
+    }
 }
 
 /// The test kills a run at twenty moments, some of which are later than the run usually takes. Each

@@ -64,6 +64,9 @@ pub fn measured(
     if !checkpointing.resume {
         kept.remove();
     }
+    unfinished::keeps(
+        "interrupted: no result was written, and the measurement was too short to be kept",
+    );
     loop {
         // If another process has finished the run, this process has deleted the stored batches.
         if checkpointing.resume && is_done() {

@@ -6,4 +6,5 @@ mod stored;
 mod text;
 
 pub use difference::Diff;
+pub use stored::no_result;
 pub use text::text;

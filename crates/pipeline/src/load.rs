@@ -67,7 +67,8 @@ impl SceneSource {
             Failure::bad_input(format!("cannot read {}: {e}", self.shown()))
         };
         let bytes = read_file(&self.path, limits::FILE_BYTES).map_err(|e| unreadable(&e))?;
-        let text = String::from_utf8(bytes).map_err(|e| unreadable(&e.utf8_error()))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| unreadable(&"it is not text; allowed: a scene in RON or JSON"))?;
         Ok(text.into())
     }
 }

@@ -86,12 +86,11 @@ pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
 }
 
 fn size(bytes: u64) -> String {
-    let megabytes = bytes as f64 / 1e6;
-    if megabytes < 1000.0 {
-        format!("{megabytes:.1} MB")
-    } else {
-        format!("{:.1} GB", megabytes / 1000.0)
-    }
+    let mut units = ["MB", "GB", "TB", "PB"].iter().zip([1e6, 1e9, 1e12, 1e15]);
+    let bytes = bytes as f64;
+    let found = units.rfind(|(_, unit)| bytes >= *unit);
+    let (name, unit) = found.unwrap_or((&"MB", 1e6));
+    format!("{:.1} {name}", bytes / unit)
 }
 
 /// Traces the same photons again, plane by plane, and streams them to disk, so that memory holds

@@ -6,6 +6,7 @@ mod data;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub use data::data;
+use etendue_pipeline::diff::no_result;
 use etendue_scene::read_file;
 use etendue_store::Failure;
 use etendue_store::SUMMARY;
@@ -26,13 +27,14 @@ const AFTER: &str = "</script>";
 pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
+    if !folder.join(SUMMARY).is_file() {
+        return Err(no_result(folder));
+    }
     let hash = etendue_store::hash_of(folder, SUMMARY, NAME).ok_or_else(|| {
         let shown = folder.display();
-        Failure::bad_input(if folder.is_dir() {
-            format!("{shown} holds no complete result with a {NAME}: run its scene again with this version")
-        } else {
-            format!("{shown}: no such folder")
-        })
+        Failure::bad_input(format!(
+            "{shown} holds no complete result with a {NAME}: run its scene again with this version"
+        ))
     })?;
     let bytes = read_file(&shown, MAX_PAGE_BYTES).map_err(|e| fault(&e.to_string()))?;
     if hash != blake3::hash(&bytes).to_hex().as_str() {

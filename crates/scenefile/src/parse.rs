@@ -21,12 +21,16 @@ impl SceneFile {
         if text.trim_start().starts_with('{') {
             return json(text);
         }
-        if text.trim_start().starts_with('<') {
-            let message = "this is XML, such as a scene of Mitsuba 3; allowed: a scene in RON or JSON (only the commands render, import and probe read XML)";
+        let what = match text.trim_start().chars().next() {
+            None => Some(format!("the file is empty; allowed: {}", wanted(""))),
+            Some('<') => Some("this is XML, such as a scene of Mitsuba 3; allowed: a scene in RON or JSON (only the commands render, import and probe read XML)".to_owned()),
+            Some(_) => None,
+        };
+        if let Some(message) = what {
             return Err(SceneError::Syntax {
                 line: 1,
                 column: 1,
-                message: message.to_owned(),
+                message,
             });
         }
         let options = ron::Options::default()

@@ -2,7 +2,7 @@
 
 use super::shared::{
     FolderArgs, ForceArgs, PhotonArgs, SceneArgs, StageFolderArgs, ThreadArgs, WorkArgs, one_of,
-    share,
+    share, within,
 };
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
@@ -36,7 +36,7 @@ pub(crate) struct RunArgs {
     /// Trace photons until their noise at each plane is at most this share of the spectrum. The run
     /// begins with 2^20 photons and stops at --photons [default: 2^40]; the exit code is 3 if this
     /// number does not suffice. The noise does not include errors of predictions
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     pub(crate) target_error: Option<f64>,
 
     /// Continue from the batches that an earlier run of the same command has kept; several processes may share the work
@@ -44,7 +44,7 @@ pub(crate) struct RunArgs {
     pub(crate) resume: bool,
 
     /// Begin no new batch after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
     /// Run the scene once for each of red, green and blue, with the same seed. The results are in
@@ -107,7 +107,7 @@ pub(crate) struct SplitArgs {
     pub(crate) scene: SceneArgs,
 
     /// Number of parts, which all have about the same number of batches
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = within::<u32>(1..=u32::MAX.into()))]
     pub(crate) parts: u32,
 
     /// Print a script for Slurm: an array of jobs, and a last job that depends on all of them
@@ -215,7 +215,7 @@ pub(crate) struct DiffArgs {
     pub(crate) b: PathBuf,
 
     /// Probability of reporting a difference where there is none
-    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share, allow_hyphen_values = true)]
     pub(crate) alpha: f64,
 }
 
@@ -300,6 +300,12 @@ pub(crate) enum Expect {
     /// The photons must agree with all exact predictions, and must show that the chain of operators
     /// of at least one first-order prediction is wrong.
     Disagreement,
+}
+
+/// Parses a time.
+fn time(text: &str) -> Result<Duration, String> {
+    let allowed = |_| "allowed: a number with its unit, such as 90s, 30m or 1h 30m".to_owned();
+    humantime::parse_duration(text).map_err(allowed)
 }
 
 /// Parses a range of batches A..B that holds at least one batch.

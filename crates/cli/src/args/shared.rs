@@ -6,6 +6,7 @@ use etendue_field::tidy;
 use etendue_pipeline::load::SceneSource;
 use etendue_scene::{Color, RunFile};
 use etendue_store::Method;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Options that override the measurement settings of the scene.
@@ -16,7 +17,7 @@ pub(crate) struct PhotonArgs {
     pub(crate) photons: Option<u64>,
 
     /// Seed of the photons [default: as in the scene]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = within::<u64>(0..=u64::MAX))]
     pub(crate) seed: Option<u64>,
 
     /// Measurement method
@@ -78,7 +79,7 @@ pub(crate) struct ForceArgs {
 pub(crate) struct ThreadArgs {
     /// Number of threads [default: one for each core]. The results do not depend on this
     /// number
-    #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long = "threads", value_name = "N", value_parser = within::<u16>(1..=1024))]
     pub(crate) count: Option<u16>,
 }
 
@@ -171,6 +172,18 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
             tidy(0.01 * percent)
         )),
         _ => Err(fault()),
+    }
+}
+
+/// Parses a whole number in a range, which may be written as in [`whole_number`].
+pub(super) fn within<T: TryFrom<u64> + Clone + Send + Sync + 'static>(
+    range: RangeInclusive<u64>,
+) -> impl TypedValueParser<Value = T> {
+    move |text: &str| {
+        let number = whole_number(text).ok().filter(|n| range.contains(n));
+        let number = number.and_then(|n| T::try_from(n).ok());
+        let [least, most] = [range.start(), range.end()];
+        number.ok_or_else(|| format!("allowed: a whole number from {least} to {most}"))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Arguments of `etendue variance`.
 
-use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
+use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs, within};
 use clap::Args;
 use etendue_pipeline::point_file;
 use etendue_store::{ArgumentStyle, Failure};
@@ -74,7 +74,7 @@ pub(crate) struct VarianceArgs {
     pub(crate) light_points: bool,
 
     /// Number of sets of points from which each error is measured
-    #[arg(long, value_name = "R", default_value_t = DEFAULT_SETS, value_parser = clap::value_parser!(u32).range(i64::from(*SETS.start())..=i64::from(*SETS.end())))]
+    #[arg(long, value_name = "R", default_value_t = DEFAULT_SETS, value_parser = within::<u32>((*SETS.start()).into()..=(*SETS.end()).into()))]
     pub(crate) shifts: u32,
 
     /// Largest measured frequency M along each axis, in cycles per window

@@ -1,9 +1,8 @@
 //! Arguments of commands that read scenes of other programs.
 
-use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number};
+use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number, within};
 use super::variance::{SAMPLERS, SamplerArg, sampler, samplers};
 use clap::Args;
-use clap::builder::RangedU64ValueParser;
 use etendue_adaptive::SampleMethod;
 use etendue_import::{Color, Options};
 use etendue_pipeline::variance::VarianceOptions;
@@ -11,18 +10,7 @@ use etendue_store::{ArgumentStyle, Failure};
 use etendue_view::ranges::{self, MAX_ANGLE, MAX_COORDINATE, SIDE};
 use etendue_view::{CameraChoice, PictureRequest, ProbeRequest, Viewpoint, WorldSource};
 use glam::DVec3;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
-
-/// Parses a whole number in a range.
-fn within<T: TryFrom<u64> + Clone + Send + Sync>(
-    range: RangeInclusive<u64>,
-) -> RangedU64ValueParser<T>
-where
-    <T as TryFrom<u64>>::Error: Send + Sync + 'static + std::error::Error + ToString,
-{
-    RangedU64ValueParser::new().range(range)
-}
 
 #[derive(Debug, Args)]
 pub(crate) struct WorldArgs {
@@ -44,7 +32,7 @@ pub(crate) struct WorldArgs {
 
     /// Maximum number of surfaces between a light source and the camera, instead of the file's
     /// maximum: 0 shows sources only, 1 adds direct light
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = within::<u32>(0..=u32::MAX.into()))]
     pub(crate) bounces: Option<u32>,
 
     /// In addition to the lights of the scene, add uniform light of this radiance, in W/(m² sr),
@@ -236,7 +224,7 @@ pub(crate) struct RenderArgs {
     pub(crate) isotropic: bool,
 
     /// Seed of the paths
-    #[arg(long, value_name = "N", default_value_t = PictureRequest::SEED)]
+    #[arg(long, value_name = "N", default_value_t = PictureRequest::SEED, value_parser = within::<u64>(0..=u64::MAX))]
     pub(crate) seed: u64,
 
     #[command(flatten)]
@@ -273,12 +261,12 @@ pub(crate) struct ProbeArgs {
     pub(crate) camera: CameraArgs,
 
     /// Column and row of the pixel, from 0 at the top left
-    #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "map")]
+    #[arg(long, value_name = "X,Y", value_parser = pixel, allow_hyphen_values = true, required_unless_present = "map")]
     pub(crate) pixel: Option<[usize; 2]>,
 
     /// Compute the bandwidths at the camera for this many pixels instead of probing one pixel. The
     /// pixels are spaced evenly over the picture, and only backward rays are used
-    #[arg(long, value_name = "WxH", value_parser = size, conflicts_with_all = ["pixel", "photons", "surfaces"])]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, conflicts_with_all = ["pixel", "photons", "surfaces"])]
     pub(crate) map: Option<[usize; 2]>,
 
     /// Maximum number of surfaces along the ray
@@ -301,7 +289,7 @@ pub(crate) struct ProbeArgs {
     pub(crate) photons: Option<u64>,
 
     /// Seed of backward rays and photons
-    #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED)]
+    #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED, value_parser = within::<u64>(0..=u64::MAX))]
     pub(crate) seed: u64,
 
     /// Also measure the covariance of each plane's spectrum, and compare the measured covariance at
@@ -385,7 +373,7 @@ pub(crate) struct CameraArgs {
     pub(crate) name: Option<String>,
 
     /// Width and height of the picture in pixels, instead of the camera's
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub(crate) size: Option<[usize; 2]>,
 }
 

@@ -2,7 +2,7 @@
 
 use etendue_compare::{Estimate, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
-use etendue_scene::read_below;
+use etendue_scene::{Color, read_below};
 use etendue_store::Failure;
 use etendue_store::npz::NpzFile;
 use etendue_store::stored::listed_bytes;
@@ -12,6 +12,28 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// Returns the error of a folder without a result. The folder of `run --rgb` has a result in each
+/// of its folders.
+#[must_use]
+pub fn no_result(folder: &Path) -> Failure {
+    let shown = folder.display();
+    let colors = [Color::Red, Color::Green, Color::Blue].map(Color::name);
+    let is_rgb = colors
+        .iter()
+        .all(|c| folder.join(c).join(SUMMARY).is_file());
+    Failure::bad_input(if is_rgb {
+        format!(
+            "{shown} holds results of three channels; allowed: one of {shown}/red, {shown}/green and {shown}/blue"
+        )
+    } else if folder.is_dir() {
+        format!(
+            "{shown} holds no result, because it has no {SUMMARY}; allowed: a folder that run or compare has written"
+        )
+    } else {
+        format!("{shown}: no such folder")
+    })
+}
 
 /// A result folder of `run` or `compare`, by any version of this program.
 #[derive(Debug)]
@@ -105,6 +127,9 @@ impl StoredResult {
         let path = folder.join(SUMMARY);
         let shown = path.display();
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
+        if !path.is_file() {
+            return Err(no_result(folder));
+        }
         let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         sealed::check_format(&bytes).map_err(fault)?;

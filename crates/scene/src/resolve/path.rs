@@ -82,7 +82,10 @@ impl Resolver<'_> {
             let mut written = file.surfaces.iter().map(SurfaceFile::name);
             if !written.clone().any(|name| name == visit) {
                 let value = show(visit) + &did_you_mean(visit, written.clone());
-                let allowed = format!("one of the surfaces: {}", names(&mut written));
+                let allowed = match file.surfaces.is_empty() {
+                    true => "a surface, but the scene has none".to_owned(),
+                    false => format!("one of the surfaces: {}", names(&mut written)),
+                };
                 self.faults.add(of, value, allowed);
             }
             return None;
