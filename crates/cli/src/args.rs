@@ -1,6 +1,7 @@
 //! The command-line arguments.
 
 mod figure;
+mod first;
 mod rays;
 mod run;
 mod shared;
@@ -9,6 +10,7 @@ mod variance;
 mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
+pub(crate) use first::{CompletionsArgs, ManArgs, NewArgs};
 pub(crate) use rays::RaysArgs;
 pub(crate) use run::{
     CheckArgs, CompareArgs, ConvergeArgs, DiffArgs, Expect, ExportArgs, MeasureArgs, PredictArgs,
@@ -36,6 +38,7 @@ use std::fmt::Write;
   -V, --version  Print the version
 
 First steps:
+  etendue new && etendue run blockers.ron               write a first scene, and run it
   etendue run scenes/fig9b.ron                          measure, predict, compare, draw
   etendue check scenes/fig9b.ron                        show how the program understands a scene
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/fine
@@ -51,6 +54,8 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Write a first scene, one of five.
+    New(NewArgs),
     /// Trace a scene, predict its spectra, compare and draw.
     Run(RunArgs),
     /// Check a scene and show how it is understood; nothing is traced.
@@ -91,6 +96,10 @@ pub(crate) enum Command {
     Rays(RaysArgs),
     /// Print the JSON schema of scene files, or a page of all fields.
     Schema(SchemaArgs),
+    /// Print a script that completes commands in a shell.
+    Completions(CompletionsArgs),
+    /// Print a page of the manual, for `man`.
+    Man(ManArgs),
 }
 
 /// The commands, grouped by purpose, in the order of the help text.
@@ -98,7 +107,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     (
         "Measure and compare",
         &[
-            "run", "check", "sweep", "measure", "predict", "compare", "split", "diff",
+            "new", "run", "check", "sweep", "measure", "predict", "compare", "split", "diff",
         ],
     ),
     (
@@ -116,7 +125,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
         "Scenes of other programs",
         &["import", "render", "probe", "export"],
     ),
-    ("Files", &["rays", "schema"]),
+    ("Files and help", &["rays", "schema", "completions", "man"]),
 ];
 
 /// Returns the list of the commands for the help text, in groups.
@@ -129,7 +138,7 @@ fn grouped(command: &clap::Command) -> String {
                 .find_subcommand(name)
                 .and_then(clap::Command::get_about);
             let about = about.map(ToString::to_string).unwrap_or_default();
-            let _ = writeln!(list, "  {name:<10}  {about}");
+            let _ = writeln!(list, "  {name:<11}  {about}");
         }
     }
     list
@@ -137,7 +146,7 @@ fn grouped(command: &clap::Command) -> String {
 
 impl Cli {
     /// Returns the command-line parser, with its commands in groups.
-    fn grouped_command() -> clap::Command {
+    pub(crate) fn grouped_command() -> clap::Command {
         let command = <Self as CommandFactory>::command();
         let list = grouped(&command);
         let command = command.before_help(list.trim_end().to_owned());

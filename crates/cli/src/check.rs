@@ -1,7 +1,7 @@
 //! Implements `etendue check`: describes a scene, and the theory that applies to each plane.
 
 use crate::args::CheckArgs;
-use crate::print::{deliver, say};
+use crate::print::{deliver, deliver_json, say};
 use crate::warnings;
 use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};
@@ -13,6 +13,7 @@ use etendue_store::Method;
 use etendue_store::file_seal::SealKind;
 use etendue_store::output::OutputFile;
 use etendue_theory::rays::AffineChain;
+use serde_json::{Value, json};
 use std::num::NonZero;
 use std::thread::available_parallelism;
 
@@ -28,23 +29,69 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     });
     let picture = picture.transpose()?;
     let theories = Applicability::of_planes(&scene);
+    // The number of threads that `etendue run` uses by default.
+    let threads = available_parallelism().map_or(1, NonZero::get);
+    if args.json {
+        if let Some((_, bytes, file)) = picture {
+            file.write(&bytes)?;
+        }
+        limits::check(&scene, &theories, threads)?;
+        deliver_json(&format!("{:#}", json(&scene, &theories, threads)))?;
+        return Ok(0);
+    }
     deliver(&description(&scene, &theories))?;
     if let Some((path, bytes, file)) = picture {
         file.write(&bytes)?;
         say(&format!("\ndrawn in {}", path.display()));
     }
     warnings::tell(&scene, false);
-    // The number of threads that `etendue run` uses by default.
-    let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
     say(&expected(&scene, &theories, threads));
     Ok(0)
 }
 
+/// Returns what `check` finds out about a scene, for programs.
+fn json(scene: &Scene, theories: &[Applicability], threads: usize) -> Value {
+    let planes = scene.planes.iter().zip(theories);
+    let planes = planes.map(|(plane, theory)| {
+        json!({
+            "name": plane.name,
+            "distance": plane.distance,
+            "class": theory.class(),
+            "chain": theory.steps(scene, plane),
+        })
+    });
+    let [photons, predictions, bytes] = effort(scene, theories, threads);
+    json!({
+        "scene": scene.name,
+        "scene_hash": scene.hash(),
+        "photons": scene.run.photons,
+        "planes": planes.collect::<Vec<_>>(),
+        "warnings": scene.warnings(),
+        "expected": {
+            "threads": threads,
+            "seconds_of_photons": photons,
+            "most_seconds_of_predictions": predictions,
+            "most_bytes": bytes,
+        },
+    })
+}
+
+/// Returns the approximate seconds of photons, the most seconds of predictions, and the most bytes
+/// that a run of the scene takes.
+fn effort(scene: &Scene, theories: &[Applicability], threads: usize) -> [f64; 3] {
+    let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
+    [
+        photons,
+        predictions,
+        Memory::new(scene, theories, threads).total(),
+    ]
+}
+
 /// Returns the approximate time and memory that a run of the scene takes.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
-    let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
-    let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;
+    let [photons, predictions, bytes] = effort(scene, theories, threads);
+    let gigabytes = bytes / 1e9;
     format!(
         "\nexpected on {}: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, at most {gigabytes:.2} GB",
         limits::counted(threads)

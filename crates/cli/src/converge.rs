@@ -2,14 +2,18 @@
 //! exact prediction.
 
 use crate::args::ConvergeArgs;
-use crate::print::{deliver, say};
+use crate::print::{deliver, say, tell};
 use crate::progress;
 use crate::threads::on_threads;
-use etendue_compare::{Applicability, Convergence, converge as shrink};
+use etendue_compare::{Applicability, Convergence, converge as shrink, seconds};
 use etendue_pipeline::table::aligned;
 use etendue_pipeline::{limits, load};
 use etendue_scene::Scene;
 use etendue_store::Failure;
+
+/// The largest ratio of the command's time to the most time that predictions of the scene take, and
+/// of the latter to the former: 2.5 over five scenes, rounded up.
+const MARGIN: f64 = 3.0;
 
 /// Runs `etendue converge`; returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
@@ -17,7 +21,16 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     limits::check_one_light(&scene, "this command")?;
     let theories = Applicability::of_planes(&scene);
     limits::check_work(&scene, &theories)?;
-    let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;
+    let planes = on_threads(&args.threads, || {
+        let threads = rayon::current_num_threads();
+        let about = seconds(&scene, &theories)[1] / threads as f64;
+        tell(&format!(
+            "expected on {threads} threads: {:.1} to {:.1} s",
+            about / MARGIN,
+            about * MARGIN
+        ));
+        Ok(shrunk(&scene, &theories))
+    })?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
             "this command needs a plane whose light has met only mirrors, interfaces and lenses, and no BRDF; this scene has no such plane",

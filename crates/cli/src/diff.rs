@@ -2,13 +2,16 @@
 
 use crate::args::DiffArgs;
 use crate::conclude::code_of;
-use crate::print::deliver;
-use etendue_pipeline::diff::{Diff, text};
+use crate::print::{deliver, deliver_json};
+use etendue_pipeline::diff::{Diff, json, text};
 use etendue_store::Failure;
 
 /// Runs `etendue diff`; returns the exit code.
 pub(crate) fn diff(args: &DiffArgs) -> Result<u8, Failure> {
     let diff = Diff::read([&args.a, &args.b], args.alpha)?;
-    deliver(&text(&diff))?;
+    match args.json {
+        true => deliver_json(&format!("{:#}", json(&diff)))?,
+        false => deliver(&text(&diff))?,
+    }
     Ok(code_of(diff.verdict()))
 }

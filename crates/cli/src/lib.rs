@@ -17,7 +17,9 @@ mod figure;
 mod finish;
 mod import;
 mod interrupt;
+mod manual;
 mod measure;
+mod new;
 mod predict;
 mod print;
 mod probe;
@@ -55,6 +57,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Err(error) => return not_parsed(&error),
     };
     let outcome = interrupt::install().and_then(|()| match command {
+        Command::New(args) => new::new(&args),
         Command::Run(args) => run::run(&args),
         Command::Measure(args) => measure::measure(&args),
         Command::Split(args) => split::split(&args),
@@ -75,6 +78,8 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Probe(args) => probe::probe(&args),
         Command::Rays(args) => rays::rays(&args),
         Command::Schema(args) => schema::schema(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     });
     ended(outcome, false)
 }

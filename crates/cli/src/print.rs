@@ -1,5 +1,6 @@
 //! Printing for commands, in characters that are safe on a terminal.
 
+use clap::builder::styling::AnsiColor;
 use etendue_scene::shown;
 use etendue_store::{Failure, Finished};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
@@ -20,12 +21,69 @@ pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     } else {
         text
     };
-    match writeln!(stdout(), "{text}") {
+    written(writeln!(anstream::stdout(), "{}", colored(&text)))
+}
+
+/// Writes bytes to standard output; fails as [`deliver`] does.
+pub(crate) fn deliver_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    written(stdout().write_all(bytes))
+}
+
+/// Prints JSON. Characters that are not safe on a terminal are escaped; in JSON, they occur only in
+/// strings.
+pub(crate) fn deliver_json(text: &str) -> Result<(), Failure> {
+    let mut safe = String::with_capacity(text.len() + 1);
+    for c in text.trim_end().chars() {
+        if c == '\n' || shown(c, usize::MAX).starts_with(c) {
+            safe.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                safe.push_str(&format!("\\u{unit:04x}"));
+            }
+        }
+    }
+    safe.push('\n');
+    deliver_bytes(safe.as_bytes())
+}
+
+/// Prints a JSON file that the program has written.
+pub(crate) fn deliver_json_file(path: &Path) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(path);
+    let text =
+        text.map_err(|e| Failure::cannot_run(format!("cannot read {}: {e}", path.display())));
+    deliver_json(&text?)
+}
+
+fn written(outcome: std::io::Result<()>) -> Result<(), Failure> {
+    match outcome {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::write(Path::new("to standard output"), e))
         }
         _ => Ok(()),
     }
+}
+
+/// Returns a text with its verdicts in colour: the word after `verdict: `, and the last word of the
+/// row of a table.
+fn colored(text: &str) -> String {
+    let line = |line: &str| {
+        let start = match line.strip_prefix("verdict: ") {
+            Some(_) => "verdict: ".len(),
+            None => line.rfind("  ").map_or(0, |at| at + 2),
+        };
+        let (before, rest) = line.split_at(start);
+        let end = rest.find(|c: char| !c.is_ascii_alphabetic());
+        let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
+        let color = match word {
+            "pass" | "same" => AnsiColor::Green,
+            "fail" | "different" => AnsiColor::Red,
+            "undecided" => AnsiColor::Yellow,
+            _ => return line.to_owned(),
+        };
+        let style = color.on_default();
+        format!("{before}{style}{word}{style:#}{after}")
+    };
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// Prints a message to standard error; a failure to print is ignored.

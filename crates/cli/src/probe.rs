@@ -2,10 +2,10 @@
 
 use crate::args::ProbeArgs;
 use crate::conclude::code_of;
-use crate::print::deliver;
+use crate::print::{deliver, deliver_json_file};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
-use etendue_store::Failure;
+use etendue_store::{Failure, PROBE};
 use etendue_view::{map_bandwidths, probe_pixel};
 
 /// Runs `etendue probe`; returns the exit code.
@@ -25,7 +25,9 @@ pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
             (None, None) => unreachable!("clap requires one of --pixel and --map"),
         })
     })?;
-    if !args.work.quiet {
+    if args.json {
+        deliver_json_file(&folder.join(PROBE))?;
+    } else if !args.work.quiet {
         deliver(&words)?;
         deliver(&format!("results: {}", folder.display()))?;
     }

@@ -2,7 +2,7 @@
 
 use crate::args::RunArgs;
 use crate::conclude::{Ending, code_of, conclude};
-use crate::print::say;
+use crate::print::{deliver_json_file, say};
 use crate::progress::Terminal;
 use crate::report;
 use crate::threads::on_threads;
@@ -66,6 +66,15 @@ fn channels(args: &RunArgs) -> Result<u8, Failure> {
 
 /// Runs [`run()`], and shares the measurement with other processes.
 pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
+    let code = run_scene(args, workers)?;
+    if args.json {
+        let name = args.scene.path.file_stem().unwrap_or_default();
+        deliver_json_file(&args.out.or_named(name).join(SUMMARY))?;
+    }
+    Ok(code)
+}
+
+fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
@@ -148,7 +157,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
-    if !args.work.quiet {
+    if !args.is_quiet() {
         say(&format!(
             "verdict: {}; the run was already finished: {}",
             word(verdict),
@@ -173,7 +182,7 @@ fn stages(
     place: ResultPlace<'_>,
 ) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
-    if !args.work.quiet {
+    if !args.is_quiet() {
         let kept = args.save.iter();
         for announcement in kept.filter_map(|save| photons::announcement(&scene, *save)) {
             say(&announcement);
@@ -227,7 +236,7 @@ fn stages(
         },
         expect: args.expect,
         target_error: args.target_error,
-        quiet: args.work.quiet,
+        quiet: args.is_quiet(),
     };
     let code = conclude(&case, &ending, results, watch)?;
     kept.remove();

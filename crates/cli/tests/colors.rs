@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{array, call, json, refused, scene};
+use crate::common::{array, call, etendue, json, refused, scene};
 use ndarray::Array2;
 use std::fs;
 
@@ -21,7 +21,8 @@ fn channels_share_their_photons() {
     );
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     for command in ["report out --out page.html", "diff out out/red"] {
-        let output = call(path, command);
+        let words = command.split_whitespace();
+        let output = etendue().current_dir(path).args(words).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains("allowed: one of out/red, "), "{message}");

@@ -15,6 +15,7 @@ mod figure;
 mod first_scenes;
 mod interruption;
 mod limits;
+mod newcomer;
 mod ownership;
 mod ray_light;
 mod rays;

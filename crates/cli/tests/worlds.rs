@@ -76,10 +76,12 @@ fn results_keep_what_was_left_out() {
     let folder = folder("<rfilter type=\"box\"/>", "<rfilter type=\"gaussian\"/>");
     let path = folder.path();
     done(path, "render room.xml --samples 2 --quiet --out picture");
-    done(
+    let said = done(
         path,
-        "probe room.xml --map 1x1 --rays 2^8 --quiet --out probe",
+        "probe room.xml --map 1x1 --rays 2^8 --json --out probe",
     );
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(said, json(&path.join("probe/probe.json")));
     for file in ["picture/picture.json", "probe/probe.json"] {
         let notes = &json(&path.join(file))["notes"];
         let first = notes[0].as_str().unwrap();

@@ -109,7 +109,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cli",
         &[
             "adaptive", "compare", "export", "field", "figures", "import", "paper", "pipeline",
-            "rays", "report", "scene", "spectrum", "store", "sweep", "theory", "variance", "view",
+            "rays", "report", "scene", "scenes", "spectrum", "store", "sweep", "theory",
+            "variance", "view",
         ],
     ),
 ];

@@ -64,8 +64,19 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
+    /// Print summary.json instead of tables
+    #[arg(long, conflicts_with = "rgb")]
+    pub(crate) json: bool,
+
     #[command(flatten)]
     pub(crate) work: WorkArgs,
+}
+
+impl RunArgs {
+    /// Checks whether the command prints no tables.
+    pub(crate) fn is_quiet(&self) -> bool {
+        self.work.quiet || self.json
+    }
 }
 
 #[derive(Debug, Args)]
@@ -217,6 +228,10 @@ pub(crate) struct DiffArgs {
     /// Probability of reporting a difference where there is none
     #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share, allow_hyphen_values = true)]
     pub(crate) alpha: f64,
+
+    /// Print the comparison as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -227,6 +242,10 @@ pub(crate) struct CheckArgs {
     /// Draw the scene with its central ray and planes into this file (.png or .svg)
     #[arg(long, value_name = "FILE")]
     pub(crate) draw: Option<PathBuf>,
+
+    /// Print the planes, warnings and expected effort as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 
     #[command(flatten)]
     pub(crate) force: ForceArgs,

@@ -303,6 +303,10 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "SAMPLERS", value_delimiter = ',', value_parser = sampler, num_args = 0..=1, require_equals = true, default_missing_value = SAMPLERS, conflicts_with = "map")]
     pub(crate) variance: Option<Vec<SamplerArg>>,
 
+    /// Print probe.json instead of tables
+    #[arg(long)]
+    pub(crate) json: bool,
+
     #[command(flatten)]
     pub(crate) out: FolderArgs,
 
