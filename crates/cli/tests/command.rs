@@ -496,7 +496,9 @@ fn bad_arguments_are_refused() {
         (Some(b"\x89PNG\xff"), "it is not text; allowed: a scene"),
     ] {
         let path = folder.path().join("scene.ron");
-        content.map(|content| fs::write(&path, content).unwrap());
+        if let Some(content) = content {
+            fs::write(&path, content).unwrap();
+        }
         let output = etendue().arg("run").arg(&path).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
