@@ -68,12 +68,12 @@ impl Lamp {
                 center,
                 intensity,
                 image,
-            } => (center, Kind::Point(grey(intensity), Some(image.clone()))),
+            } => (center, Kind::Point(grey(intensity), Some(*image))),
             LightFile::Beam {
                 center,
                 irradiance,
                 image,
-            } => (center, Kind::Beam(grey(irradiance), image.clone())),
+            } => (center, Kind::Beam(grey(irradiance), *image)),
             LightFile::Environment {
                 center,
                 up,
@@ -126,7 +126,11 @@ impl Lamp {
             Kind::Lobes(lobes) => {
                 let [which, around] = draws.next();
                 let count = lobes.len() as f64;
-                let (from, width, _) = lobes[(which * count) as usize];
+                let chosen = lobes
+                    .iter()
+                    .zip(1..)
+                    .find(|(_, i)| which * count < f64::from(*i));
+                let (from, width, _) = chosen.map_or(lobes[0], |(lobe, _)| *lobe);
                 let [height, _] = draws.next();
                 let squared = width * width;
                 let cosine =

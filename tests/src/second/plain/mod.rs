@@ -65,7 +65,7 @@ const RESOLVED: f64 = 5e-3;
 /// other photons. Correct scenes do so once in 16,000.
 const FAR: f64 = 4.0;
 /// The seed of the points that choose between paths.
-const PILOT: u64 = 0x7069_6c6f_74;
+const PILOT: u64 = 0x70_696c_6f74;
 /// Fewer paths or photons with light do not tell their error.
 const FEW: u64 = 1000;
 /// The factor of photons in the second comparison.

@@ -79,7 +79,7 @@ impl PlainWorld {
 
     fn path(&self, lamp: &Lamp, choice: Choice, draws: &mut Draws<'_>) -> Option<f64> {
         if self.visits.is_empty() && lamp.is_far() {
-            return self.from_far(lamp, draws);
+            return self.environment(lamp, draws);
         }
         let seen = match choice {
             Choice::Forward => None,
@@ -227,7 +227,7 @@ impl PlainWorld {
     }
 
     /// Returns the light of an environment at a plane of the first leg, for a ray of the window.
-    fn from_far(&self, lamp: &Lamp, draws: &mut Draws<'_>) -> Option<f64> {
+    fn environment(&self, lamp: &Lamp, draws: &mut Draws<'_>) -> Option<f64> {
         let (point, along, weight) = self.ray(draws);
         let from = lamp.origin(point, along);
         let light = Light {
