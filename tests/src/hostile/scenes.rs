@@ -102,7 +102,8 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         files,
         arguments: words("check scene.ron"),
         then: dice.one_in(8).then_some(then),
-        open_files: dice.one_in(2).then(|| 3 + dice.below(13)),
+        // With fewer files, the program cannot be loaded.
+        open_files: dice.one_in(2).then(|| 4 + dice.below(12)),
         sound: None,
         summary: None,
     }
