@@ -10,7 +10,7 @@ mod variance;
 mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
-pub(crate) use first::{CompletionsArgs, ManArgs, NewArgs};
+pub(crate) use first::{CompletionsArgs, ManArgs, NewArgs, SCENES};
 pub(crate) use rays::RaysArgs;
 pub(crate) use run::{
     CheckArgs, CompareArgs, ConvergeArgs, DiffArgs, Expect, ExportArgs, MeasureArgs, PredictArgs,

@@ -1,36 +1,10 @@
 //! Implements `etendue new`: writes a first scene.
 
-use crate::args::NewArgs;
+use crate::args::{NewArgs, SCENES};
 use crate::print::deliver;
-use etendue_scenes::{FIG9B, FIG10, TABLE1_SOLAR_OVEN, TABLE1_TEXTURED_GLOSSY, TABLE1_TRAVEL};
 use etendue_store::Failure;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
-
-/// The texts of the scenes, each with its name and a description.
-pub(crate) const SCENES: [(&str, &str, &str); 5] = [
-    (
-        FIG9B,
-        "blockers",
-        "A square light, small blockers and a floor",
-    ),
-    (
-        TABLE1_TRAVEL,
-        "travel",
-        "A slide of bars at three distances",
-    ),
-    (TABLE1_SOLAR_OVEN, "mirror", "A beam on a hollow mirror"),
-    (
-        TABLE1_TEXTURED_GLOSSY,
-        "glossy",
-        "A projector and a glossy sphere with a texture",
-    ),
-    (
-        FIG10,
-        "curved",
-        "Seven steps of a reflection off a curved glossy surface",
-    ),
-];
 
 /// Runs `etendue new`; returns the exit code.
 pub(crate) fn new(args: &NewArgs) -> Result<u8, Failure> {

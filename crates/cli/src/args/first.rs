@@ -1,10 +1,35 @@
 //! Arguments of commands that a newcomer needs first.
 
 use super::shared::one_of;
-use crate::new::SCENES;
 use clap::Args;
 use clap_complete::Shell;
+use etendue_scenes::{FIG9B, FIG10, TABLE1_SOLAR_OVEN, TABLE1_TEXTURED_GLOSSY, TABLE1_TRAVEL};
 use std::path::PathBuf;
+
+/// The texts of the scenes, each with its name and a description.
+pub(crate) const SCENES: [(&str, &str, &str); 5] = [
+    (
+        FIG9B,
+        "blockers",
+        "A square light, small blockers and a floor",
+    ),
+    (
+        TABLE1_TRAVEL,
+        "travel",
+        "A slide of bars at three distances",
+    ),
+    (TABLE1_SOLAR_OVEN, "mirror", "A beam on a hollow mirror"),
+    (
+        TABLE1_TEXTURED_GLOSSY,
+        "glossy",
+        "A projector and a glossy sphere with a texture",
+    ),
+    (
+        FIG10,
+        "curved",
+        "Seven steps of a reflection off a curved glossy surface",
+    ),
+];
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
