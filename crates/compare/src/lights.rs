@@ -6,6 +6,60 @@ use crate::theories::Theory;
 use etendue_field::{Projection, Slices};
 
 impl Prediction {
+    /// Returns the first-order chain of the sum of lights. The light of parallel planes is its own
+    /// chain. Returns `None` if no light has a first-order chain, or a light has no chain at all.
+    ///
+    /// The sum has the largest defect of its lights, because no map may be wrong. The matrix and the
+    /// foci are those of the first light with a first-order chain. The sum has no covariance.
+    pub(crate) fn chain_of_lights(
+        each: &[Self],
+        theories: &[&Theory],
+        exact: &Self,
+    ) -> Option<FirstOrder> {
+        let mut chains = each.iter().filter_map(|of| of.first_order.as_ref());
+        let first = chains.next()?;
+        if each.len() == 1 {
+            return Some(first.clone());
+        }
+        let mut chain = FirstOrderChain {
+            covariance: [None; 2],
+            ..first.chain.clone()
+        };
+        for FirstOrder { chain: other, .. } in chains {
+            chain.defect = chain.defect.max(other.defect);
+            chain.radiance_defect = chain.radiance_defect.max(other.radiance_defect);
+        }
+        let linear = each.iter().zip(theories).map(|(of, theory)| {
+            if let Some(FirstOrder {
+                slices, replicates, ..
+            }) = &of.first_order
+            {
+                return Some((slices.clone(), replicates.clone()));
+            }
+            let is_linear = matches!(theory, Theory::Parallel(_)) || of.slices.is_dark();
+            is_linear.then(|| (of.slices.clone(), of.replicates.clone()))
+        });
+        let linear: Vec<(Slices, Vec<Slices>)> = linear.collect::<Option<_>>()?;
+        let (slices, replicates) = linear.into_iter().reduce(|(a, of_a), (b, of_b)| {
+            let both = replicates((&a, &of_a), (&b, &of_b));
+            (sum(&a, &b), both)
+        })?;
+        chain.error = if chain.as_printed {
+            // The slices are those of the printed formulas, and the error is that of the corrected ones.
+            let errors = each
+                .iter()
+                .filter_map(|of| Some(of.first_order.as_ref()?.chain.error * of.slices.norm()));
+            errors.sum::<f64>() / exact.slices.norm()
+        } else {
+            slices.independent_relative_difference(&exact.slices)
+        };
+        Some(FirstOrder {
+            slices,
+            replicates,
+            chain,
+        })
+    }
+
     /// Adds the prediction of another light. Errors that no replicates show add up. Parameters
     /// with the same name are the same parameter, whose derivatives add up.
     pub(crate) fn plus(self, other: Self) -> Self {
@@ -30,7 +84,7 @@ impl Prediction {
             (a, b) => Some(a.unwrap_or(0.0) + b.unwrap_or(0.0)),
         });
         let mesh_error = added(&|of| of.mesh_error);
-        let replicates = replicates(sides(&self), sides(&other));
+        let replicates = replicates(replicated(&self), replicated(&other));
         let (quadrature_error, rule_error) = if replicates.is_empty() {
             (rules, None)
         } else {
@@ -65,69 +119,15 @@ fn sum(a: &Slices, b: &Slices) -> Slices {
     }
 }
 
-/// Returns the first-order chain of the sum of lights. The light of parallel planes is its own
-/// chain. Returns `None` if no light has a first-order chain, or a light has no chain at all.
-///
-/// The sum has the largest defect of its lights, because no map may be wrong. The matrix and the
-/// foci are those of the first light with a first-order chain. The sum has no covariance.
-pub(crate) fn chain_of_lights(
-    each: &[Prediction],
-    theories: &[&Theory],
-    exact: &Prediction,
-) -> Option<FirstOrder> {
-    let mut chains = each.iter().filter_map(|of| of.first_order.as_ref());
-    let first = chains.next()?;
-    if each.len() == 1 {
-        return Some(first.clone());
-    }
-    let mut chain = FirstOrderChain {
-        covariance: [None; 2],
-        ..first.chain.clone()
-    };
-    for FirstOrder { chain: other, .. } in chains {
-        chain.defect = chain.defect.max(other.defect);
-        chain.radiance_defect = chain.radiance_defect.max(other.radiance_defect);
-    }
-    let linear = each.iter().zip(theories).map(|(of, theory)| {
-        if let Some(FirstOrder {
-            slices, replicates, ..
-        }) = &of.first_order
-        {
-            return Some((slices.clone(), replicates.clone()));
-        }
-        let is_linear = matches!(theory, Theory::Parallel(_)) || of.slices.is_dark();
-        is_linear.then(|| (of.slices.clone(), of.replicates.clone()))
-    });
-    let linear: Vec<(Slices, Vec<Slices>)> = linear.collect::<Option<_>>()?;
-    let (slices, replicates) = linear.into_iter().reduce(|(a, of_a), (b, of_b)| {
-        let both = replicates((&a, &of_a), (&b, &of_b));
-        (sum(&a, &b), both)
-    })?;
-    chain.error = if chain.as_printed {
-        // The slices are those of the printed formulas, and the error is that of the corrected ones.
-        let errors = each
-            .iter()
-            .filter_map(|of| Some(of.first_order.as_ref()?.chain.error * of.slices.norm()));
-        errors.sum::<f64>() / exact.slices.norm()
-    } else {
-        slices.independent_relative_difference(&exact.slices)
-    };
-    Some(FirstOrder {
-        slices,
-        replicates,
-        chain,
-    })
-}
-
 /// Slices and their replicates.
-type Sides<'a> = (&'a Slices, &'a [Slices]);
+type Replicated<'a> = (&'a Slices, &'a [Slices]);
 
-fn sides(of: &Prediction) -> Sides<'_> {
+fn replicated(of: &Prediction) -> Replicated<'_> {
     (&of.slices, &of.replicates)
 }
 
 /// Returns the replicates of a sum. A light without replicates has the same slices in each.
-fn replicates(a: Sides<'_>, b: Sides<'_>) -> Vec<Slices> {
+fn replicates(a: Replicated<'_>, b: Replicated<'_>) -> Vec<Slices> {
     let with = |of: &[Slices], all: &Slices| of.iter().map(|one| sum(one, all)).collect();
     match (a, b) {
         ((_, []), (_, [])) => Vec::new(),

@@ -5,7 +5,6 @@ use crate::budget::budget;
 use crate::class::Class;
 use crate::depth::depth;
 use crate::first_order::FirstOrder;
-use crate::lights::chain_of_lights;
 use crate::theories::Theory;
 use crate::validity::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
@@ -107,7 +106,7 @@ impl Prediction {
         let sum = each.iter().cloned().reduce(Self::plus);
         let sum = sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability));
         Self {
-            first_order: chain_of_lights(&each, &theories, &sum),
+            first_order: Self::chain_of_lights(&each, &theories, &sum),
             ..sum
         }
     }

@@ -4,11 +4,13 @@ mod bmp;
 mod hdr;
 mod jpeg;
 mod pfm;
+mod size;
 
 use crate::range::MAX_NUMBER;
 use crate::{Color, files::Files};
 use etendue_field::Raster;
-use etendue_scene::{Channels, Fault, PictureSize, Samples, read_channels};
+use etendue_scene::{Channels, Fault, Samples, read_channels};
+use size::invalid;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -123,26 +125,6 @@ pub(crate) fn decode(path: &Path, bytes: &[u8], memory: u64) -> Result<Channels,
             "has extension {other:?}; allowed: bmp, exr, hdr, jpg, pfm, png"
         )),
     }
-}
-
-/// Refuses a picture whose stated size is not allowed.
-fn check_size(
-    (width, height): (usize, usize),
-    [channels, bytes]: [usize; 2],
-    length: usize,
-    memory: u64,
-) -> Result<(), String> {
-    let size = PictureSize {
-        pixels: width.checked_mul(height),
-        channels,
-        bytes,
-        packed: None,
-    };
-    size.check(length, memory).map_err(invalid)
-}
-
-fn invalid(fault: Fault) -> String {
-    format!("is not a valid picture: {fault}")
 }
 
 /// Converts an sRGB level to linear light (IEC 61966-2-1).

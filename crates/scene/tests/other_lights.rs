@@ -33,7 +33,7 @@ fn resolved(text: &str) -> Scene {
     resolve("lights", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns all distances and positions of a scene as one list.
+/// Returns all distances and positions of a scene as one list, without blockers behind the light.
 fn numbers(scene: &Scene) -> Vec<f64> {
     let mut all = Vec::new();
     for leg in &scene.path.legs {
@@ -42,7 +42,8 @@ fn numbers(scene: &Scene) -> Vec<f64> {
         all.extend(leg.leaves.iter().flat_map(|hit| hit.point.to_array()));
     }
     all.extend(scene.path.frame.origin.to_array());
-    all.extend(scene.blockers.iter().map(|layer| layer.distance));
+    let distances = scene.blockers.iter().map(|layer| layer.distance);
+    all.extend(distances.filter(|distance| *distance > 0.0));
     for surface in &scene.surfaces {
         all.extend(surface.frame.origin.to_array());
     }
@@ -80,6 +81,9 @@ fn a_further_light_is_a_scene_of_its_own() {
             panic!("one further light");
         };
         assert_eq!(found.light, alone.light);
+        // Light that a surface sends back meets the blockers behind its light.
+        assert_eq!(found.blockers.len(), both.blockers.len());
+        assert!((found.blockers[0].distance - (0.2 - depth)).abs() < 1e-12);
         let [found, alone] = [found, &alone].map(numbers);
         assert_eq!(found.len(), alone.len(), "{depth}");
         for (a, b) in found.into_iter().zip(alone) {

@@ -11,6 +11,10 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "a word of worlds, and the BRDF that it stands for",
     ),
     (
+        "MetallicRoughness",
+        "a word of worlds, and the BRDF that it stands for",
+    ),
+    (
         "Plastic",
         "a word of worlds, and the BRDF that it stands for",
     ),

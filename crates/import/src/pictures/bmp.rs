@@ -1,6 +1,6 @@
 //! BMP pictures.
 
-use super::check_size;
+use super::size::check_size;
 use etendue_scene::{Channels, Samples};
 use zune_bmp::BmpDecoder;
 use zune_core::bytestream::ZCursor;

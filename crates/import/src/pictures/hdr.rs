@@ -1,7 +1,7 @@
 //! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with a shared
 //! exponent.
 
-use super::check_size;
+use super::size::check_size;
 use etendue_scene::{Channels, Samples};
 
 /// Maximum number of header lines.

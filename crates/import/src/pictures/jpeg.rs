@@ -1,6 +1,6 @@
 //! JPEG pictures.
 
-use super::check_size;
+use super::size::check_size;
 use etendue_scene::{Channels, Samples};
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;

@@ -1,6 +1,6 @@
 //! Portable float maps (Debevec 1998): 32-bit numbers, beginning with the lowest row.
 
-use super::check_size;
+use super::size::check_size;
 use etendue_scene::{Channels, Samples};
 
 pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {

@@ -20,7 +20,7 @@ const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"]
 
 /// What is known about the bandwidth of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Outcome {
+enum PixelOutcome {
     Measured,
     /// The pixel sees no light.
     Dark,
@@ -32,7 +32,7 @@ enum Outcome {
     Fine,
 }
 
-impl Outcome {
+impl PixelOutcome {
     fn of(picture: &PictureBandwidth) -> Self {
         if picture.missed.is_some() {
             Self::Fine
@@ -51,7 +51,7 @@ impl Outcome {
 /// The results for a pixel. A number is NaN if there is no light or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    outcome: Outcome,
+    outcome: PixelOutcome,
     /// The bandwidth, in cycles per slope, of the picture minus its mean. It is taken along the
     /// direction in which it is largest; `error` is its standard error.
     measured: f64,
@@ -73,7 +73,7 @@ struct MapPoint {
 
 impl MapPoint {
     const UNKNOWN: Self = Self {
-        outcome: Outcome::Dark,
+        outcome: PixelOutcome::Dark,
         measured: f64::NAN,
         error: f64::NAN,
         azimuth: f64::NAN,
@@ -139,7 +139,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
         None => widest.map(|it| it.value.value),
     };
     Ok(MapPoint {
-        outcome: Outcome::of(&picture),
+        outcome: PixelOutcome::of(&picture),
         measured: known(widest.map(|it| it.value.value)),
         error: known(widest.map(|it| it.value.error)),
         azimuth: known(widest.map(|it| it.azimuth)),
@@ -246,11 +246,11 @@ fn expected(point: &MapPoint) -> f64 {
 fn words(map: &Array2<MapPoint>, arguments: ArgumentStyle) -> String {
     let count = |outcome| map.iter().filter(|point| point.outcome == outcome).count();
     let [seen, dark, noisy, smooth, fine] = [
-        Outcome::Measured,
-        Outcome::Dark,
-        Outcome::Noisy,
-        Outcome::Smooth,
-        Outcome::Fine,
+        PixelOutcome::Measured,
+        PixelOutcome::Dark,
+        PixelOutcome::Noisy,
+        PixelOutcome::Smooth,
+        PixelOutcome::Fine,
     ]
     .map(count);
     let ratio = |point: &MapPoint| point.measured / expected(point);
