@@ -299,6 +299,6 @@ fn missed(whole: Uncertain, measured: Option<Uncertain>) -> Option<f64> {
     };
     let measured = measured.unwrap_or(none);
     let missed = whole.value - measured.value;
-    let is_found = missed > FOUND * whole.error.hypot(measured.error);
+    let is_found = missed > FOUND * libm::hypot(whole.error, measured.error);
     (is_found && missed > MISSED * whole.value).then_some(missed / whole.value)
 }
