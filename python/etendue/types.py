@@ -401,7 +401,7 @@ LightLobe = TypedDict("LightLobe", {"from": "Sequence[float]", "radiance": "NotR
 
 
 class LightPoint(TypedDict):
-    """A point that emits uniformly in all directions."""
+    """A point that emits uniformly in all directions ahead, along `path.direction`. No light goes back."""
 
     Point: "LightPointFields"
 

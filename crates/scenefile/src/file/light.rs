@@ -39,7 +39,7 @@ pub enum LightFile {
         #[schemars(transform = radiance)]
         radiance: ColorFile,
     },
-    /// A point that emits uniformly in all directions.
+    /// A point that emits uniformly in all directions ahead, along `path.direction`. No light goes back.
     Point {
         /// Position, in world coordinates.
         #[schemars(transform = place)]

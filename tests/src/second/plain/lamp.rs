@@ -184,8 +184,8 @@ impl Lamp {
     pub(super) fn emits(&self, to: Vector) -> f64 {
         let [x, y, cosine] = self.axes.components(to);
         match &self.kind {
-            Kind::Point(intensity, None) => *intensity,
             _ if cosine <= 0.0 => 0.0,
+            Kind::Point(intensity, None) => *intensity,
             Kind::Point(intensity, Some(image)) => {
                 intensity * picture(image, [x / cosine, y / cosine])
             }
