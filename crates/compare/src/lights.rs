@@ -11,16 +11,9 @@ impl Prediction {
     ///
     /// The sum has the largest defect of its lights, because no map may be wrong. The matrix and the
     /// foci are those of the first light with a first-order chain. The sum has no covariance.
-    pub(crate) fn chain_of_lights(
-        each: &[Self],
-        theories: &[&Theory],
-        exact: &Self,
-    ) -> Option<FirstOrder> {
+    pub(crate) fn chain_of_lights(each: &[Self], theories: &[&Theory]) -> Option<FirstOrder> {
         let mut chains = each.iter().filter_map(|of| of.first_order.as_ref());
         let first = chains.next()?;
-        if each.len() == 1 {
-            return Some(first.clone());
-        }
         let mut chain = FirstOrderChain {
             covariance: [None; 2],
             ..first.chain.clone()
@@ -29,33 +22,34 @@ impl Prediction {
             chain.defect = chain.defect.max(other.defect);
             chain.radiance_defect = chain.radiance_defect.max(other.radiance_defect);
         }
-        let linear = each.iter().zip(theories).map(|(of, theory)| {
-            if let Some(FirstOrder {
-                slices, replicates, ..
-            }) = &of.first_order
-            {
-                return Some((slices.clone(), replicates.clone()));
-            }
-            let is_linear = matches!(theory, Theory::Parallel(_)) || of.slices.is_dark();
-            is_linear.then(|| (of.slices.clone(), of.replicates.clone()))
-        });
-        let linear: Vec<(Slices, Vec<Slices>)> = linear.collect::<Option<_>>()?;
-        let (slices, replicates) = linear.into_iter().reduce(|(a, of_a), (b, of_b)| {
-            let both = replicates((&a, &of_a), (&b, &of_b));
-            (sum(&a, &b), both)
-        })?;
+        let grid = first.slices.grid;
+        let (mut slices, mut all) = (Slices::zeros(grid), Vec::new());
+        for (of, theory) in each.iter().zip(theories) {
+            let linear = match &of.first_order {
+                Some(chain) => (&chain.slices, &chain.replicates[..]),
+                None if matches!(theory, Theory::Parallel(_)) || of.slices.is_dark() => {
+                    replicated(of)
+                }
+                None => return None,
+            };
+            all = replicates((&slices, &all), linear);
+            slices = sum(&slices, linear.0);
+        }
+        let exact = each
+            .iter()
+            .fold(Slices::zeros(grid), |all, of| sum(&all, &of.slices));
         chain.error = if chain.as_printed {
-            // The slices are those of the printed formulas, and the error is that of the corrected ones.
+            // The slices follow the printed formulas, and the error is that of the corrected ones.
             let errors = each
                 .iter()
                 .filter_map(|of| Some(of.first_order.as_ref()?.chain.error * of.slices.norm()));
-            errors.sum::<f64>() / exact.slices.norm()
+            errors.sum::<f64>() / exact.norm()
         } else {
-            slices.independent_relative_difference(&exact.slices)
+            slices.independent_relative_difference(&exact)
         };
         Some(FirstOrder {
             slices,
-            replicates,
+            replicates: all,
             chain,
         })
     }

@@ -121,8 +121,8 @@ fn meshes(scene: &Scene) -> f64 {
         let normals = mesh.smooth.as_ref().map_or(0.0, |_| NORMALS);
         mesh.triangles.len() as f64 * (TRIANGLE + normals)
     });
-    // The sum of no numbers is −0.
-    0.0 + each.sum::<f64>()
+    // The method `sum` returns −0 for no numbers.
+    each.fold(0.0, |all, bytes| all + bytes)
 }
 
 fn cells(grid: &SliceGrid) -> f64 {

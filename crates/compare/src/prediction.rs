@@ -100,15 +100,16 @@ impl Prediction {
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let each = Self::of_lights(scene, plane, applicability).map(|(_, of)| of);
-        let each: Vec<Self> = each.collect();
+        let mut each: Vec<Self> = each.collect();
+        if each.len() == 1 {
+            return each.remove(0);
+        }
         let theories = applicability.of_lights(scene, plane);
         let theories: Vec<&Theory> = theories.map(|(_, _, of, _)| &of.theory).collect();
-        let sum = each.iter().cloned().reduce(Self::plus);
+        let first_order = Self::chain_of_lights(&each, &theories);
+        let sum = each.into_iter().reduce(Self::plus);
         let sum = sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability));
-        Self {
-            first_order: Self::chain_of_lights(&each, &theories, &sum),
-            ..sum
-        }
+        Self { first_order, ..sum }
     }
 
     /// Returns the prediction of theory for each light that may reach a plane, with the number of

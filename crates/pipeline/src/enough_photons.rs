@@ -80,10 +80,7 @@ const MORE_OFTEN: f64 = 10.0;
 
 /// Names the other method at planes that more photons would decide, if it reaches the window much
 /// more often.
-pub(crate) fn name_other_method(
-    case: &MeasuredScene,
-    planes: &mut [PlaneComparison],
-) -> Result<(), Failure> {
+pub(crate) fn name_other_method(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     for (plane, compared) in planes.iter_mut().enumerate() {
         let report = &mut compared.report;
         let is_rare = report.in_window == 0 || report.photons_needed.is_some();
@@ -94,7 +91,11 @@ pub(crate) fn name_other_method(
         if report.class == Class::Reference || other == Method::Even {
             continue;
         }
-        let tried = reached(case.scene.seen_at(&[plane]), other, TRIED)? as f64 / TRIED as f64;
+        // A scene that the other method cannot measure is no reason to fail.
+        let Ok(tried) = reached(case.scene.seen_at(&[plane]), other, TRIED) else {
+            continue;
+        };
+        let tried = tried as f64 / TRIED as f64;
         // A part of the photons is aimed at each window.
         let aimed = case.scene.run.photons as f64 / case.scene.planes.len() as f64;
         let often = tried * aimed / (report.in_window as f64).max(1.0);
@@ -105,7 +106,6 @@ pub(crate) fn name_other_method(
             );
         }
     }
-    Ok(())
 }
 
 /// Returns the number of photons or rays that a verdict needs in a window.

@@ -19,8 +19,9 @@ pub enum Parameter {
     Travel(usize),
     /// The size of the first shape of an opaque mask, or of the hole of an aperture. For a
     /// rectangle, it is the side along X; for a bar, which is a rectangle of unlimited length, it
-    /// is the width; for a disc, it is the radius; for a polygon, it is the extent along X. All shapes of the mask scale by the same factor about their centres, and a
-    /// polygon scales about its centroid.
+    /// is the width; for a disc, it is the radius; for a polygon, it is the extent along X. All
+    /// shapes of the mask scale by the same factor about their centres, and a polygon scales about
+    /// its centroid.
     BlockerSide(usize),
     /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
     /// other edges do not move.

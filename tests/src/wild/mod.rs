@@ -29,7 +29,7 @@ pub(crate) use plain::plain_scene;
 pub(crate) use run::text;
 pub(crate) use scene::scene;
 pub(crate) use several::several;
-pub(crate) use small::{SmallOptions, small};
+pub(crate) use small::{MORE_PHOTONS, SmallOptions, small};
 
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;

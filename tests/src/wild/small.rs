@@ -52,7 +52,7 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Number of photons in the second comparison, divided by the number in the first comparison. The
 /// second prediction also sums more rays. Otherwise it would have the same noise as the first
 /// prediction.
-pub(super) const MORE_PHOTONS: u64 = 8;
+pub(crate) const MORE_PHOTONS: u64 = 8;
 /// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
 

@@ -16,7 +16,7 @@ use crate::hostile::dice::Dice;
 use crate::progress::progress;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
-use crate::wild::{plain_scene, text};
+use crate::wild::{MORE_PHOTONS, plain_scene, text};
 use etendue_scene::{Scene, SceneFile, resolve};
 use lamp::Lamp;
 use path::{Choice, NUMBERS};
@@ -63,13 +63,11 @@ const PRECISE: f64 = 1.5e-3;
 const RESOLVED: f64 = 5e-3;
 /// The difference, in standard errors, beyond which a scene is compared again with other points and
 /// other photons. Correct scenes do so once in 16,000.
-const FAR: f64 = 4.0;
+const MAX_DEVIATION: f64 = 4.0;
 /// The seed of the points that choose between paths.
 const PILOT: u64 = 0x70_696c_6f74;
 /// Fewer paths or photons with light do not tell their error.
-const FEW: u64 = 1000;
-/// The factor of photons in the second comparison.
-const MORE: u64 = 8;
+const MIN_LIT: u64 = 1000;
 
 /// An estimate with its standard error.
 #[derive(Clone, Copy)]
@@ -112,7 +110,7 @@ struct Pair {
 impl Pair {
     /// Whether both tracers bring enough light to know their errors.
     fn is_lit(&self) -> bool {
-        self.plain.count.min(self.photons.count) >= FEW
+        self.plain.count.min(self.photons.count) >= MIN_LIT
     }
 
     fn deviation(&self) -> f64 {
@@ -202,7 +200,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
         return Ok(None);
     }
     let pair = judged(&world, &scene, options.photons);
-    if fault.is_none() && pair.deviation().abs() > FAR {
+    if fault.is_none() && pair.deviation().abs() > MAX_DEVIATION {
         fs::create_dir_all(&options.out)?;
         let name = format!("{}-{number}.ron", options.seed);
         fs::write(options.out.join(name), text(&file)?)?;
@@ -217,8 +215,8 @@ fn judged(world: &PlainWorld, scene: &Scene, photons: u64) -> Pair {
         photons: by_photons(scene, seed, photons),
     };
     let first = compared(1, photons);
-    if first.deviation().abs() > FAR {
-        compared(2, MORE * photons)
+    if first.deviation().abs() > MAX_DEVIATION {
+        compared(2, MORE_PHOTONS * photons)
     } else {
         first
     }
@@ -226,11 +224,7 @@ fn judged(world: &PlainWorld, scene: &Scene, photons: u64) -> Pair {
 
 fn by_photons(scene: &Scene, seed: u64, photons: u64) -> Estimate {
     let mut scene = scene.clone();
-    for run in
-        std::iter::once(&mut scene.run).chain(scene.other_lights.iter_mut().map(|s| &mut s.run))
-    {
-        (run.seed, run.photons) = (seed, photons);
-    }
+    (scene.run.seed, scene.run.photons) = (seed, photons);
     let measurement = traced(&scene);
     let values = measurement.at_plane(0).map(|batch| batch.slices.at_zero());
     Estimate {
@@ -264,7 +258,7 @@ fn choice(world: &PlainWorld, lamp: &Lamp) -> Choice {
     }
     let error = |choice: Choice| {
         let pilot = of_lamp(world, lamp, choice, (PILOT, 0), POINTS[0]);
-        let is_dark = pilot.count < FEW;
+        let is_dark = pilot.count < MIN_LIT;
         if is_dark {
             f64::INFINITY
         } else {
@@ -330,7 +324,7 @@ fn row(fault: Option<usize>, pairs: &[(u64, Pair)]) -> Row {
         .collect();
     let far: Vec<String> = pairs
         .iter()
-        .filter(|(_, pair)| pair.deviation().abs() > FAR)
+        .filter(|(_, pair)| pair.deviation().abs() > MAX_DEVIATION)
         .map(|(number, pair)| {
             let off = 100.0 * (pair.photons.mean / pair.plain.mean - 1.0);
             format!("{number} ({off:+.1} %, {:+.1} σ)", pair.deviation())
@@ -359,8 +353,8 @@ fn section(options: &PlainOptions, rows: Vec<Row>) -> ReportSection {
         text: format!(
             "The light in the window of a random plane, ∫ L W, by {} photons through the resolved \
             scene, and by paths through the objects of the scene file. *Resolved* scenes would \
-            show a difference of {} %. Required: no scene differs by more than {FAR} standard \
-            errors twice (the second time with other points and {MORE} times the photons), and \
+            show a difference of {} %. Required: no scene differs by more than {MAX_DEVIATION} standard \
+            errors twice (the second time with other points and {MORE_PHOTONS} times the photons), and \
             each fault that is planted in the resolved scene is found.",
             options.photons,
             100.0 * RESOLVED,
@@ -401,7 +395,7 @@ mod tests {
     fn light_crosses_masks_behind_its_lamp_on_the_way_back() {
         for text in MASKS_BEFORE_A_LAMP {
             let sound = pair(text, None);
-            assert!(sound.is_lit() && sound.deviation().abs() < FAR);
+            assert!(sound.is_lit() && sound.deviation().abs() < MAX_DEVIATION);
             let forgotten = pair(text, Some(FAULTS[0])).deviation();
             assert!(forgotten > 10.0, "{forgotten}");
         }

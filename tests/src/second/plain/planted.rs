@@ -19,34 +19,18 @@ const TURN: f64 = 0.087;
 /// The share of the first leg by which a mask is moved.
 const ASIDE: f64 = 0.05;
 
-/// Plants a fault; returns whether the scene has what the fault changes.
+/// Plants a fault in the scene of each light; returns whether one of them has what it changes.
 pub(super) fn plant(fault: &str, scene: &mut Scene) -> bool {
-    let mut planted = false;
-    if fault == "a mask moved aside" || fault == "a surface turned by 5°" {
-        planted |= plant_in_light(fault, scene, 0.0);
+    let first = scene.path.first_hit();
+    let mut is_planted = plant_in_light(fault, scene, 0.0);
+    for other in &mut scene.other_lights {
+        let depth = first - other.path.first_hit();
+        is_planted |= plant_in_light(fault, other, depth);
     }
-    let depths: Vec<f64> = scene
-        .other_lights
-        .iter()
-        .map(|other| depth(scene, other))
-        .collect();
-    if fault.starts_with("two surfaces") {
-        planted |= plant_in_light(fault, scene, 0.0);
-    }
-    for (other, depth) in scene.other_lights.iter_mut().zip(depths) {
-        planted |= plant_in_light(fault, other, depth);
-    }
-    planted || plant_in_first(fault, scene)
+    is_planted
 }
 
-fn depth(scene: &Scene, other: &Scene) -> f64 {
-    scene.path.first_hit() - other.path.first_hit()
-}
-
-fn plant_in_first(fault: &str, scene: &mut Scene) -> bool {
-    fault.starts_with("a side") && plant_in_light(fault, scene, 0.0)
-}
-
+/// Plants a fault in the scene of a light at a depth behind the first light.
 fn plant_in_light(fault: &str, scene: &mut Scene, depth: f64) -> bool {
     match fault {
         "masks before a further light forgotten" => {
@@ -55,13 +39,14 @@ fn plant_in_light(fault: &str, scene: &mut Scene, depth: f64) -> bool {
             scene.blockers.len() < before
         }
         "a mask moved aside" => {
-            let by = ASIDE * scene.path.first_hit();
+            let (by, mut is_moved) = (ASIDE * scene.path.first_hit(), false);
             for layer in &mut scene.blockers {
                 if let Mask::Opaque {
                     shapes,
                     half_planes,
                 } = &mut layer.mask
                 {
+                    is_moved = true;
                     half_planes.iter_mut().for_each(|half| half.edge += by);
                     for shape in shapes {
                         match shape {
@@ -71,7 +56,7 @@ fn plant_in_light(fault: &str, scene: &mut Scene, depth: f64) -> bool {
                     }
                 }
             }
-            !scene.blockers.is_empty()
+            is_moved
         }
         "a surface turned by 5°" => {
             let turn = |d: DVec3, x: DVec3| (d + TURN * x).normalize();
