@@ -19,9 +19,13 @@ const OPEN: f64 = 0.01;
 /// The weights of a plane's frequencies that give values at finer frequencies.
 pub(super) struct Finer {
     grid: SliceGrid,
-    /// The weights along ρ ≥ 0 and along ν for each azimuth, as arrays [finer, given].
-    weights: Vec<[Array2<f64>; 2]>,
+    /// The weights along ρ ≥ 0 and along ν for each azimuth.
+    weights: Vec<[AxisWeights; 2]>,
 }
+
+/// The weights along an axis, as an array [finer, given]; `None` if the given frequencies are fine
+/// enough.
+type AxisWeights = Option<Array2<f64>>;
 
 impl Finer {
     /// Returns finer frequencies over the same range. Returns `None` in two cases: the scene's
@@ -39,8 +43,9 @@ impl Finer {
             let slopes = WindowCovariance::new([window.u, window.v], toward);
             let rows = weights(&given.rho, &grid.rho, &positions)?;
             let columns = weights(&given.nu, &grid.nu, &slopes)?;
-            let rows = rows.slice_axis(Axis(0), Slice::from(grid.rho.half..));
-            Some([rows.to_owned(), columns])
+            let positive = Slice::from(grid.rho.half..);
+            let rows = rows.map(|rows| rows.slice_axis(Axis(0), positive).to_owned());
+            Some([rows, columns])
         };
         if grid == *given {
             return None;
@@ -58,9 +63,19 @@ impl Finer {
         let full = slices.full();
         let each = finer.half.outer_iter_mut().zip(full.outer_iter());
         for ((mut finer, slice), [rows, columns]) in each.zip(&self.weights) {
-            let by_row = product(rows.view(), slice);
-            let by_column = by_row.t().as_standard_layout().into_owned();
-            finer.assign(&product(columns.view(), by_column.view()).t());
+            let by_row = match rows {
+                Some(rows) => product(rows.view(), slice),
+                None => slice
+                    .slice_axis(Axis(0), Slice::from(self.grid.rho.half..))
+                    .to_owned(),
+            };
+            match columns {
+                Some(columns) => {
+                    let by_column = by_row.t().as_standard_layout().into_owned();
+                    finer.assign(&product(columns.view(), by_column.view()).t());
+                }
+                None => finer.assign(&by_row),
+            }
         }
         finer
     }
@@ -151,13 +166,16 @@ impl WindowCovariance {
     }
 }
 
-/// Returns the weights of given frequencies for finer frequencies, [finer, given]; `None` if the
-/// given frequencies do not determine all intermediate values.
+/// Returns the weights of given frequencies for finer frequencies; `None` if the given frequencies
+/// do not determine all intermediate values.
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
     covariance: &WindowCovariance,
-) -> Option<Array2<f64>> {
+) -> Option<AxisWeights> {
+    if from == to {
+        return Some(None);
+    }
     let count = from.count();
     let parts = (from.spacing / to.spacing).round();
     let apart: Array1<f64> = (0..to.count())
@@ -181,7 +199,7 @@ fn weights(
         .skip(parts / 2)
         .take(parts * (count - 1) + 1);
     let is_determined = between.all(|explained| *explained >= 1.0 - OPEN);
-    is_determined.then(|| weights.reversed_axes().as_standard_layout().into_owned())
+    is_determined.then(|| Some(weights.reversed_axes().as_standard_layout().into_owned()))
 }
 
 /// The factor L of a symmetric matrix A = L Lᵀ.
