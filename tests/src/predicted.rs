@@ -7,10 +7,7 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
 /// Budget of rays. With this budget, the error of a prediction is a fifth of the noise of the
 /// photons.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 5e6,
-    error: 5e-4,
-};
+const BUDGET: RayBudget = RayBudget::new(5e6, 5e-4);
 
 /// Predicts the slices behind specular surfaces by rays.
 pub(crate) fn traced(

@@ -15,10 +15,7 @@ use glam::{DQuat, DVec3};
 
 /// The budget of a prediction. With this budget, the error of a prediction in these tests is a few
 /// times the error of the photons.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 2e6,
-    error: 1e-3,
-};
+const BUDGET: RayBudget = RayBudget::new(2e6, 1e-3);
 /// Photons per scene.
 const PHOTONS: u64 = 1 << 22;
 /// False rejection rate over all planes.

@@ -61,7 +61,7 @@ fn json(scene: &Scene, theories: &[Applicability], threads: usize) -> Value {
             "chain": theory.steps(scene, plane),
         })
     });
-    let [photons, predictions, bytes] = effort(scene, theories, threads);
+    let ([photons, predictions, comparisons], bytes) = effort(scene, theories, threads);
     json!({
         "scene": scene.name,
         "scene_hash": scene.hash(),
@@ -72,28 +72,25 @@ fn json(scene: &Scene, theories: &[Applicability], threads: usize) -> Value {
             "threads": threads,
             "seconds_of_photons": photons,
             "most_seconds_of_predictions": predictions,
+            "seconds_of_comparisons": comparisons,
             "most_bytes": bytes,
         },
     })
 }
 
-/// Returns the approximate seconds of photons, the most seconds of predictions, and the most bytes
-/// that a run of the scene takes.
-fn effort(scene: &Scene, theories: &[Applicability], threads: usize) -> [f64; 3] {
-    let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
-    [
-        photons,
-        predictions,
-        Memory::new(scene, theories, threads).total(),
-    ]
+/// Returns the seconds of photons, predictions and comparisons as [`seconds`] does, for several
+/// threads, and the most bytes that a run of the scene takes.
+fn effort(scene: &Scene, theories: &[Applicability], threads: usize) -> ([f64; 3], f64) {
+    let seconds = seconds(scene, theories).map(|seconds| seconds / threads as f64);
+    (seconds, Memory::new(scene, theories, threads).total())
 }
 
 /// Returns the approximate time and memory that a run of the scene takes.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
-    let [photons, predictions, bytes] = effort(scene, theories, threads);
+    let ([photons, predictions, comparisons], bytes) = effort(scene, theories, threads);
     let gigabytes = bytes / 1e9;
     format!(
-        "\nexpected on {}: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, at most {gigabytes:.2} GB",
+        "\nexpected on {}: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, about {comparisons:.1} s for comparisons and pictures, at most {gigabytes:.2} GB",
         limits::counted(threads)
     )
 }

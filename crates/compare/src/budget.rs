@@ -5,7 +5,7 @@ use etendue_theory::RayBudget;
 
 /// The largest accepted relative error of a prediction. This limit holds even if there are few
 /// photons.
-const MAX_ERROR: f64 = 3e-3;
+const MAX_ERROR: f64 = 1e-2;
 /// The accepted relative error of a prediction, times √photons. The noise of the photons is about
 /// 25/√photons.
 const OF_NOISE: f64 = 12.0;
@@ -13,15 +13,19 @@ const OF_NOISE: f64 = 12.0;
 /// enough that the prediction takes less time than tracing the photons.
 const SHARE: f64 = 0.25;
 /// The smallest number of rays, for runs with few photons.
-const FEWEST: f64 = 1.1e6;
+const FEWEST: f64 = 6e5;
 
 /// Returns the ray budget of a prediction. The prediction ends when its error is half of the
 /// photons' noise. It also ends when it has taken about as long as the photons take. An error of
-/// half the noise raises the smallest detectable change by 12 %.
+/// half the noise raises the smallest detectable change by 12 %. The lights of the scene share the
+/// budget, and its planes share the time for closed forms.
 pub(crate) fn budget(scene: &Scene) -> RayBudget {
     let photons = scene.run.photons as f64;
+    let nodes = (SHARE * photons).max(FEWEST);
+    let all = RayBudget::new(nodes, (OF_NOISE / photons.sqrt()).min(MAX_ERROR));
+    let each = all.shared(1 + scene.other_lights.len());
     RayBudget {
-        nodes: (SHARE * photons).max(FEWEST),
-        error: (OF_NOISE / photons.sqrt()).min(MAX_ERROR),
+        steps: each.steps / scene.planes.len() as f64,
+        ..each
     }
 }

@@ -25,10 +25,7 @@ pub struct Convergence {
 }
 
 /// The budget of rays of each step, for planes where no quadrature rule converges.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 4e6,
-    error: 1e-4,
-};
+const BUDGET: RayBudget = RayBudget::new(4e6, 1e-4);
 /// The shares e.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// If the error of the chain is less than this multiple of the quadrature error, it does not show

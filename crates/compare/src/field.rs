@@ -203,10 +203,7 @@ mod tests {
             panic!("parallel planes");
         };
         let cells = ProjectionGrid::new(&plane.window, 1);
-        let budget = RayBudget {
-            nodes: 32.0 * f64::from(1 << 15),
-            error: 0.0,
-        };
+        let budget = RayBudget::new(32.0 * f64::from(1 << 15), 0.0);
         let mut rays = None;
         chain.with_rays((&plane.window, &plane.grid, &cells), budget, &mut |nets| {
             let transform = FieldTransform::new(grid, Assignment::Tsc);

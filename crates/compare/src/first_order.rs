@@ -1,6 +1,5 @@
 //! Adds the paper's linearised chain to the exact ray-space prediction.
 
-use crate::budget::budget;
 use crate::residuals::Residuals;
 use crate::system::print;
 use crate::verdict::Verdict;
@@ -9,7 +8,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use etendue_theory::rays::{self, SpecularSystem};
-use etendue_theory::{Observed, Over, Predicted};
+use etendue_theory::{Observed, Over, Predicted, RayBudget};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -112,14 +111,14 @@ impl FirstOrder {
         scene: &Scene,
         view: &Observed<SpecularSystem>,
         over: Over<'_>,
-        exact: &Predicted,
+        (exact, budget): (&Predicted, RayBudget),
     ) -> Option<Self> {
         if exact.slices.is_dark() {
             return None;
         }
         let by = |print| {
             let chain = rays::chain(view, print)?;
-            let linear = rays::linear(view, over, &chain.map, budget(scene));
+            let linear = rays::linear(view, over, &chain.map, budget);
             Some((chain, linear))
         };
         let (corrected, mut linear) = by(Edition::Corrected)?;

@@ -121,6 +121,7 @@ impl Prediction {
     ) -> impl Iterator<Item = (usize, Self)> + 'a {
         let is_alone = scene.other_lights.is_empty();
         let each = applicability.of_lights(scene, plane);
+        let mut budget = budget(scene);
         each.map(move |(of, seen, theory, number)| {
             let among = (!is_alone).then_some(number);
             let (window, grid) = (plane.window, plane.grid);
@@ -129,7 +130,8 @@ impl Prediction {
                 grid,
                 ..seen.clone()
             };
-            let found = Self::of_light((of, &seen, theory), budget(scene), among);
+            let found = Self::of_light((of, &seen, theory), budget, among);
+            budget.beside = libm::hypot(budget.beside, found.slices.norm());
             (number, found)
         })
     }
@@ -152,7 +154,7 @@ impl Prediction {
             Theory::None => empty,
             Theory::Specular(view) => {
                 let found = empty.by(view.as_ref(), over, (budget, number), |exact| {
-                    FirstOrder::new(scene, view, over, exact)
+                    FirstOrder::new(scene, view, over, (exact, budget))
                 });
                 let size = found.slices.norm();
                 let meshes = applicability.off_patches.filter(|_| size > 0.0);

@@ -84,12 +84,19 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
 /// `fig9b` and 33e-9 s for `ggx_sphere`, on an AMD EPYC processor.
 const SECONDS: f64 = 4e-8;
 
-/// Returns the approximate seconds that one core takes to trace the photons of a scene, and the
-/// most seconds that it takes for the predictions of the scene.
+/// Seconds on one core for each frequency and batch, to compare a plane with its prediction, to
+/// draw it and to save it.
+const SECONDS_OF_COMPARISON: f64 = 3e-7;
+
+/// Returns the approximate seconds that one core takes to trace the photons of a scene, the most
+/// seconds that it takes for the predictions of the scene, and the approximate seconds that it
+/// takes to compare and draw the planes.
 #[must_use]
-pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
+pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 3] {
     let planes = scene.planes.iter();
     let azimuths: usize = planes.clone().map(|plane| plane.grid.azimuths).sum();
+    let frequencies = planes.clone().map(|plane| plane.grid.half_shape());
+    let frequencies: usize = frequencies.map(|[k, m, n]| k * m * n).sum();
     let works = planes
         .zip(theories)
         .map(|(plane, theory)| of(scene, plane, theory));
@@ -98,6 +105,7 @@ pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
     [
         scene.run.photons as f64 * azimuths as f64 * SECONDS,
         1e-9 * steps,
+        frequencies as f64 * scene.run.batches as f64 * SECONDS_OF_COMPARISON,
     ]
 }
 
@@ -111,7 +119,7 @@ pub(crate) fn of(
     let over = (&plane.window, &plane.grid, &picture);
     let lit = applicability.of_lights(scene, plane);
     let lit = lit.filter(|(.., theory, _)| theory.dark.is_none());
-    let each = lit.map(|(of, _, theory, _)| theory.theory.work(over, budget(of)));
+    let each = lit.map(|(_, _, theory, _)| theory.theory.work(over, budget(scene)));
     each.reduce(PredictionWork::then)
         .unwrap_or_else(PredictionWork::none)
 }

@@ -11,12 +11,8 @@ use etendue_field::{
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
-/// The budget that the command uses for a saved scene: the total number of rays, and the target
-/// error.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 1.1e6,
-    error: 3e-3,
-};
+/// The total number of rays, and the target error.
+const BUDGET: RayBudget = RayBudget::new(1.1e6, 3e-3);
 /// Radius of the receiver, metres.
 pub(crate) const APERTURE: f64 = 0.6;
 /// Number of azimuths of a saved scene; rays are added until the slices at all azimuths reach the

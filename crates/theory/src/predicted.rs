@@ -30,4 +30,7 @@ pub struct Predicted {
     /// The prediction of the first-order chain of a reflection minus `slices`, computed with the
     /// same rays.
     pub to_first_order: Option<Slices>,
+    /// The number of rays that were followed for the slices, or for the picture if the slices are
+    /// not a sum over nets; zero for closed forms.
+    pub nodes: f64,
 }

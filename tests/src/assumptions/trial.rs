@@ -42,10 +42,7 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Maximum time for a prediction and its derivatives, in seconds of one core.
 const LONGEST: f64 = 60.0;
 /// The budget of rays that a run with 2·10⁵ photons gives to a prediction.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 1.1e6,
-    error: 3e-3,
-};
+const BUDGET: RayBudget = RayBudget::new(1.1e6, 3e-3);
 
 /// Tries the planes of a scene for which `check` reports a violation, one plane at a time.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
@@ -105,7 +102,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
         others: Vec::new(),
         off_patches: None,
     }];
-    let [_, longest] = seconds(scene, &regardless);
+    let [_, longest, _] = seconds(scene, &regardless);
     if longest > LONGEST || too_much_work(scene, &regardless).is_some() {
         return TrialEnding::Skipped;
     }

@@ -14,10 +14,7 @@ use etendue_theory::{Chain, Model, Operator, RayBudget};
 pub(super) const SCENE: &str = "iris";
 
 /// About as many rays as a run with four million photons has.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 4e6,
-    error: 1e-3,
-};
+const BUDGET: RayBudget = RayBudget::new(4e6, 1e-3);
 
 /// The name of a fault, and the change of a chain that plants it.
 type HoleFault = (&'static str, fn(&mut Chain));

@@ -14,10 +14,7 @@ use glam::DQuat;
 /// Enough photons to detect the subtlest fault.
 const PHOTONS: u64 = 1 << 26;
 /// The error of the prediction is a fifth of the photons' noise.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 2e7,
-    error: 1e-3,
-};
+const BUDGET: RayBudget = RayBudget::new(2e7, 1e-3);
 /// A fault counts as detected if p is below this value.
 const SEEN: f64 = 0.01;
 /// The name of the scene.

@@ -289,7 +289,7 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
         return SmallEnding::Judged(class, Verdict::Undecided);
     }
     let theories = [theory];
-    let [_, longest] = seconds(scene, &theories);
+    let [_, longest, _] = seconds(scene, &theories);
     if longest > LONGEST_PREDICTION {
         return SmallEnding::Skipped;
     }

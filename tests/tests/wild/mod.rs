@@ -177,10 +177,7 @@ fn only_the_reference_is_right(
 }
 
 /// Budget with which a prediction has an error of half a per cent in each of these scenes.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 1e6,
-    error: 5e-3,
-};
+const BUDGET: RayBudget = RayBudget::new(1e6, 5e-3);
 
 fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
     let view = system(scene, &scene.planes[plane]).unwrap();

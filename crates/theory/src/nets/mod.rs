@@ -30,18 +30,25 @@ const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net by which derivatives are computed.
-const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
+const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
+/// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
+/// nodes of the prediction. Each node has two rays for each parameter.
+const FOR_DERIVATIVES: f64 = 0.5;
 /// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
 /// derivative, the measured value of a parameter is wrong by about the square of this error, times
 /// the difference between the measured value and the scene's value.
-const DERIVATIVE_ERROR: f64 = 0.03;
+const DERIVATIVE_ERROR: f64 = 0.1;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
+/// Minimum number of nodes of a net in a trial.
+const TRIAL_NODES: u32 = 1 << 8;
+/// Number of nodes in all nets of a trial, as a share of the nodes of the prediction.
+const OF_TRIAL: f64 = 1.0 / 128.0;
 
 /// Minimum number of nodes of a net before a prediction may stop because its estimated error is
 /// small. If nets have not yet sampled any ray of large weight, the spread between nets
 /// underestimates the error.
-const MIN_NODES: u32 = 1 << 14;
+const MIN_NODES: u32 = 1 << 12;
 
 /// The criterion by which a prediction stops adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +58,43 @@ pub struct RayBudget {
     pub nodes: f64,
     /// The relative error ‖error‖/‖F‖ below which no more nodes are added.
     pub error: f64,
+    /// The norm of the light of other sources at the same plane. If it exceeds ‖F‖, `error` is
+    /// relative to it.
+    pub beside: f64,
+    /// Maximum number of computing steps of a closed form or a quadrature. If it needs more steps,
+    /// nets replace it. A core takes about a nanosecond for each step.
+    pub steps: f64,
+}
+
+/// Default maximum number of computing steps of a closed form or a quadrature. These steps take
+/// about ten seconds on one core. In the same time, nets of rays would give a prediction with more
+/// noise than the photons, so a closed form is preferred up to this limit.
+const MAX_STEPS: f64 = 1e10;
+
+impl RayBudget {
+    /// Returns the budget for the only light of a scene with one plane, from the maximum number of
+    /// nodes and the relative error.
+    #[must_use]
+    pub const fn new(nodes: f64, error: f64) -> Self {
+        Self {
+            nodes,
+            error,
+            beside: 0.0,
+            steps: MAX_STEPS,
+        }
+    }
+
+    /// Returns this budget for one of several equal parts of the work whose errors are independent.
+    #[must_use]
+    pub fn shared(self, parts: usize) -> Self {
+        let parts = parts as f64;
+        Self {
+            nodes: self.nodes / parts,
+            error: self.error / parts.sqrt(),
+            steps: self.steps / parts,
+            ..self
+        }
+    }
 }
 
 /// A ray at a plane.
@@ -105,6 +149,7 @@ impl Predicted {
             covariance: None,
             derivatives: Vec::new(),
             to_first_order: None,
+            nodes: 0.0,
         }
     }
 }
@@ -129,7 +174,9 @@ pub(crate) fn sums(
     budget: RayBudget,
 ) -> Predicted {
     let nets = begin(integrand, grid, bins, 0, REPLICATES);
-    let (nets, error) = doubled(integrand, (window, grid), nets, budget);
+    let all = budget.nodes / REPLICATES as f64;
+    let first = power_of_two(all, [FIRST_NODES, MIN_NODES]);
+    let (nets, error) = doubled(integrand, (window, grid), nets, (first, budget));
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
@@ -139,70 +186,78 @@ pub(crate) fn sums(
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
+    budget: RayBudget,
 ) -> f64 {
-    const TRIED: RayBudget = RayBudget {
-        nodes: 0.0,
-        error: f64::INFINITY,
-    };
+    const TRIED: RayBudget = RayBudget::new(0.0, f64::INFINITY);
     let nets = begin(integrand, grid, 1, REPLICATES, OF_TRIALS);
-    doubled(integrand, (window, grid), nets, TRIED).1
+    let all = OF_TRIAL * budget.nodes;
+    let each = power_of_two(all / OF_TRIALS as f64, [TRIAL_NODES, FIRST_NODES]);
+    doubled(integrand, (window, grid), nets, (each, TRIED)).1
 }
 
-/// Doubles the number of nodes of all nets until the budget is reached, and returns the nets with
-/// the error of their mean.
+/// Returns the largest power of two that is at most `count` and within a range of powers of two.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the number is within the range"
+)]
+fn power_of_two(count: f64, [least, most]: [u32; 2]) -> u32 {
+    1 << (count.clamp(f64::from(least), f64::from(most)) as u32).ilog2()
+}
+
+/// Adds `first` nodes to all nets, doubles the number of nodes until the budget is reached, and
+/// returns the nets with the error of their mean.
 fn doubled(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     mut running: Vec<Running>,
-    budget: RayBudget,
+    (first, budget): (u32, RayBudget),
 ) -> (Vec<Running>, f64) {
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
-    let least = if budget.error.is_infinite() {
-        0
-    } else {
-        MIN_NODES
-    };
-    let (mut each, mut more) = (0, FIRST_NODES);
-    while more < least && 2.0 * f64::from(more) * REPLICATES as f64 <= budget.nodes {
-        more *= 2;
-    }
+    let (mut each, mut more) = (0, first);
     loop {
         running
             .par_iter_mut()
             .for_each(|net| net.add(integrand, &transform, &picture, more));
         each += more;
         let nodes = f64::from(each) * REPLICATES as f64;
-        let error = relative_error(running.iter().map(|net| &net.slices[0]));
-        let is_enough = error <= budget.error && each >= least;
+        let [error, own] = error_and_norm(running.iter().map(|net| &net.slices[0]));
+        let is_enough = error <= budget.error * own.max(f64::from(each) * budget.beside);
         if is_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
-            return (running, error);
+            return (running, relative([error, own]));
         }
         more = each;
     }
 }
 
 /// Returns the mean of each field over nets, to a relative error of [`DERIVATIVE_ERROR`] or with
-/// the maximum number of nodes in [`DERIVATIVE_NODES`].
+/// a number of nodes in proportion to that of the prediction.
 ///
 /// The nets differ from the nets of [`sums`], because a derivative that has the same noise as the
 /// prediction biases every measured parameter.
 pub(crate) fn means(
     integrand: &(impl Integrand + ?Sized),
-    window: &Window,
-    grid: &SliceGrid,
+    (window, grid): (&Window, &SliceGrid),
+    predicted: &Predicted,
 ) -> Vec<Slices> {
+    if integrand.fields() == 0 {
+        return Vec::new();
+    }
     let picture = ProjectionGrid::new(window, 1);
     let transform = SliceTransform::new(grid);
     let first = REPLICATES + OF_TRIALS;
     let mut running = begin(integrand, grid, 1, first, OF_DERIVATIVES);
     let of_field = |running: &[Running], field: usize| {
         let replicates = running.iter().map(|net| &net.slices[field]);
-        (mean(replicates.clone()), relative_error(replicates))
+        (
+            mean(replicates.clone()),
+            relative(error_and_norm(replicates)),
+        )
     };
-    let [mut more, most] = DERIVATIVE_NODES;
-    let mut each = 0;
+    let most = most_for_derivatives(integrand.fields(), predicted.nodes);
+    let (mut each, mut more) = (0, DERIVATIVE_NODES[0]);
     loop {
         running
             .par_iter_mut()
@@ -220,12 +275,18 @@ pub(crate) fn means(
     }
 }
 
+/// Returns the maximum number of nodes in each net for derivatives.
+fn most_for_derivatives(fields: usize, nodes: f64) -> u32 {
+    let all = FOR_DERIVATIVES * nodes / fields as f64;
+    power_of_two(all / OF_DERIVATIVES as f64, DERIVATIVE_NODES)
+}
+
 /// Estimated number of computing steps to follow a ray and to spread it onto the grid of an
 /// azimuth.
 const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Approximate number of fields that are summed in one pass over all derivatives.
-const FIELDS: f64 = 12.0;
+const FIELDS: usize = 12;
 /// Estimated number of computing steps of a transform for each frequency.
 const TRANSFORM: f64 = 300.0;
 
@@ -237,9 +298,10 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST_NODES))).max(1.0);
-    let derivatives = OF_DERIVATIVES as f64 * FIELDS;
-    // Derivatives add to the work of the prediction, since each field has its own rays.
-    let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
+    let derivatives = (OF_DERIVATIVES * FIELDS) as f64;
+    // Derivatives add to the work of the prediction. Each is a difference between two rays.
+    let of_derivatives = 2.0 * derivatives * f64::from(most_for_derivatives(FIELDS, budget.nodes));
+    let rays = budget.nodes + of_derivatives;
     let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
     let slice = 16.0 * cells;
@@ -248,7 +310,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
         // Memory contains the sums of all nets, the means of finished nets, and the oversampled
         // grids of each thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
-        bytes_each: SliceTransform::new(grid).bytes() * FIELDS,
+        bytes_each: SliceTransform::new(grid).bytes() * FIELDS as f64,
         drivers: format!(
             "{:.0e} rays, and transforms to {cells:.0} frequencies",
             budget.nodes
@@ -333,6 +395,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
         covariance: moments.central(),
         derivatives: Vec::new(),
         to_first_order: None,
+        nodes: each * REPLICATES as f64,
     }
 }
 
@@ -351,9 +414,9 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
     sum
 }
 
-/// Returns ‖σ‖/‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
+/// Returns ‖σ‖ and ‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
 /// (12)).
-fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> f64 {
+fn error_and_norm<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> [f64; 2] {
     let r = slices.len() as f64;
     let mean = mean(slices.clone());
     let size: f64 = mean.half.iter().map(|f| f.norm_sqr()).sum();
@@ -362,8 +425,12 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
         apart.iter().map(|d| d.norm_sqr()).sum()
     };
     let variance = slices.map(spread).sum::<f64>() / (r * (r - 1.0));
-    if size > 0.0 {
-        (variance / size).sqrt()
+    [variance.sqrt(), size.sqrt()]
+}
+
+fn relative([error, norm]: [f64; 2]) -> f64 {
+    if norm > 0.0 {
+        error / norm
     } else {
         f64::INFINITY
     }
@@ -439,10 +506,7 @@ mod tests {
     #[test]
     fn plain_summation() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
-        let budget = RayBudget {
-            nodes: 0.0,
-            error: 0.0,
-        };
+        let budget = RayBudget::new(0.0, 0.0);
         let found = sums(&Waves, (&window, &grid), 4, budget);
         let replicate = 5;
         let mut net = NetPoints::new(replicate, DIMENSIONS);
@@ -471,7 +535,9 @@ mod tests {
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
-        let derivative = &means(&Waves, &window, &grid)[0];
+        let picture = ProjectionGrid::new(&window, 1);
+        let dark = Predicted::dark(&grid, &picture);
+        let derivative = &means(&Waves, (&window, &grid), &dark)[0];
         let mut running = begin(&Waves, &grid, 1, 0, OF_DERIVATIVES);
         let (picture, transform) = (ProjectionGrid::new(&window, 1), SliceTransform::new(&grid));
         for net in &mut running {
@@ -485,10 +551,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bytes() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
-        let budget = RayBudget {
-            nodes: 1e5,
-            error: 0.0,
-        };
+        let budget = RayBudget::new(1e5, 0.0);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let run = || sums(&Waves, (&window, &grid), 4, budget);

@@ -1,7 +1,7 @@
 //! Access to the individual rays of nets. With it, other sums over rays than the slices of a
 //! spectrum can be computed.
 
-use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
+use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode, power_of_two};
 use etendue_field::TwoPlane;
 
 /// A light field at a plane as weighted rays in independent nets. Each net represents the complete
@@ -22,18 +22,12 @@ pub(crate) struct SampledNets<'a, I> {
 }
 
 /// Maximum number of nodes of a net.
-const MAX_NODES: f64 = (1_u32 << 29) as f64;
+const MAX_NODES: u32 = 1 << 29;
 
 impl<'a, I: Integrand> SampledNets<'a, I> {
     /// Returns the number of nodes per net: the largest power of two that a budget allows.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number is between 1 and 2^29"
-    )]
     pub(crate) fn new(integrand: &'a I, budget: RayBudget) -> Self {
-        let allowed = (budget.nodes / REPLICATES as f64).clamp(1.0, MAX_NODES) as u32;
-        let nodes = 1 << allowed.ilog2();
+        let nodes = power_of_two(budget.nodes / REPLICATES as f64, [1, MAX_NODES]);
         Self { integrand, nodes }
     }
 }

@@ -115,6 +115,7 @@ impl Model for Chain {
             projection: projection(self, window, picture),
             covariance: None,
             to_first_order: None,
+            nodes: 0.0,
             slices,
         }
     }
@@ -137,10 +138,6 @@ impl Model for Chain {
     }
 }
 
-/// Maximum number of computing steps of a closed form or a quadrature. These steps take about ten
-/// seconds on one core. In the same time, nets of rays would give a prediction with more noise than
-/// the photons, so a closed form is preferred up to this limit.
-const MAX_STEPS: f64 = 1e10;
 /// Maximum number of computing steps of a closed form for each ray of the budget. These steps take
 /// about as long as tracing four photons, and a run has about four photons for each ray of the
 /// budget.
@@ -167,7 +164,7 @@ impl Chain {
         let work = work(self, window, grid, picture);
         let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
         let max_steps = if fits(&work_of_nets(grid, budget)) {
-            MAX_STEPS.max(MAX_STEPS_PER_RAY * budget.nodes)
+            budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes)
         } else {
             MAX_STEPS_WITHOUT_NETS
         };
@@ -277,10 +274,7 @@ mod tests {
                 nu: axis(0.5),
             };
             let picture = ProjectionGrid::new(&window, 1);
-            let budget = RayBudget {
-                nodes: 1e6,
-                error: 1e-3,
-            };
+            let budget = RayBudget::new(1e6, 1e-3);
             chain.is_sampled((&window, &grid, &picture), budget)
         };
         assert!(!sampled(0.1));
@@ -300,17 +294,14 @@ mod tests {
         };
         let picture = ProjectionGrid::new(&window, 64);
         let over = (&window, &grid, &picture);
-        let budget = RayBudget {
-            nodes: 1.1e6,
-            error: 3e-3,
-        };
+        let budget = RayBudget::new(1.1e6, 3e-3);
         for (exponent, is_sampled) in [(0.0, false), (10_000.0, true)] {
             let light = spot(Shape::Rectangle(square([0.0; 2], 0.2)), exponent);
             let masks = rectangles(&blockers(20, 0.2, 0.12));
             let chain = chain_of(light, [(1.0, Some(masks)), (1.0, None)]);
             assert_eq!(chain.is_sampled(over, budget), is_sampled, "{exponent}");
             let steps = chain.work(over, budget).steps;
-            assert!(steps <= MAX_STEPS, "{exponent}");
+            assert!(steps <= budget.steps, "{exponent}");
         }
     }
 

@@ -66,6 +66,7 @@ pub(super) fn predicted(
         covariance: None,
         derivatives: Vec::new(),
         to_first_order: None,
+        nodes: 0.0,
     }
 }
 

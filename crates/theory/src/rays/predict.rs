@@ -14,16 +14,10 @@ use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPla
 use glam::DVec3;
 
 /// The budget of rays in nets if no projection picture and no moments are requested.
-const NO_PICTURES: RayBudget = RayBudget {
-    nodes: 0.0,
-    error: f64::INFINITY,
-};
-/// The budget of rays in nets for a projection picture and moments, if slices are computed by a
+const NO_PICTURES: RayBudget = RayBudget::new(0.0, f64::INFINITY);
+/// The maximum number of rays in nets for a projection picture and moments, if slices are computed by a
 /// quadrature rule.
-const FOR_PICTURES: RayBudget = RayBudget {
-    nodes: 1e6,
-    error: 0.0,
-};
+const FOR_PICTURES: f64 = 262_144.0;
 
 /// Returns the prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.
@@ -43,11 +37,13 @@ pub(crate) fn predict(
     let masks = Masks::new(&system.layers, &system.obstacles);
     let field = exact_field(view, &masks);
     let way = neighbourhood(system, plane)
-        .and_then(|lands| Some((lands, best(&field, observed, &lands, over)?)));
-    let budgets = [budget, FOR_PICTURES];
+        .and_then(|lands| Some((lands, best(&field, observed, &lands, over, budget)?)));
+    let of_pictures = RayBudget::new(budget.nodes.min(FOR_PICTURES), 0.0);
+    let budgets = [budget, of_pictures];
+    let found = summed(&field, observed, way, over, budgets);
     Predicted {
-        derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy)),
-        ..summed(&field, observed, way, over, budgets)
+        derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy), &found),
+        ..found
     }
 }
 
@@ -63,7 +59,7 @@ pub(crate) fn with_rays(
     let masks = Masks::new(&system.layers, &system.obstacles);
     let field = exact_field(view, &masks);
     let draw = neighbourhood(system, plane).and_then(|lands| {
-        let strategy = best(&field, observed, &lands, over)?;
+        let strategy = best(&field, observed, &lands, over, budget)?;
         RaySampler::new(observed, over.0, &lands, strategy)
     });
     if let Some(draw) = draw {
@@ -98,7 +94,7 @@ pub fn linear(
     let rays = map.rays();
     let lands = (rays.offset, rays.matrix);
     let field = linear_field(view, &masks, map);
-    let way = best(&field, mapped, &lands, over).map(|strategy| (lands, strategy));
+    let way = best(&field, mapped, &lands, over, budget).map(|strategy| (lands, strategy));
     summed(&field, mapped, way, over, [budget, NO_PICTURES])
 }
 
@@ -106,6 +102,7 @@ fn derivatives(
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
     over: Over<'_>,
     strategy: Option<RayStrategy>,
+    predicted: &Predicted,
 ) -> Vec<Slices> {
     let zeros = || vec![Slices::zeros(*over.1); moved.len()];
     let Some(strategy) = strategy else {
@@ -134,7 +131,7 @@ fn derivatives(
         apart: moved.iter().map(|moved| moved.apart).collect(),
         sides,
     };
-    nets::means(&differences, over.0, over.1)
+    nets::means(&differences, (over.0, over.1), predicted)
 }
 
 fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
@@ -329,6 +326,7 @@ fn best(
     observed: (&SpecularSystem, Option<&Plane>),
     lands: &Neighbourhood,
     (window, grid, _): Over<'_>,
+    budget: RayBudget,
 ) -> Option<RayStrategy> {
     let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
         let draw = RaySampler::new(observed, window, lands, strategy)?;
@@ -337,7 +335,7 @@ fn best(
             draw: &draw,
             window,
         };
-        Some((nets::trial(&drawn, (window, grid)), strategy))
+        Some((nets::trial(&drawn, (window, grid), budget), strategy))
     });
     let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
     best.map(|(_, strategy)| strategy)

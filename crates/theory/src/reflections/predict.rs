@@ -22,7 +22,7 @@ pub(crate) fn predict(
     budget: RayBudget,
 ) -> Predicted {
     let (window, grid, picture) = over;
-    let Some(paths) = best(view, over) else {
+    let Some(paths) = best(view, over, budget) else {
         return dark(moved, over);
     };
     let of = |view| {
@@ -40,11 +40,12 @@ pub(crate) fn predict(
         paths: &paths,
         moved: sides.collect(),
     };
-    let mut means = nets::means(&around, window, grid).into_iter();
+    let found = nets::sums(&paths, (window, grid), picture.bins, budget);
+    let mut means = nets::means(&around, (window, grid), &found).into_iter();
     Predicted {
         to_first_order: means.next(),
         derivatives: means.collect(),
-        ..nets::sums(&paths, (window, grid), picture.bins, budget)
+        ..found
     }
 }
 
@@ -55,7 +56,7 @@ pub(crate) fn with_rays(
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
-    if let Some(paths) = best(view, over) {
+    if let Some(paths) = best(view, over, budget) {
         then(&nets::SampledNets::new(&paths, budget));
     }
 }
@@ -65,10 +66,11 @@ pub(crate) fn with_rays(
 fn best<'a>(
     view: &'a Observed<ReflectionSystem>,
     (window, grid, _): Over<'a>,
+    budget: RayBudget,
 ) -> Option<FieldPaths<'a>> {
     let mut paths = FieldPaths::new(view, window)?;
     if let Some(at_plane) = paths.at_plane() {
-        let error = |paths: &FieldPaths<'a>| nets::trial(paths, (window, grid));
+        let error = |paths: &FieldPaths<'a>| nets::trial(paths, (window, grid), budget);
         let by_angle = error(&paths);
         paths.aim_last_leg(at_plane);
         if error(&paths) > by_angle {

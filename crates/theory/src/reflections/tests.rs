@@ -14,10 +14,7 @@ use etendue_field::{
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::Arc;
 
-const BUDGET: RayBudget = RayBudget {
-    nodes: 2e6,
-    error: 1e-4,
-};
+const BUDGET: RayBudget = RayBudget::new(2e6, 1e-4);
 
 fn predicted<S>(system: &S, plane: &Plane, window: &Window) -> Predicted
 where

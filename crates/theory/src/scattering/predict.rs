@@ -34,15 +34,16 @@ pub(crate) fn predict(
     (window, grid, picture): Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
-    let strategy = fastest(view, chain, (window, grid));
-    let field = ScatteredField::new(view, window, chain, strategy);
     let budget = affordable(&view.system, budget);
+    let strategy = fastest(view, chain, (window, grid), budget);
+    let field = ScatteredField::new(view, window, chain, strategy);
     let around = VariedFields::new(&field, chain, moved, strategy);
-    let mut means = nets::means(&around, window, grid).into_iter();
+    let found = nets::sums(&field, (window, grid), picture.bins, budget);
+    let mut means = nets::means(&around, (window, grid), &found).into_iter();
     Predicted {
         to_first_order: around.linear.as_ref().and_then(|_| means.next()),
         derivatives: means.collect(),
-        ..nets::sums(&field, (window, grid), picture.bins, budget)
+        ..found
     }
 }
 
@@ -54,12 +55,10 @@ pub(crate) fn with_rays(
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
-    let strategy = fastest(view, chain, (window, grid));
+    let budget = affordable(&view.system, budget);
+    let strategy = fastest(view, chain, (window, grid), budget);
     let field = ScatteredField::new(view, window, chain, strategy);
-    then(&nets::SampledNets::new(
-        &field,
-        affordable(&view.system, budget),
-    ));
+    then(&nets::SampledNets::new(&field, budget));
 }
 
 /// Returns the strategy that has the smallest error for the same computing time.
@@ -67,10 +66,11 @@ fn fastest(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
     (window, grid): (&Window, &SliceGrid),
+    budget: RayBudget,
 ) -> LightStrategy {
     best(&view.system, |strategy| {
         let field = ScatteredField::new(view, window, chain, strategy);
-        nets::trial(&field, (window, grid)).powi(2) * strategy.time()
+        nets::trial(&field, (window, grid), budget).powi(2) * strategy.time()
     })
 }
 

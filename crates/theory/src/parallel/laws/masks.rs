@@ -212,10 +212,7 @@ fn polygons_are_predicted_by_nets() {
     let window = hann();
     let picture = ProjectionGrid::new(&window, 8);
     let over: Over<'_> = (&window, &grid, &picture);
-    let budget = RayBudget {
-        nodes: 1e6,
-        error: 1e-3,
-    };
+    let budget = RayBudget::new(1e6, 1e-3);
     let light = lambertian(square([0.0, 0.0], 0.2));
     let diffuse = |mut chain: Chain| {
         let name = "floor".to_owned();

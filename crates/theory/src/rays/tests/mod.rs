@@ -11,10 +11,7 @@ use glam::DVec3;
 
 /// A budget of two million nodes, with which errors are far below the deviations that these tests
 /// detect.
-const BUDGET: RayBudget = RayBudget {
-    nodes: 2e6,
-    error: 1e-5,
-};
+const BUDGET: RayBudget = RayBudget::new(2e6, 1e-5);
 
 fn view(system: &SpecularSystem, plane: &Plane) -> Observed<SpecularSystem> {
     Observed {

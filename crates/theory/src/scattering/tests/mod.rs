@@ -56,10 +56,7 @@ fn by(
     grid: &SliceGrid,
     chain: Option<&ScatteringChain>,
 ) -> Predicted {
-    let budget = RayBudget {
-        nodes: 2e6,
-        error: 1e-4,
-    };
+    let budget = RayBudget::new(2e6, 1e-4);
     let picture = ProjectionGrid::new(window, 8);
     predict(
         &view(system, plane),
