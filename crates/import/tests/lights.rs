@@ -37,10 +37,16 @@ fn directionalarea_is_a_sheet() {
     };
     for plugin in ["rectangle", "disk"] {
         let read = world(&sheet(plugin));
-        let [Light::Sheet { shape: 1, exitance }] = &read.lights[..] else {
+        let [
+            Light::Sheet {
+                shape: 1,
+                exitance: Texture::Constant(value),
+            },
+        ] = read.lights[..]
+        else {
             panic!("{:?}", read.lights)
         };
-        assert!(matches!(exitance, Texture::Constant(value) if *value == 3.0));
+        assert_close(&[value], &[3.0], 0.0);
         assert!(read.shapes.len() == 2 && read.shapes[1].emission.is_none());
     }
     let refused = causes(&sheet("sphere"));

@@ -42,9 +42,9 @@ const WORDS: [&str; 30] = [
     "true",
 ];
 
-/// Links that lead out of the folder of results, with their targets.
-const LINKS: [[&str; 2]; 5] = [
-    ["out", "../elsewhere"],
+/// Links below the folder of results that lead out of it, with their targets. The folder itself may
+/// be a link, because the user names it.
+const LINKS: [[&str; 2]; 4] = [
     ["out/green", "../../elsewhere"],
     ["out/summary.json", "../../elsewhere/kept"],
     ["out/receiver", "../../elsewhere"],
