@@ -25,7 +25,8 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
         let threads = rayon::current_num_threads();
         let about = seconds(&scene, &theories)[1] / threads as f64;
         tell(&format!(
-            "expected on {threads} threads: {:.1} to {:.1} s",
+            "expected on {}: {:.1} to {:.1} s",
+            limits::counted(threads),
             about / MARGIN,
             about * MARGIN
         ));

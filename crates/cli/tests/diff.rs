@@ -88,7 +88,7 @@ fn two_results_are_told_apart_when_they_differ() {
     // Other scenes.
     let pitch = [
         "scene: another",
-        "blockers.0.pitch: 0.10000000000000002 and 0.11",
+        "blockers[0].pitch: 0.10000000000000002 and 0.11",
         "verdict: different: slices",
         "side of blockers at receiver",
     ];
@@ -104,7 +104,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a window",
         4,
-        &["the field window.u.Hann is 0.30000000000000004 and 0.2"],
+        &["the field window.u is 0.30000000000000004 and 0.2"],
     );
     found(
         &folder,

@@ -97,6 +97,36 @@ fn characters_that_are_not_safe_are_escaped_in_json() {
     assert_eq!(told(path, &line, 0)["results"][0]["folder"], name);
 }
 
+/// U+202E would show the rest of a message in reverse. It is escaped in messages of the program and
+/// of the library that reads arguments.
+#[test]
+fn characters_that_turn_text_around_are_escaped_in_messages() {
+    for line in [
+        "ru\u{202e}n a.ron",
+        "run a.ron --phot\u{202e}ons 3",
+        "run a.ron --photons 1\u{202e}0",
+        "run a.ron b\u{202e}c",
+        "run a.ron --set b\u{202e}c=1",
+        "run a.ron --method b\u{202e}c",
+        "run b\u{202e}c.ron",
+        "import b\u{202e}c.xml",
+        "figure b\u{202e}c",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let arguments = line.split_whitespace();
+        let output = etendue()
+            .current_dir(folder.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        let message = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(!message.contains('\u{202e}'), "{line:?}: {message:?}");
+        let is_named = message.contains(r"\u{202e}") || line.contains("--set");
+        assert!(is_named, "{line:?}: {message}");
+        assert_eq!(output.status.code(), Some(2), "{line:?}: {message}");
+    }
+}
+
 #[test]
 fn verdicts_are_coloured_where_the_user_wants_it() {
     let folder = tempfile::tempdir().unwrap();

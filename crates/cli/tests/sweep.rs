@@ -236,7 +236,7 @@ fn bad_sweeps_are_refused() {
     assert!(
         String::from_utf8(output.stderr)
             .unwrap()
-            .contains("blockers.0.JitteredSquares.fill")
+            .contains("in which blockers[0].fill is")
     );
     let fields = "sweep small.ron --photons 4096 --out s --set blockers.0.fill=0.3,0.5";
     let output = call(path, fields);

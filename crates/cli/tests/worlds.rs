@@ -5,7 +5,7 @@
 use crate::common::{etendue, files, json};
 use std::fs;
 use std::path::Path;
-use std::process::Output;
+use std::process::{Command, Output};
 
 const ROOM: &str = r#"<scene version="3.0.0">
   <sensor type="perspective" id="front">
@@ -331,4 +331,70 @@ fn what_is_asked_must_be_there() {
     let message = refused(path, &format!("render plane.obj {view}"));
     assert!(message.contains("--sky"), "{message}");
     done(path, &format!("render plane.obj {view} --sky 1 --out sky"));
+}
+
+/// Returns a square of 2 n² triangles, as a binary PLY file.
+fn square(n: u32) -> Vec<u8> {
+    let vertices = (n + 1) * (n + 1);
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\n\
+         property float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        2 * n * n
+    )
+    .into_bytes();
+    for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+        let place = [i, j, 0].map(|k| u16::try_from(k).unwrap());
+        bytes.extend(place.into_iter().flat_map(|k| f32::from(k).to_le_bytes()));
+    }
+    for corner in (0..n).flat_map(|i| (0..n).map(move |j| i * (n + 1) + j)) {
+        let [a, b, c, d] = [0, 1, n + 1, n + 2].map(|step| corner + step);
+        for triangle in [[a, b, d], [a, d, c]] {
+            bytes.push(3);
+            bytes.extend(triangle.into_iter().flat_map(u32::to_le_bytes));
+        }
+    }
+    bytes
+}
+
+/// A scene that would be read on a larger machine is no bad input. The hierarchy over 2,000,000
+/// triangles takes 400 MB, and the picture with its numbers 960 MB.
+#[test]
+#[cfg(target_os = "linux")]
+fn worlds_that_do_not_fit_into_memory_cannot_run() {
+    let picture = r#"<shape type="disk"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="large.pfm"/></texture></bsdf></shape></scene>"#;
+    let folder = folder("</scene>", picture);
+    let at = |name: &str| folder.path().join(name);
+    // A file of a hundredth of its stated size, to be refused by what its head states.
+    let large = [&b"Pf\n10000 8000\n-1.0\n"[..], &[0; 3_200_000]].concat();
+    fs::write(at("large.pfm"), large).unwrap();
+    fs::write(at("square.ply"), square(1000)).unwrap();
+    let look = "--sky 1 --look-from 500,500,900 --look-at 500,500,0 --up 0,1,0";
+    let cases = [
+        ("import square.ply", 0, ""),
+        (
+            "render square.ply LOOK --size 2x2 --out r",
+            3,
+            "memory for hierarchies",
+        ),
+        (
+            "probe square.ply LOOK --pixel 1,1 --out p",
+            3,
+            "memory for hierarchies",
+        ),
+        ("import room.xml", 3, "the memory to read the picture"),
+    ];
+    for (line, code, part) in cases {
+        let line = line.replace("LOOK", look);
+        let script = format!(
+            "ulimit -v 500000; exec {} {line}",
+            env!("CARGO_BIN_EXE_etendue")
+        );
+        let mut command = Command::new("sh");
+        let output = command.args(["-c", &script]).current_dir(folder.path());
+        let output = output.output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{line}: {message}");
+        assert!(message.contains(part), "{line}: {message}");
+    }
 }

@@ -223,4 +223,6 @@ fn memory_grows_with_threads_up_to_batches() {
     assert_eq!(more.threads.to_bits(), many.threads.to_bits());
     assert_eq!(more.batches.to_bits(), one.batches.to_bits());
     assert!(more.total() >= many.total() && many.total() > one.total());
+    // Without meshes, the message must not state "-0.00 GB for meshes".
+    assert!(one.meshes.is_sign_positive());
 }

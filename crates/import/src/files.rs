@@ -1,6 +1,6 @@
 //! Access to the files that a scene may refer to.
 
-use etendue_scene::read_file;
+use etendue_scene::{ReadError, read_file};
 use std::cell::Cell;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,6 +16,7 @@ pub(crate) struct Files {
     /// The number of bytes that may be read, unpacked or kept.
     most: u64,
     left: Cell<u64>,
+    is_short: Cell<bool>,
 }
 
 impl Files {
@@ -30,6 +31,7 @@ impl Files {
             root: root.canonicalize()?,
             most,
             left: Cell::new(most),
+            is_short: Cell::new(false),
         })
     }
 
@@ -60,7 +62,12 @@ impl Files {
 
     /// Returns the bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
-        let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
+        let bytes = read_file(path, self.left.get()).map_err(|error| {
+            if matches!(error, ReadError::TooLong { .. }) {
+                self.fall_short();
+            }
+            error.to_string()
+        })?;
         if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
             return Err("is a pointer of Git LFS; `git lfs pull` fetches its content".to_owned());
         }
@@ -78,11 +85,22 @@ impl Files {
         self.left.get()
     }
 
+    /// Records that more bytes are needed than are left.
+    pub(crate) fn fall_short(&self) {
+        self.is_short.set(true);
+    }
+
+    /// Checks whether the free memory of the machine did not suffice.
+    pub(crate) fn lacks_memory(&self) -> bool {
+        self.is_short.get() && self.most < MOST_BYTES
+    }
+
     /// Counts unpacked bytes.
     pub(crate) fn spend(&self, bytes: u64) -> Result<(), String> {
         let left = self.left.get().checked_sub(bytes);
         self.left.set(left.unwrap_or_default());
         left.map(|_| ()).ok_or_else(|| {
+            self.fall_short();
             let most = self.most;
             let why = if most < MOST_BYTES {
                 ", the free memory,"

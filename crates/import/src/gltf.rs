@@ -53,5 +53,5 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
         reader.color = options.color;
         world = reader.world();
     }
-    report.finish(world)
+    report.finish(world, &file.files)
 }

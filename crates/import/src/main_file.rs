@@ -67,6 +67,9 @@ impl<'a> MainFile<'a> {
 
     /// Returns the refusal of a scene for a single cause.
     pub(crate) fn refused(&self, message: impl Into<String>) -> Refused {
-        Refused::because(self.given, message)
+        Refused {
+            lacks_memory: self.files.lacks_memory(),
+            ..Refused::because(self.given, message)
+        }
     }
 }

@@ -71,5 +71,5 @@ fn read(text: String, file: &MainFile<'_>, options: &Options) -> Result<Imported
         world = reader.world();
         leftover::tell(&objects, &report);
     }
-    report.finish(world)
+    report.finish(world, files)
 }

@@ -47,6 +47,8 @@ pub struct Imported {
 pub struct Refused {
     /// The causes, at least one, in the order of reading.
     pub causes: Vec<Note>,
+    /// Whether the free memory of the machine did not suffice to read the scene.
+    pub lacks_memory: bool,
 }
 
 impl Refused {
@@ -60,6 +62,7 @@ impl Refused {
         };
         Self {
             causes: vec![cause],
+            lacks_memory: false,
         }
     }
 }

@@ -34,5 +34,5 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let (place, folder) = (file.place(), file.folder());
     let reader = reader::ObjReader::new(&file.files, &report, place, folder, options.color);
     let world = reader.world(read);
-    report.finish(world)
+    report.finish(world, &file.files)
 }

@@ -93,5 +93,5 @@ fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, 
     let reader = reader::PbrtReader::new(&scene, files, &report, options.color, file.folder());
     let world = reader.world(&whole);
     leftover::tell(&scene, &report);
-    report.finish(world)
+    report.finish(world, files)
 }

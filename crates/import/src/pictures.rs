@@ -81,7 +81,7 @@ impl TransferCurve {
 
 fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
-    let channels = decode(path, &bytes, files.left())?;
+    let channels = decode(path, &bytes, files)?;
     if let Samples::Numbers(numbers) = &channels.samples
         && !numbers.iter().all(|v| f64::from(v.abs()) <= MAX_NUMBER)
     {
@@ -111,16 +111,18 @@ pub(crate) fn counted(files: &Files, raster: Result<Raster, Fault>) -> Result<Ra
     Ok(raster)
 }
 
-/// Decodes the channels of a picture; the extension of `path` determines the format. `memory` is
-/// the memory for the picture and for one number of each pixel, in bytes.
-pub(crate) fn decode(path: &Path, bytes: &[u8], memory: u64) -> Result<Channels, String> {
+/// Decodes the channels of a picture; the extension of `path` determines the format. The
+/// picture and one number of each pixel must fit into the memory that is left.
+pub(crate) fn decode(path: &Path, bytes: &[u8], files: &Files) -> Result<Channels, String> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
-        "bmp" => bmp::read(bytes, memory),
-        "jpg" | "jpeg" => jpeg::read(bytes, memory),
-        "hdr" | "rgbe" => hdr::read(bytes, memory),
-        "pfm" => pfm::read(bytes, memory),
-        "png" | "exr" => read_channels(path, bytes, memory).map_err(invalid),
+        "bmp" => bmp::read(bytes, files),
+        "jpg" | "jpeg" => jpeg::read(bytes, files),
+        "hdr" | "rgbe" => hdr::read(bytes, files),
+        "pfm" => pfm::read(bytes, files),
+        "png" | "exr" => {
+            read_channels(path, bytes, files.left()).map_err(|fault| invalid(fault, files))
+        }
         other => Err(format!(
             "has extension {other:?}; allowed: bmp, exr, hdr, jpg, pfm, png"
         )),

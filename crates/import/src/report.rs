@@ -1,5 +1,6 @@
 //! Causes for which a scene is refused, and notes.
 
+use crate::files::Files;
 use crate::note::{Imported, Note, Refused};
 use etendue_world::World;
 use std::cell::RefCell;
@@ -94,13 +95,16 @@ impl Report {
     }
 
     /// Returns the world, or all causes.
-    pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
+    pub(crate) fn finish(self, world: World, files: &Files) -> Result<Imported, Refused> {
         let causes = self.causes.into_inner().finish("causes");
         if causes.is_empty() {
             let notes = self.notes.into_inner().finish("notes");
             Ok(Imported { world, notes })
         } else {
-            Err(Refused { causes })
+            Err(Refused {
+                causes,
+                lacks_memory: files.lacks_memory(),
+            })
         }
     }
 }

@@ -126,6 +126,7 @@ fn pictures_are_counted_before_they_are_decoded() {
     assert!(read(3 * 8_000_000 + 16_000_000 + 1_000_000).is_ok());
     let refused = read(2 * 8_000_000 + 16_000_000 - 1).unwrap_err();
     assert_eq!(refused.causes.len(), 2, "{refused}");
+    assert!(refused.lacks_memory);
     let message = &refused.causes[0].message;
     assert!(
         message.contains("the memory to read the picture is 16000000 bytes"),

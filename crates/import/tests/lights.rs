@@ -27,6 +27,35 @@ fn points_have_a_place() {
     assert!(causes(&both)[0].contains("position is given together with to_world"));
 }
 
+/// The shape stays, because it blocks light, but it has no radiance.
+#[test]
+fn directionalarea_is_a_sheet() {
+    let sheet = |shape: &str| {
+        let emitter =
+            r#"<emitter type="directionalarea"><float name="radiance" value="3"/></emitter>"#;
+        format!(r#"<shape type="sphere"/><shape type="{shape}">{emitter}</shape>"#)
+    };
+    for plugin in ["rectangle", "disk"] {
+        let read = world(&sheet(plugin));
+        let [
+            Light::Sheet {
+                shape: 1,
+                exitance: Texture::Constant(value),
+            },
+        ] = read.lights[..]
+        else {
+            panic!("{:?}", read.lights)
+        };
+        assert_close(&[value], &[3.0], 0.0);
+        assert!(read.shapes.len() == 2 && read.shapes[1].emission.is_none());
+    }
+    let refused = causes(&sheet("sphere"));
+    assert!(
+        refused[0].contains("directionalarea on `sphere`; allowed: rectangle or disk"),
+        "{refused:?}"
+    );
+}
+
 #[test]
 fn directional_light_goes_along_z() {
     let way = |inside: &str| match light("directional", inside) {
@@ -56,6 +85,9 @@ fn spots_have_two_angles() {
         other => panic!("{other:?}"),
     };
     assert_close(&angles(""), &[15.0, 20.0], 1e-12);
+    let half =
+        r#"<float name="cutoff_angle" value="90"/><float name="beam_width" value="89.999"/>"#;
+    assert_close(&angles(half), &[89.999, 90.0], 1e-12);
     assert_close(
         &angles("<float name=\"cutoff_angle\" value=\"40\"/>"),
         &[30.0, 40.0],

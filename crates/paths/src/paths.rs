@@ -72,6 +72,12 @@ impl<'a> TracedPath<'a> {
 }
 
 impl Paths {
+    /// Returns the approximate memory that the hierarchies over a world take, in bytes.
+    #[must_use]
+    pub fn bytes(world: &World) -> f64 {
+        SceneGeometry::bytes(world)
+    }
+
     /// Creates the paths of a world whose shapes refer to existing materials.
     #[must_use]
     pub fn new(world: &World) -> Self {

@@ -265,6 +265,40 @@ fn lamps_may_emit_on_both_sides() {
     assert_seen(&around, ASIDE, DVec3::ZERO, 0.5 * 6.0);
 }
 
+/// A flat light of half-width 0.5, tilted by 60°, lights a patch of half-widths 1 and 0.5 as
+/// distant light along its normal would.
+#[test]
+fn sheets_shine_along_their_normal_only() {
+    let tilt = DQuat::from_rotation_y(2.0 * PI / 3.0);
+    let place = -4.0 * (tilt * DVec3::Z);
+    let to_world = DAffine3::from_scale_rotation_translation(DVec3::splat(0.5), tilt, place);
+    let radiance = 0.5 * 3.0 * 0.5 / PI;
+    let world = |geometry: &Geometry, is_flipped| {
+        let sheet = Shape {
+            is_flipped,
+            ..shape(geometry.clone(), to_world, 1, None)
+        };
+        let light = Light::Sheet {
+            shape: 1,
+            exitance: Texture::Constant(3.0),
+        };
+        floor(vec![sheet], vec![light])
+    };
+    let [square, disc] = [Geometry::Rectangle, Geometry::Disc];
+    let lit = [(&square, 0.9, 0.45), (&square, 0.0, 0.0), (&disc, 0.9, 0.1)];
+    for (geometry, x, y) in lit {
+        let at = DVec3::new(x, y, 0.0);
+        assert_seen(&world(geometry, false), ASIDE, at, radiance);
+        let (behind, _) = seen(&world(geometry, true), ASIDE, at, 1000);
+        assert!(behind.abs() < 1e-300, "{behind}");
+    }
+    let dark = [(&square, 1.1, 0.0), (&square, 0.0, 0.55), (&disc, 0.9, 0.4)];
+    for (geometry, x, y) in dark {
+        let (beside, _) = seen(&world(geometry, false), ASIDE, DVec3::new(x, y, 0.0), 1000);
+        assert!(beside.abs() < 1e-300, "{beside}");
+    }
+}
+
 #[test]
 fn glass_keeps_the_light_around_it() {
     let glass = Dielectric {

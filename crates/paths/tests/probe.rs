@@ -176,6 +176,22 @@ fn light_that_leaves_a_floor() {
     of.lights = vec![directional()];
     let radiance = 0.5 * 3.0 * 0.8 / PI;
     assert_even(&of, &QUESTION, &["camera", "leaving_1"], radiance);
+    // A flat light of the same direction and irradiance, behind the camera. It is wide enough for
+    // the window.
+    let Light::Directional { direction, .. } = directional() else {
+        unreachable!()
+    };
+    let to_world = DAffine3::from_scale_rotation_translation(
+        DVec3::new(2.0, 2.0, 1.0),
+        DQuat::from_rotation_arc(DVec3::Z, direction),
+        -9.0 * direction,
+    );
+    of.shapes.push(shape(Geometry::Rectangle, to_world, 0));
+    of.lights = vec![Light::Sheet {
+        shape: 1,
+        exitance: Texture::Constant(3.0),
+    }];
+    assert_even(&of, &QUESTION, &["camera", "leaving_1"], radiance);
 }
 
 #[test]

@@ -55,13 +55,21 @@ impl<'a> CovarianceStudy<'a> {
         let measurement = measured(scene, *method, 0..scene.run.batches, reporter)?;
         let predictions = predicted(scene, theories, *method, None, reporter)?;
         let source = method::source(&(*scene).clone().on_grids(), *method)?;
+        let bar = reporter.begin(Work::Steps {
+            verb: "transforming",
+            total: scene.planes.len(),
+            things: "planes",
+        });
+        bar.advance(0);
         let planes = predictions.iter().enumerate();
         let reports = planes.map(|(index, prediction)| {
-            of_plane(
+            let report = of_plane(
                 (&*source, &measurement, index),
                 (&theories[index], prediction),
                 reporter,
-            )
+            );
+            bar.advance(1);
+            report
         });
         Ok(SceneCovariances {
             reports: reports.collect::<Result<_, _>>()?,

@@ -95,6 +95,7 @@ fn counts(world: &World) -> Vec<(&'static str, usize)> {
             Light::Spot { .. } => "spotlights",
             Light::Projector { .. } => "projectors",
             Light::Directional { .. } => "directional lights",
+            Light::Sheet { .. } => "collimated lights",
             Light::Constant { .. } => "constant environments",
             Light::Sky(_) => "environment maps",
         };

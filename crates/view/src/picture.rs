@@ -4,7 +4,7 @@ use crate::adaptive;
 use crate::finite::require_finite;
 use crate::picture_request::PictureRequest;
 use crate::world_source;
-use etendue_paths::{Paths, Picture};
+use etendue_paths::Picture;
 use etendue_pipeline::{Reporter, Work};
 use etendue_store::Failure;
 use etendue_store::VERSION;
@@ -69,7 +69,7 @@ pub fn render(
         "version": VERSION,
         "notes": world_source::notes(&imported),
     });
-    let paths = Paths::new(&imported.world);
+    let paths = world_source::paths(&imported.world)?;
     let effort = if let Some(method) = method {
         let seen = (&paths, &camera);
         adaptive::render(

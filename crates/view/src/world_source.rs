@@ -1,6 +1,7 @@
 //! Reads scenes of other programs, to render pictures and to probe light fields.
 
 use etendue_import::{Imported, Options, import};
+use etendue_paths::Paths;
 use etendue_store::{ArgumentStyle, Failure, machine};
 use etendue_world::{Camera, Light, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
@@ -85,7 +86,13 @@ pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
         memory: Some(machine::available_memory()),
         ..source.options.clone()
     };
-    let mut imported = import(&source.path, &options).map_err(Failure::bad_input)?;
+    let mut imported = import(&source.path, &options).map_err(|refused| {
+        if refused.lacks_memory {
+            Failure::cannot_run(refused)
+        } else {
+            Failure::bad_input(refused)
+        }
+    })?;
     if source.bounces.is_some() {
         imported.world.depth = source.bounces;
     }
@@ -99,6 +106,18 @@ pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
             .insert(0, camera_at(viewpoint, source.arguments)?);
     }
     Ok(imported)
+}
+
+/// Prepares a scene for rays, unless the hierarchies over it would not fit into memory.
+pub(crate) fn paths(world: &World) -> Result<Paths, Failure> {
+    let [needed, left] = [Paths::bytes(world), machine::available_memory() as f64];
+    if needed > left {
+        let [needed, left] = [needed, left].map(|bytes| format!("{:.2} GB", bytes / 1e9));
+        return Err(Failure::cannot_run(format!(
+            "rays through the scene need {needed} of memory for hierarchies; {left} are available"
+        )));
+    }
+    Ok(Paths::new(world))
 }
 
 /// Returns notes on omissions and approximations of the scene, for result files and the terminal.

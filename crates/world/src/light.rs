@@ -52,6 +52,13 @@ pub enum Light {
         /// Irradiance of a surface perpendicular to this direction, W m⁻².
         irradiance: f64,
     },
+    /// Light that leaves the front of a flat shape along its normal, and in no other direction.
+    Sheet {
+        /// The index of the shape, a rectangle or a disc.
+        shape: usize,
+        /// Power per area of the shape, W m⁻².
+        exitance: Texture,
+    },
     /// Uniform radiance from all directions.
     Constant {
         /// W m⁻² sr⁻¹.

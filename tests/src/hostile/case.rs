@@ -5,6 +5,7 @@ use super::child::{self, Ended, LARGEST, LONGEST};
 use super::folder::{self, Folder};
 use std::fs;
 use std::io;
+use std::os::unix::fs::symlink;
 use std::path::Path;
 
 /// A kind of input.
@@ -15,25 +16,28 @@ pub(crate) enum InputKind {
     Picture,
     Part,
     Prediction,
+    World,
 }
 
 impl InputKind {
-    pub(crate) const ALL: [Self; 5] = [
+    pub(crate) const ALL: [Self; 6] = [
         Self::Scene,
         Self::Mesh,
         Self::Picture,
         Self::Part,
         Self::Prediction,
+        Self::World,
     ];
 
-    /// Returns the kind of input of a case; half of all cases have scene files as input.
+    /// Returns the kind of input of a case; 40 % of all cases have scene files as input.
     pub(crate) fn of(case: u64) -> Self {
         match case % 20 {
-            0..10 => Self::Scene,
-            10..13 => Self::Mesh,
-            13..16 => Self::Picture,
-            16..18 => Self::Part,
-            _ => Self::Prediction,
+            0..8 => Self::Scene,
+            8..11 => Self::Mesh,
+            11..14 => Self::Picture,
+            14..16 => Self::Part,
+            16..18 => Self::Prediction,
+            _ => Self::World,
         }
     }
 }
@@ -48,6 +52,8 @@ pub(crate) struct Attack {
     pub(crate) then: Option<Vec<String>>,
     /// The number of files that the second command may open at once; `None` if all it needs.
     pub(crate) open_files: Option<usize>,
+    /// A link in the input folder, and the path to which it leads.
+    pub(crate) link: Option<[&'static str; 2]>,
     /// The files before the mutation, if a run on these files may also be slow; a slow run on
     /// mutated files is then not a fault.
     pub(crate) sound: Option<Folder>,
@@ -103,11 +109,22 @@ const WORK: &str = "work";
 /// Name of the only folder for results, which is inside the input folder.
 pub(crate) const OUT: &str = "out";
 
+/// A folder and a file beside the input folder, to which links lead.
+const KEPT: &str = "elsewhere/kept";
+
 /// Runs a case in a fresh folder within `at`, and then removes the fresh folder.
 pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<CaseOutcome> {
     let place = at.join("case");
     let work = place.join(WORK);
     folder::write(&work, &attack.files)?;
+    let kept = (KEPT.to_owned(), Some(b"kept".to_vec()));
+    folder::write(&place, &Folder::from([kept]))?;
+    if let Some([name, target]) = attack.link {
+        let link = work.join(name);
+        fs::create_dir_all(link.parent().unwrap_or(&work))?;
+        symlink(target, link)?;
+    }
+    let before = folder::read(&place)?;
     let mut outcome = CaseOutcome {
         reached: Reached::Values,
         faults: Vec::new(),
@@ -115,14 +132,20 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Case
         peak: 0,
         log: String::new(),
     };
-    let ended = step(program, attack, &attack.arguments, at, &mut outcome)?;
+    let ended = step(
+        program,
+        attack,
+        &attack.arguments,
+        (at, &before),
+        &mut outcome,
+    )?;
     if matches!(ended.code, Some(0 | 1 | 4)) {
         outcome.reached = Reached::Sound;
         if let Some(then) = &attack.then
             && is_small(&ended.stdout)
         {
             outcome.reached = Reached::Ran;
-            step(program, attack, then, at, &mut outcome)?;
+            step(program, attack, then, (at, &before), &mut outcome)?;
             if outcome.faults.contains(&HostileFault::Slow) && is_slow(program, attack, then, at)? {
                 outcome.faults.retain(|fault| *fault != HostileFault::Slow);
             }
@@ -144,7 +167,7 @@ fn step(
     program: &Path,
     attack: &Attack,
     arguments: &[String],
-    at: &Path,
+    (at, before): (&Path, &Folder),
     outcome: &mut CaseOutcome,
 ) -> io::Result<Ended> {
     let place = at.join("case");
@@ -162,7 +185,7 @@ fn step(
         }
     };
     let mut faults = faults(&ended);
-    let mut wrong = wrote(attack, arguments, &ended, &place)?;
+    let mut wrong = wrote(before.clone(), arguments, &ended, &place)?;
     if !wrong.is_empty() {
         faults.push(HostileFault::Wrote);
         wrong.insert(0, "  changed on disk:".into());
@@ -230,23 +253,19 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
 /// Returns the names of files that the command has changed although it must not change them. A
 /// command may change only results, and only if it writes results and accepts the input.
 fn wrote(
-    attack: &Attack,
+    mut expected: Folder,
     arguments: &[String],
     ended: &Ended,
     place: &Path,
 ) -> io::Result<Vec<String>> {
-    let before: Folder = folder::with_parents(&attack.files);
-    let mut expected: Folder = before
-        .into_iter()
-        .map(|(name, bytes)| (format!("{WORK}/{name}"), bytes))
-        .collect();
-    expected.insert(WORK.into(), None);
     let mut found = folder::read(place)?;
     let out = format!("{WORK}/{OUT}");
     let reads = arguments.first().is_some_and(|command| command == "check");
     if ended.code != Some(2) && !reads {
         let below = format!("{out}/");
-        found.retain(|name, _| *name != out && !name.starts_with(&below));
+        for folder in [&mut found, &mut expected] {
+            folder.retain(|name, _| *name != out && !name.starts_with(&below));
+        }
     }
     let names = folder::differences(&expected, &found);
     Ok(names.into_iter().map(str::to_owned).collect())

@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 
 /// A map from paths to the bytes of files. Paths are relative to the folder and use `/`. The entry
-/// of a subfolder has no bytes.
+/// of a subfolder has no bytes; when a folder is read, a link has the bytes of its target's path.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
 /// Writes files, and creates the folders that contain them.
@@ -38,7 +38,10 @@ fn read_into(at: &Path, before: &str, found: &mut Folder) -> io::Result<()> {
     for entry in fs::read_dir(at)? {
         let entry = entry?;
         let name = format!("{before}{}", entry.file_name().to_string_lossy());
-        if entry.file_type()?.is_dir() {
+        if entry.file_type()?.is_symlink() {
+            let target = fs::read_link(entry.path())?;
+            found.insert(name, Some(target.into_os_string().into_encoded_bytes()));
+        } else if entry.file_type()?.is_dir() {
             read_into(&entry.path(), &format!("{name}/"), found)?;
             found.insert(name, None);
         } else {
@@ -55,15 +58,4 @@ pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str
         .chain(other.keys().filter(|n| !one.contains_key(*n)));
     let differs = |name: &&String| one.get(*name) != other.get(*name);
     names.filter(differs).map(String::as_str).collect()
-}
-
-/// Returns the map of files with entries added for all parent folders.
-pub(crate) fn with_parents(files: &Folder) -> Folder {
-    let mut all = files.clone();
-    for name in files.keys() {
-        for (at, _) in name.match_indices('/') {
-            all.insert(name[..at].to_owned(), None);
-        }
-    }
-    all
 }

@@ -17,6 +17,7 @@ mod scenes;
 pub(crate) mod stages;
 mod table;
 mod text;
+mod worlds;
 
 use crate::progress::progress;
 use crate::report::ReportSection;
@@ -81,6 +82,7 @@ impl Seeds {
             InputKind::Picture => pictures::attack(&self.pictures, &mut dice),
             InputKind::Part => stages::part(&self.stages, &mut dice)?,
             InputKind::Prediction => stages::prediction(&self.stages, &mut dice)?,
+            InputKind::World => worlds::attack(&mut dice),
         })
     }
 }

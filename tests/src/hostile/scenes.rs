@@ -42,6 +42,15 @@ const WORDS: [&str; 30] = [
     "true",
 ];
 
+/// Links below the folder of results that lead out of it, with their targets. The folder itself may
+/// be a link, because the user names it.
+const LINKS: [[&str; 2]; 4] = [
+    ["out/green", "../../elsewhere"],
+    ["out/summary.json", "../../elsewhere/kept"],
+    ["out/receiver", "../../elsewhere"],
+    ["out/.etendue.lock", "../../elsewhere/kept"],
+];
+
 /// Names of folders for results. In some of them, a line begins.
 const FOLDERS: [&str; 5] = ["out", "a\nEND\nLINE", "a\rLINE", "a'\nLINE", "'; LINE"];
 
@@ -81,12 +90,12 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 pub(crate) const SCENE: &str = "scene.ron";
 
 /// Returns an attack that gives the program the scene file of a folder. The program always checks
-/// the scene, and in one of eight cases also runs, sweeps or draws it.
+/// the scene, and in one of eight cases, or beside a link, also runs, sweeps or draws it.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[
-        "run scene.ron --photons 2000",
-        "run scene.ron --photons 2000",
+        "run scene.ron --photons 2000 --out out",
+        "run scene.ron --photons 2000 --rgb --out out",
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
@@ -98,12 +107,14 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         then.push(FOLDERS[dice.below(FOLDERS.len())].replace("LINE", INJECTED));
         then.extend(dice.one_in(2).then(|| "--slurm".to_owned()));
     }
+    let link = dice.one_in(8).then(|| *dice.pick(&LINKS));
     Attack {
         files,
         arguments: words("check scene.ron"),
-        then: dice.one_in(8).then_some(then),
+        then: (link.is_some() || dice.one_in(8)).then_some(then),
         // With fewer files, the program cannot be loaded.
         open_files: dice.one_in(2).then(|| 4 + dice.below(12)),
+        link,
         sound: None,
         summary: None,
     }

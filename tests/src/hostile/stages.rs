@@ -115,6 +115,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         arguments: words(COMPARE),
         then: None,
         open_files: None,
+        link: None,
         sound: None,
         summary,
     })

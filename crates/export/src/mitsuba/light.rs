@@ -29,7 +29,8 @@ impl Writer {
                 self.xml.flat("light", shape, 0.0, &looks);
             }
             Light::Point { intensity } => {
-                self.xml.comment("the light");
+                self.xml
+                    .comment("the light: a point that emits ahead only, as a spot of 90 degrees");
                 self.xml.point_light(*intensity);
             }
             Light::Projector { intensity, image } => self.projector(*intensity, image),

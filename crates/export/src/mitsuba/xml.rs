@@ -107,10 +107,12 @@ impl Xml {
         ));
     }
 
-    /// Writes a point light at the origin.
+    /// Writes a point light at the origin that emits along z and up to 90° from it. Mitsuba needs a
+    /// beam that is narrower than the cutoff.
     pub(super) fn point_light(&mut self, intensity: f64) {
         self.line(&format!(
-            "<emitter type=\"point\" id=\"light\"><point name=\"position\" x=\"0\" y=\"0\" z=\"0\"/>{}</emitter>",
+            "<emitter type=\"spot\" id=\"light\"><float name=\"cutoff_angle\" value=\"90\"/>\
+             <float name=\"beam_width\" value=\"89.999\"/>{}</emitter>",
             spectrum("intensity", intensity)
         ));
     }

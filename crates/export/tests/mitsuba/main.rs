@@ -150,8 +150,12 @@ fn planes_are_those_of_the_scene() {
 fn points_and_meshes_are_said() {
     let point = mitsuba(&of("Point(center: (0, 0, 0), intensity: 1.5)", "")).unwrap();
     let xml = Document::parse(text(&point, "scene.xml")).unwrap();
-    let [light] = of_type(&xml, "point").try_into().unwrap();
+    // A point of Étendue emits into the half-space ahead.
+    let [light] = of_type(&xml, "spot").try_into().unwrap();
     assert_eq!(numbers(&light, "spectrum", &["value"]), [1.5]);
+    let angles = light.descendants().filter(|n| n.has_tag_name("float"));
+    let angles: Vec<_> = angles.filter_map(|n| n.attribute("value")).collect();
+    assert_eq!(angles, ["90", "89.999"]);
     let star = stored("mesh_blocker");
     let export = mitsuba(&star).unwrap();
     let faces = star.meshes[0].triangles.len();

@@ -42,7 +42,7 @@ impl GltfReader<'_> {
         };
         let extension = extension(&bytes).ok_or("is no PNG or JPEG picture")?;
         let name = Path::new("image").with_extension(extension);
-        let channels = pictures::decode(&name, &bytes, self.files.left())?;
+        let channels = pictures::decode(&name, &bytes, self.files)?;
         pictures::counted(self.files, self.numbers_of(&channels, level))
     }
 

@@ -11,8 +11,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Plugins supported as lights.
-const ALLOWED: &str =
-    "point, spot, projector, directional, constant, envmap, and area within a shape";
+const ALLOWED: &str = "point, spot, projector, directional, constant, envmap, and within a shape area or directionalarea";
 
 /// Default half-angle of a spot, degrees.
 const CUTOFF: f64 = 20.0;
@@ -107,7 +106,7 @@ impl<'a> MitsubaReader<'a> {
         let intensity = self.strength(object, "intensity");
         let angle = |name| {
             self.number_within(object, name, "0 to 90 degrees", |a| {
-                (0.0..90.0).contains(&a)
+                (0.0..=90.0).contains(&a)
             })
         };
         let has = |name| self.has(object, name);

@@ -83,7 +83,7 @@ impl<'a> MitsubaReader<'a> {
         self.sensors(scene);
         for (_, light) in self.children(scene, ObjectKind::Emitter) {
             // Area lights are read with their shapes.
-            match light.plugin == "area" {
+            match light.plugin.ends_with("area") {
                 true => light.is_used.set(false),
                 false => self.light(light),
             }

@@ -5,10 +5,14 @@ use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
 use crate::placement::{fault, is_similarity, similar};
 use crate::report::quoted;
-use etendue_world::{Geometry, Shape, Triangles};
+use etendue_world::{Geometry, Light, Shape, Texture, Triangles};
 use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
+
+/// The emitter of light along the normal of its shape. Mitsuba calls its power per area a radiance:
+/// a sheet of radiance 3 gives an irradiance of 3, as measured with 3.9.1.
+const COLLIMATED: &str = "directionalarea";
 
 /// Plugins supported as shapes.
 const ALLOWED: &str =
@@ -116,6 +120,13 @@ impl<'a> MitsubaReader<'a> {
             let message = "the mesh emits with vertex normals: light leaves each triangle on its front, while Mitsuba uses the interpolated normal";
             self.report.note(&object.place, message);
         }
+        let emission = match emission {
+            Some((plugin, exitance)) if plugin == COLLIMATED => {
+                self.sheet(object, &geometry, exitance);
+                None
+            }
+            other => other.map(|(_, radiance)| radiance),
+        };
         let shape = Shape {
             name: object.id.clone().unwrap_or_default(),
             geometry,
@@ -241,21 +252,34 @@ impl<'a> MitsubaReader<'a> {
         false
     }
 
+    /// Adds the light of the next shape, which emits along its normal.
+    fn sheet(&mut self, object: &'a MitsubaObject, geometry: &Geometry, exitance: Texture) {
+        if !matches!(geometry, Geometry::Rectangle | Geometry::Disc) {
+            let plugin = quoted(&object.plugin);
+            let message = format!("{COLLIMATED} on {plugin}; allowed: rectangle or disk");
+            self.report.cause(&object.place, message);
+        }
+        let shape = self.world.shapes.len();
+        self.world.lights.push(Light::Sheet { shape, exitance });
+    }
+
+    /// Returns the plugin of a shape's emitter, and the radiance, or what else it states.
     fn shape_emission(
         &mut self,
         object: &'a MitsubaObject,
         is_in_group: bool,
-    ) -> Option<etendue_world::EmittedRadiance> {
+    ) -> Option<(&'a str, Texture)> {
         let emitter = self.child(object, ObjectKind::Emitter)?;
-        if emitter.plugin != "area" {
-            self.unsupported(emitter, "area, within a shape");
+        if !["area", COLLIMATED].contains(&emitter.plugin.as_str()) {
+            self.unsupported(emitter, "area or directionalarea, within a shape");
             return None;
         }
         if is_in_group {
             self.report
                 .cause(&emitter.place, "an emitter within a shapegroup");
         }
-        self.emission(emitter, "radiance")
+        let emission = self.emission(emitter, "radiance")?;
+        Some((&emitter.plugin, emission))
     }
 }
 

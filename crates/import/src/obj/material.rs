@@ -178,7 +178,7 @@ impl ObjReader<'_> {
             .files
             .find(std::slice::from_ref(&map.folder), &map.file)?;
         let bytes = self.files.read(&path)?;
-        let channels = decode(&path, &bytes, self.files.left())?;
+        let channels = decode(&path, &bytes, self.files)?;
         let light = |level: f64| if raw { level } else { linear(level) };
         let is_grey = channels.is_grey();
         let raster = channels.raster(light, |rgb| match is_grey {

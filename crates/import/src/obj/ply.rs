@@ -44,7 +44,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
         materials: vec![diffuse()],
         ..World::default()
     };
-    report.finish(world)
+    report.finish(world, &scene.files)
 }
 
 /// Returns the default material.

@@ -2,12 +2,13 @@
 //! exponent.
 
 use super::size::check_size;
+use crate::files::Files;
 use etendue_scene::{Channels, Samples};
 
 /// Maximum number of header lines.
 const MOST_LINES: usize = 1000;
 
-pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
+pub(super) fn read(bytes: &[u8], files: &Files) -> Result<Channels, String> {
     let mut rest = bytes;
     if !line(&mut rest).is_some_and(|first| first.starts_with(b"#?")) {
         return Err("does not begin with the characters `#?`".to_owned());
@@ -25,7 +26,7 @@ pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let (width, height) = line(&mut rest)
         .and_then(size)
         .ok_or("has no size in the form -Y height +X width")?;
-    check_size((width, height), [3, 4], bytes.len(), memory)?;
+    check_size((width, height), [3, 4], bytes.len(), files)?;
     let mut numbers = Vec::new();
     for _ in 0..height {
         for [r, g, b, e] in row(&mut rest, width).ok_or("ends before its last pixel")? {

@@ -1,9 +1,10 @@
 //! Portable float maps (Debevec 1998): 32-bit numbers, beginning with the lowest row.
 
 use super::size::check_size;
+use crate::files::Files;
 use etendue_scene::{Channels, Samples};
 
-pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
+pub(super) fn read(bytes: &[u8], files: &Files) -> Result<Channels, String> {
     let mut rest = bytes;
     let mut next = || word(&mut rest).ok_or("ends within its header");
     let count = match next()? {
@@ -14,7 +15,7 @@ pub(super) fn read(bytes: &[u8], memory: u64) -> Result<Channels, String> {
     let mut size = || next()?.parse().map_err(|_| "has no size");
     let (width, height): (usize, usize) = (size()?, size()?);
     let scale: f32 = next()?.parse().map_err(|_| "has no scale")?;
-    check_size((width, height), [count, 4], bytes.len(), memory)?;
+    check_size((width, height), [count, 4], bytes.len(), files)?;
     // A negative scale means that the lowest byte comes first.
     let number = |bytes: &[u8; 4]| {
         let number = match scale < 0.0 {

@@ -1,5 +1,6 @@
 //! The size that a picture states.
 
+use crate::files::Files;
 use etendue_scene::{Fault, PictureSize};
 
 /// Refuses a picture whose stated size is not allowed.
@@ -7,7 +8,7 @@ pub(super) fn check_size(
     (width, height): (usize, usize),
     [channels, bytes]: [usize; 2],
     length: usize,
-    memory: u64,
+    files: &Files,
 ) -> Result<(), String> {
     let size = PictureSize {
         pixels: width.checked_mul(height),
@@ -15,10 +16,14 @@ pub(super) fn check_size(
         bytes,
         packed: None,
     };
-    size.check(length, memory).map_err(invalid)
+    let checked = size.check(length, files.left());
+    checked.map_err(|fault| invalid(fault, files))
 }
 
 /// Describes a fault of a picture.
-pub(super) fn invalid(fault: Fault) -> String {
+pub(super) fn invalid(fault: Fault, files: &Files) -> String {
+    if fault.memory {
+        files.fall_short();
+    }
     format!("is not a valid picture: {fault}")
 }

@@ -80,6 +80,15 @@ impl SampledLight {
             Self::Directional { toward, irradiance } => {
                 Some(draw.afar(geometry, *toward, *irradiance))
             }
+            Self::Sheet { shape, exitance } => {
+                let placed = geometry.placed(*shape);
+                let (from, along, point) = placed.sample(0, [a, b]);
+                Some(Emitted {
+                    ray: Ray { from, along },
+                    flux: exitance.value(&point) * placed.areas()[0],
+                    flash: None,
+                })
+            }
             Self::Sky(sky) => {
                 let toward = sky.sample(place);
                 let (radiance, density) = sky.radiance_and_density(toward);

@@ -8,7 +8,7 @@ mod incoming;
 mod shape;
 mod sky;
 
-use crate::space::{Hit, SceneGeometry};
+use crate::space::{Hit, Ray, SceneGeometry};
 use ball::ShiningSphere;
 use beam::{Beam, BeamPattern};
 pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
@@ -32,9 +32,20 @@ pub(crate) struct LightSampler {
 enum SampledLight {
     ShiningShape(ShiningShape),
     ShiningSphere(ShiningSphere),
-    Point { position: DVec3, intensity: f64 },
+    Point {
+        position: DVec3,
+        intensity: f64,
+    },
     Beam(Beam),
-    Directional { toward: DVec3, irradiance: f64 },
+    Directional {
+        toward: DVec3,
+        irradiance: f64,
+    },
+    /// A shape that emits along its normal only.
+    Sheet {
+        shape: usize,
+        exitance: Texture,
+    },
     Sky(SampledSky),
 }
 
@@ -186,6 +197,10 @@ impl From<&Light> for SampledLight {
                 toward: -*direction,
                 irradiance: *irradiance,
             },
+            Light::Sheet { shape, exitance } => Self::Sheet {
+                shape: *shape,
+                exitance: exitance.clone(),
+            },
             Light::Constant { radiance } => Self::Sky(SampledSky::Constant(*radiance)),
             Light::Sky(map) => Self::Sky(SampledSky::new(map)),
         }
@@ -228,6 +243,21 @@ impl SampledLight {
                 weight: *irradiance,
                 density: None,
             }),
+            Self::Sheet { shape, exitance } => {
+                // A flat shape has the same normal everywhere.
+                let (_, normal, _) = geometry.placed(*shape).sample(0, [0.5; 2]);
+                let ray = Ray {
+                    from: at,
+                    along: -normal,
+                };
+                let hit = geometry.meets(*shape, &ray, [0.0, f64::INFINITY])?;
+                Some(Incoming {
+                    toward: -normal,
+                    distance: hit.distance,
+                    weight: exitance.value(&hit.point),
+                    density: None,
+                })
+            }
             Self::Sky(sky) => {
                 let toward = sky.sample(r);
                 let (radiance, density) = sky.radiance_and_density(toward);

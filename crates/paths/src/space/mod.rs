@@ -10,12 +10,14 @@ mod search;
 mod tree;
 mod triangle;
 
-use etendue_world::World;
+use etendue_world::{Geometry, World};
 use glam::DVec3;
 pub use placed::Hit;
 use placed::{Placed, placed};
 pub use ray::Ray;
 use search::SurfaceSearch;
+use std::collections::HashSet;
+use std::sync::Arc;
 
 /// All surfaces of a world.
 #[derive(Debug)]
@@ -34,7 +36,22 @@ pub struct SceneGeometry {
 /// about 10⁻¹⁵, and the relative error of roots of quadratics is about 10⁻¹².
 const NEAREST: f64 = 1e-9;
 
+/// Bytes that a piece and its part of the hierarchy need during construction. The measured value,
+/// of a height field of 4,500,000 triangles, is 180.
+const PIECE: f64 = 200.0;
+
 impl SceneGeometry {
+    /// Returns the approximate memory that [`Self::new`] takes, in bytes.
+    pub(crate) fn bytes(world: &World) -> f64 {
+        let mut meshes = HashSet::new();
+        let pieces = world.shapes.iter().map(|shape| match &shape.geometry {
+            // Shapes with the same triangles share a hierarchy.
+            Geometry::Mesh(mesh) if meshes.insert(Arc::as_ptr(mesh)) => 1 + mesh.corners().len(),
+            _ => 1,
+        });
+        PIECE * pieces.sum::<usize>() as f64
+    }
+
     /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {

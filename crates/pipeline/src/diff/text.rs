@@ -9,7 +9,7 @@ use etendue_field::{percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
 
 /// The maximum number of differing fields that are listed.
-const MOST_FIELDS: usize = 20;
+const MOST_FIELDS: usize = 8;
 
 /// Returns the output of `etendue diff`.
 #[must_use]
@@ -62,23 +62,12 @@ fn scene(diff: &Diff) -> Vec<String> {
     };
     let shown = changes.iter().take(MOST_FIELDS);
     let mut lines = vec![head.to_owned()];
-    lines.extend(shown.map(|FieldChange { field, values }| {
-        format!("  {}: {}", without_variants(field), values.join(" and "))
-    }));
+    let shown =
+        shown.map(|FieldChange { field, values }| format!("  {field}: {}", values.join(" and ")));
+    lines.extend(shown);
     let more = changes.len().saturating_sub(MOST_FIELDS);
     lines.extend((more > 0).then(|| format!("  and {more} more")));
     lines
-}
-
-/// Returns a field in the notation of `--set`: `blockers.0.pitch`, not
-/// `blockers.0.JitteredSquares.pitch`.
-fn without_variants(field: &str) -> String {
-    let parts: Vec<&str> = field.split('.').collect();
-    let last = parts.len() - 1;
-    let is_variant = |part: &str| part.starts_with(char::is_uppercase);
-    let kept = parts.iter().enumerate();
-    let kept = kept.filter(|(i, part)| *i == last || !is_variant(part));
-    kept.map(|(_, part)| *part).collect::<Vec<_>>().join(".")
 }
 
 fn planes(diff: &Diff) -> Vec<Vec<String>> {

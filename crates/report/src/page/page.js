@@ -269,8 +269,8 @@ const differences = (run) => {
   const own = new Map(fields(run.scene_file));
   const names = [...new Set(alike.flatMap((other) => [...other.keys()]))];
   const differing = names.filter((name) => alike.some((other) => other.get(name) !== own.get(name)));
-  // As in --set, a path does not name the variants on its way.
-  const path = (name) => name.replace(/\.[A-Z]\w*(?=\.)/g, "");
+  // As in messages: blockers[0].fill, without the variants on the way.
+  const path = (name) => name.replace(/\.[A-Z]\w*(?=\.)/g, "").replace(/\.(\d+)(?=\.|$)/g, "[$1]");
   const shown = differing.slice(0, 6).map((name) => `${path(name)} = ${own.get(name) ?? "–"}`);
   return [...shown, ...(differing.length > 6 ? [`${differing.length - 6} more fields`] : [])].join(", ");
 };

@@ -67,6 +67,12 @@ pub(super) fn measured(
     }
     check_memory(&planes)?;
     let mut all = Vec::new();
+    let steps = reporter.begin(Work::Steps {
+        verb: "transforming",
+        total: planes.len(),
+        things: "planes",
+    });
+    steps.advance(0);
     for (index, plane) in planes.iter().enumerate() {
         let probe = probe.at_plane(index);
         let budget = budget(request.rays, seed_at(request.seed, index));
@@ -80,7 +86,9 @@ pub(super) fn measured(
         });
         drop(bar);
         all.extend(field.map_err(Failure::cannot_run)?.covariance);
+        steps.advance(1);
     }
+    drop(steps);
     let mut found: Vec<FoundCovariance> = all.iter().map(FoundCovariance::new).collect();
     if let (Some(camera), Some(leaving)) = (found.first_mut(), all.get(1)) {
         camera.propagated = propagated(probe, leaving);

@@ -127,7 +127,7 @@ impl<'a> ProbedScene<'a> {
         Ok(Self {
             request,
             camera: world_source::camera(&imported.world, &request.camera, arguments)?,
-            paths: Paths::new(&imported.world),
+            paths: world_source::paths(&imported.world)?,
             imported,
         })
     }
