@@ -8,7 +8,7 @@ use crate::heavy_rays::too_few;
 use crate::noise::noise_dof;
 use crate::prediction::Prediction;
 use crate::report::{Covariance, HighFrequencyShare, Pair, PlaneReport, WedgeShare};
-use crate::residuals::{Residuals, largest};
+use crate::residuals::{Residuals, largest, of_transform};
 use crate::score::{ParameterReport, score};
 use crate::variation::{bandwidth, variation};
 use crate::verdict::{Test, Verdict};
@@ -450,8 +450,27 @@ impl ComparedSides<'_> {
         Pair {
             measured: measured.map(|m| m.value),
             predicted: of(self.predicted_radial.view()),
-            error: measured.map(|m| libm::hypot(m.error, noise)),
+            error: measured.map(|m| {
+                let noise = libm::hypot(m.error, noise);
+                libm::hypot(noise, self.transform_error(&of))
+            }),
         }
+    }
+
+    /// Returns by how much the error of the fast transform may change a statistic of the power.
+    /// The powers where ρν ≥ 0 change, so that the changes add up whether the statistic is even or
+    /// odd in ρ; the other half of the powers changes the statistic as much.
+    fn transform_error(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> f64 {
+        let [still, mut moved] = [(); 2].map(|()| self.predicted_radial.clone());
+        let grid = &self.predicted.grid;
+        let change = of_transform(&still);
+        for (at, change) in change.indexed_iter() {
+            if grid.rho.value(at.0) * grid.nu.value(at.1) >= 0.0 {
+                moved[at] += change;
+            }
+        }
+        let change = of(moved.view()).zip(of(still.view()));
+        change.map_or(0.0, |(moved, still)| 2.0 * (moved - still).abs())
     }
 }
 

@@ -17,8 +17,8 @@ pub struct Pair {
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
     /// Standard error of the difference. Where the prediction has replicates, this error combines
-    /// the errors of the measured and of the predicted value. For a shear slope, this error
-    /// includes the possible error of the prediction's quadrature.
+    /// the errors of the measured and of the predicted value. This error includes the possible error
+    /// of the photons' transform and, for a shear slope, that of the prediction's quadrature.
     pub error: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ pub struct DirectedPair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the measured value.
+    /// Standard error of the difference, with the possible error of the photons' transform.
     pub error: Option<f64>,
     /// The azimuths of the two values.
     pub azimuth: Azimuths,

@@ -3,7 +3,7 @@
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
 use etendue_transform::random::{self, Stream};
-use ndarray::{Array2, Array3, Axis};
+use ndarray::{Array, Array2, Array3, Axis, Dimension};
 
 /// Measured minus predicted slices, in independent parts.
 ///
@@ -28,6 +28,12 @@ const LANES: usize = 8;
 const TRANSFORM: f64 = 3e-7;
 /// Rounding error in the sum of shares that should add up to one.
 const ROUNDING: f64 = 1e-9;
+
+/// Returns by how much the error of the fast transform may change each power, at most.
+pub(crate) fn of_transform<D: Dimension>(power: &Array<f64, D>) -> Array<f64, D> {
+    let peak = power.iter().copied().fold(0.0, f64::max);
+    power.mapv(|p| 2.0 * TRANSFORM * (p.max(0.0) * peak).sqrt())
+}
 
 impl Residuals {
     /// Returns the differences between plane `plane` of a measurement and slices without

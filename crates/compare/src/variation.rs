@@ -3,10 +3,12 @@
 
 use crate::prediction::Prediction;
 use crate::report::{Azimuths, Bandwidth, DirectedPair};
+use crate::residuals::of_transform;
 use etendue_field::Slices;
 use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, WindowedMean};
+use ndarray::Array3;
 
 /// Returns the bandwidths of a measured power and of a prediction, each in the azimuth where it is
 /// largest. `replicates` is the power of a prediction that has replicates.
@@ -15,13 +17,19 @@ pub(crate) fn bandwidth(
     replicates: Option<&CrossPower<'_>>,
     predicted: &Slices,
 ) -> Bandwidth {
+    let power = slices_power(predicted);
+    let moved = &power + &of_transform(&power);
     let along = |of: SliceBandwidth| {
+        let widest = |power: &Array3<f64>| Some(widest(power.view(), &predicted.grid, of)?.value);
+        let change = widest(&moved).zip(widest(&power));
+        let transform_error = change.map_or(0.0, |(moved, still)| (moved - still).abs());
         let measured = measured.bandwidth(of);
         let predicted = match replicates {
             Some(power) => power.bandwidth(of),
             None => exact(predicted, of),
         };
         let noise = predicted.map_or(0.0, |p| p.value.error);
+        let noise = libm::hypot(noise, transform_error);
         DirectedPair {
             measured: measured.map(|m| m.value.value),
             predicted: predicted.map(|p| p.value.value),
@@ -66,7 +74,7 @@ pub(crate) fn variation(
 
 /// Returns the bandwidth of slices without a statistical error.
 fn exact(slices: &Slices, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
-    let power = slices.half.mapv(|s| s.norm_sqr());
+    let power = slices_power(slices);
     let exact = widest(power.view(), &slices.grid, of)?;
     Some(Widest {
         azimuth: exact.azimuth,
@@ -75,4 +83,8 @@ fn exact(slices: &Slices, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
             error: 0.0,
         },
     })
+}
+
+fn slices_power(slices: &Slices) -> Array3<f64> {
+    slices.half.mapv(|s| s.norm_sqr())
 }

@@ -6,6 +6,7 @@ use crate::subject::FigureData;
 use etendue_compare::Bandwidth;
 use etendue_field::{Orientation, Slices, percent, uncertain};
 use etendue_figures::{Figure, Plate};
+use etendue_pipeline::table::off_by;
 use etendue_report::pictures::spectrum_quantity;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
@@ -87,11 +88,10 @@ fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
     };
-    let said = |share: Option<f64>| share.map_or("–".to_owned(), |share| percent(share, 2));
     vec![
         "of the spectrum:".to_owned(),
-        format!("{} measured", said(first_order.excess)),
-        format!("{} computed", said(Some(first_order.chain.error))),
+        format!("{} measured", off_by(first_order)),
+        format!("{} computed", percent(first_order.chain.error, 2)),
     ]
 }
 

@@ -226,7 +226,7 @@ impl<'m> CrossPower<'m> {
     }
 
     /// Returns a statistic of the power, such as a slope, with its standard error by the
-    /// delete-one jackknife.
+    /// delete-one jackknife, or with the error from noise alone if this is larger.
     ///
     /// Returns `None` if the statistic does not exist, either for all batches together or if any
     /// one batch is left out.
@@ -236,10 +236,44 @@ impl<'m> CrossPower<'m> {
         for left_out in 0..self.batches.len() {
             jackknife.add(&ndarray::arr0(of(self.without(left_out).view())?));
         }
+        let variance = jackknife.variance().into_scalar();
         Some(Uncertain {
             value,
-            error: jackknife.variance().into_scalar().sqrt(),
+            error: variance.max(self.noise_alone(value, of)?).sqrt(),
         })
+    }
+
+    /// Returns the variance of a statistic if the power were noise alone: 2/(R(R−1)) times the
+    /// variance of what a pair of batches adds.
+    ///
+    /// The jackknife varies with Σ S, which is zero by chance now and then where there is only noise.
+    /// Then the power is lowest, and the jackknife would give almost no error. Pairs do not depend
+    /// on Σ S.
+    fn noise_alone(
+        &self,
+        value: f64,
+        of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>,
+    ) -> Option<f64> {
+        let r = self.batches.len() as f64;
+        // A step as large as those of the jackknife.
+        let step = 1.0 / (r * r.sqrt());
+        let still = self.power() * (1.0 - step);
+        let pairs = self.batches.chunks_exact(2).map(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(|slices| at(&slices.half, &self.azimuths));
+            let products = ndarray::Zip::from(&a)
+                .and(&b)
+                .map_collect(|a, b| (a.conj() * b).re);
+            let pair = self.grid.unfold_radial(mean(&products).view());
+            Some((of((pair * step + &still).view())? - value) / step)
+        });
+        let added: Vec<f64> = pairs.collect::<Option<_>>()?;
+        let count = added.len() as f64;
+        if count < 2.0 {
+            return Some(0.0);
+        }
+        let mean = added.iter().sum::<f64>() / count;
+        let squares = added.iter().map(|a| (a - mean).powi(2)).sum::<f64>();
+        Some(2.0 / (r * (r - 1.0)) * squares / (count - 1.0))
     }
 }
 

@@ -4,8 +4,7 @@
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
 use super::vector::{
-    Axes, Vector, across, angle, between, direction, distance, dot, plus, scale, times, turned,
-    unit,
+    Axes, Vector, angle, between, direction, distance, dot, plus, scale, times, turned, unit,
 };
 use super::world::World;
 use crate::hostile::dice::Dice;
@@ -175,9 +174,8 @@ pub(super) fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) 
     };
     let sine = ratio * angle(along, ahead).sin();
     (sine < 1.0).then(|| {
-        let refracted = sine.asin();
-        let aside = across(along, ahead);
-        plus(times(refracted.cos(), ahead), refracted.sin(), aside)
+        let aside = plus(along, -dot(along, ahead), ahead);
+        plus(times(sine.asin().cos(), ahead), ratio, aside)
     })
 }
 

@@ -3,7 +3,7 @@
 use super::path::Draws;
 use super::world::{grey, number};
 use crate::second::pattern::cosine;
-use crate::second::vector::{Axes, Vector, dot, plus, turned, unit};
+use crate::second::vector::{Axes, Vector, cross, dot, plus, turned, unit};
 use etendue_field::Grating;
 use etendue_scene::{BulbFile, EnvironmentFile, ImageFile, LightFile};
 use std::f64::consts::{PI, TAU};
@@ -124,27 +124,36 @@ impl Lamp {
                 Start::Along(self.axes.point([at[0], at[1], 0.0]), self.axes.d, flux)
             }
             Kind::Lobes(lobes) => {
+                // A part of the directions is uniform over the hemisphere, because light of the tail
+                // of a lobe may be all that arrives.
                 let [which, around] = draws.next();
-                let count = lobes.len() as f64;
+                let count = lobes.len() as f64 + 1.0;
+                let [height, _] = draws.next();
                 let chosen = lobes
                     .iter()
                     .zip(1..)
                     .find(|(_, i)| which * count < f64::from(*i));
-                let (from, width, _) = chosen.map_or(lobes[0], |(lobe, _)| *lobe);
-                let [height, _] = draws.next();
-                let squared = width * width;
-                let cosine =
-                    1.0 + squared * (height + (1.0 - height) * (-2.0 / squared).exp()).ln();
-                let axis = unit(crate::second::vector::cross(from, self.axes.x));
-                let tilted = turned(from, axis, cosine.clamp(-1.0, 1.0).acos());
-                let from = turned(tilted, from, TAU * around);
+                let from = match chosen {
+                    Some(((from, width, _), _)) => {
+                        let squared = width * width;
+                        let cosine =
+                            1.0 + squared * (height + (1.0 - height) * (-2.0 / squared).exp()).ln();
+                        around_axis(*from, self.axes.x, [cosine, around])
+                    }
+                    None => around_axis(self.axes.d.map(|c| -c), self.axes.x, [height, around]),
+                };
                 let density = lobes.iter().map(|(of, width, _)| {
                     let squared = width * width;
                     let unit = TAU * squared * (1.0 - (-2.0 / squared).exp());
                     ((dot(*of, from) - 1.0) / squared).exp() / unit / count
                 });
+                let is_ahead = dot(from, self.axes.d) < 0.0;
+                let uniform = if is_ahead { 1.0 / TAU / count } else { 0.0 };
                 let along = from.map(|c| -c);
-                Start::Far(along, self.radiance(along) / density.sum::<f64>())
+                Start::Far(
+                    along,
+                    self.radiance(along) / (density.sum::<f64>() + uniform),
+                )
             }
         }
     }
@@ -195,6 +204,14 @@ impl Lamp {
             Kind::Beam(..) | Kind::Lobes(_) => 0.0,
         }
     }
+}
+
+/// Returns the direction at an angle, given by its cosine, to an axis, and at a share of a turn
+/// around the axis.
+fn around_axis(axis: Vector, aside: Vector, [cosine, around]: [f64; 2]) -> Vector {
+    let across = unit(cross(axis, aside));
+    let tilted = turned(axis, across, cosine.clamp(-1.0, 1.0).acos());
+    turned(tilted, axis, TAU * around)
 }
 
 /// exp(−π x²/w²) along both axes, times the grating.

@@ -131,9 +131,12 @@ impl PlainWorld {
         };
         // Radiance is flux per solid angle over the cosine, here for light per area.
         let cosine = dot(along, surface.normal(light.at)).abs();
+        let passes = self.passes(&light, along, ahead, self.end, false) * weight;
+        if passes <= 0.0 {
+            return None;
+        }
         let radiance = light.weight * surface.scattered(light.at, arrived, along) / cosine;
-        let passes = self.passes(&light, along, ahead, self.end, false);
-        Some(radiance * passes * weight)
+        Some(radiance * passes)
     }
 
     /// Draws a ray of the window and follows its line back to the last surface. If the line meets
@@ -159,25 +162,23 @@ impl PlainWorld {
         draws: &mut Draws<'_>,
     ) -> Option<Light<'_>> {
         let surface = &self.surfaces[visit];
-        let (point, along, flux) = match &light.along {
+        let (point, along, area) = match &light.along {
             Ok(along) => {
                 let hits = surface.hits(light.at, *along);
                 let t = hits.into_iter().find(|t| *t > self.begins(light.at))?;
-                (plus(light.at, t, *along), *along, light.weight)
+                (plus(light.at, t, *along), *along, 1.0)
             }
-            Err(emitter) => {
+            Err(_) => {
                 let (point, area) = match seen {
                     Some(seen) => (seen.point, 1.0),
                     None => surface.point(draws.next()),
                 };
                 let along = unit(plus(point, -1.0, light.at));
-                let cosine = dot(along, surface.normal(point)).abs();
-                let flux = emitter.flux(light, along, point, area * cosine);
-                (point, along, flux)
+                (point, along, area * dot(along, surface.normal(point)).abs())
             }
         };
         let passes = self.passes(light, along, distance(light.at, point), Some(visit), true);
-        let weight = flux * passes;
+        let weight = light.flux(along, point, passes * area);
         if weight <= 0.0 {
             return None;
         }
@@ -196,19 +197,18 @@ impl PlainWorld {
 
     fn at_plane(&self, light: &Light<'_>, draws: &mut Draws<'_>) -> Option<f64> {
         let plane = &self.plane;
-        let (point, along, flux) = match &light.along {
+        let (point, along, area) = match &light.along {
             Ok(along) => {
                 let [.., height] = plane.coordinates(light.at);
                 let t = -height / dot(*along, plane.d);
-                (plus(light.at, t, *along), *along, light.weight)
+                (plus(light.at, t, *along), *along, 1.0)
             }
-            Err(emitter) => {
+            Err(_) => {
                 let (at, area) = self.lit(light.at, draws.next())?;
                 let point = plane.point(at);
                 let towards = unit(plus(point, -1.0, light.at));
                 let along = times(dot(towards, plane.d).signum(), towards);
-                let flux = emitter.flux(light, along, point, area * dot(along, plane.d));
-                (point, along, flux)
+                (point, along, area * dot(along, plane.d))
             }
         };
         let [dx, dy, dz] = plane.components(along);
@@ -219,11 +219,11 @@ impl PlainWorld {
         }
         let [x, y, _] = plane.coordinates(point);
         let weight = self.weight([x, y, dx / dz, dy / dz]);
-        if weight <= 0.0 || flux <= 0.0 {
+        if weight <= 0.0 {
             return None;
         }
         let passes = self.passes(light, along, ahead, self.end, false);
-        Some(flux * passes * weight / dz.powi(4))
+        Some(light.flux(along, point, passes * area) * weight / dz.powi(4))
     }
 
     /// Returns the light of an environment at a plane of the first leg, for a ray of the window.
@@ -326,14 +326,20 @@ impl PlainWorld {
     }
 }
 
-impl Emitter<'_> {
-    /// Returns the flux that reaches a point through an area orthogonal to the direction.
-    fn flux(&self, light: &Light<'_>, along: Vector, point: Vector, area: f64) -> f64 {
-        let per_angle = match self {
-            Emitter::Lamp(lamp) => lamp.emits(along),
-            Emitter::Surface(surface, arrived) => surface.scattered(light.at, *arrived, along),
+impl Light<'_> {
+    /// Returns the flux that reaches a point through an area orthogonal to the direction; light that
+    /// has only one direction does not spread, so the area is a share of its flux.
+    fn flux(&self, along: Vector, point: Vector, area: f64) -> f64 {
+        // Some BRDFs take long.
+        if area <= 0.0 {
+            return 0.0;
+        }
+        let per_angle = match &self.along {
+            Ok(_) => return self.weight * area,
+            Err(Emitter::Lamp(lamp)) => lamp.emits(along),
+            Err(Emitter::Surface(surface, arrived)) => surface.scattered(self.at, *arrived, along),
         };
-        light.weight * per_angle * area / distance(light.at, point).powi(2)
+        self.weight * per_angle * area / distance(self.at, point).powi(2)
     }
 }
 
