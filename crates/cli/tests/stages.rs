@@ -109,7 +109,7 @@ fn what_does_not_fit_together_is_refused() {
         ),
         (
             "planes",
-            "small.ron --set planes.1.name=floor --batches 20..64",
+            "small.ron --set planes[1].name=floor --batches 20..64",
         ),
         ("name", "same.ron --batches 20..64"),
     ] {
@@ -140,7 +140,7 @@ fn what_does_not_fit_together_is_refused() {
         (
             "a planes",
             "p",
-            &["planes.1.name", "\"receiver\"", "\"floor\""],
+            &["planes[1].name", "\"receiver\"", "\"floor\""],
         ),
         ("a name", "p", &["scene is \"small\" and \"same\""]),
         (

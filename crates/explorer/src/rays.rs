@@ -11,8 +11,9 @@ use etendue_field::{
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
-/// The total number of rays, and the target error.
-const BUDGET: RayBudget = RayBudget::new(1.1e6, 3e-3);
+/// The budget that the command uses for a saved scene, whose number of photons is 2²²: the total
+/// number of rays, and the target error.
+const BUDGET: RayBudget = RayBudget::new(1_048_576.0, 12.0 / 2048.0);
 /// Radius of the receiver, metres.
 pub(crate) const APERTURE: f64 = 0.6;
 /// Number of azimuths of a saved scene; rays are added until the slices at all azimuths reach the

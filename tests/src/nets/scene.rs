@@ -88,7 +88,10 @@ fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untol
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
     let doublings = if kind.is_chain() { dice.of(3) } else { 0 };
-    let budget = RayBudget::new(65_536.0 * [1.0, 2.0, 4.0][doublings], [0.0, 5e-3][dice.of(2)]);
+    let budget = RayBudget::new(
+        65_536.0 * [1.0, 2.0, 4.0][doublings],
+        [0.0, 5e-3][dice.of(2)],
+    );
     let file = SceneFile::parse(&text).expect("a drawn scene is a scene file");
     let Ok(scene) = resolve("drawn", file, ".".as_ref(), u64::MAX) else {
         return Ok(None);

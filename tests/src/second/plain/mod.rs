@@ -539,6 +539,22 @@ mod tests {
         assert!(found.is_resolved() && found.deviation().abs() < MAX_DEVIATION);
     }
 
+    /// Light of the sky that would come through the surface from behind meets another part of it.
+    #[test]
+    fn a_curved_surface_shades_the_part_that_faces_away() {
+        let text = r#"(light: Environment(center: (0, 0, -0.1), up: (0, 1, 0), front: (0, 0, 1),
+                map: Lobes([(from: (-0.1, -0.8, -0.5), width: 0.6)])),
+            surfaces: [Smooth(name: "s", center: (0, 0, 0.8), facing: (-0.2, 0.5, -0.8),
+                form: Paraboloid(0.05, 0.7), aperture: 0.7,
+                event: Reflects(brdf: (lobe: Lambertian)))],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["s"]),
+            planes: [(name: "p", at: Distance(1))],
+            window: (x: Box(0.5), u: Hann(0.1)),
+            frequencies: (azimuths: 1, rho: (max: 1), nu: (max: 1)), run: (photons: 1000))"#;
+        let found = pair(text, None);
+        assert!(found.is_resolved() && found.deviation().abs() < MAX_DEVIATION);
+    }
+
     #[test]
     fn photons_find_the_light_that_scene_files_describe() {
         let section = plain(&PlainOptions {

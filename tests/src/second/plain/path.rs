@@ -9,6 +9,10 @@ use std::f64::consts::PI;
 /// Numbers that a path may use: four at an environment, two at each surface and at the plane.
 pub(super) const NUMBERS: usize = 14;
 
+/// Two distances along a line are the same if they differ by less than this share: rounding errors
+/// are far smaller, and the points of a surface on one line far more distant.
+const SAME: f64 = 1e-6;
+
 /// A point of the unit cube, whose coordinates are used in pairs.
 pub(super) struct Draws<'a> {
     numbers: &'a [f64; NUMBERS],
@@ -105,8 +109,16 @@ impl PlainWorld {
                     _ => surface.point(draws.next()),
                 };
                 let cosine = dot(along, surface.normal(point)).abs();
+                let at = lamp.origin(point, along);
+                // On its way to the point, light may meet another part of a curved surface.
+                let first = surface.hits(at, along);
+                let first = first.into_iter().find(|t| *t > self.begins(at))?;
+                let ahead = distance(at, point);
+                if (first - ahead).abs() > SAME * ahead {
+                    return None;
+                }
                 Light {
-                    at: lamp.origin(point, along),
+                    at,
                     weight: per_density * area * cosine,
                     along: Ok(along),
                     left: None,
