@@ -17,7 +17,7 @@ use glam::DVec3;
 const NO_PICTURES: RayBudget = RayBudget::new(0.0, f64::INFINITY);
 /// The maximum number of rays in nets for a projection picture and moments, if slices are computed by a
 /// quadrature rule.
-const FOR_PICTURES: f64 = 262_144.0;
+const FOR_PICTURES: f64 = 1e6;
 
 /// Returns the prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.

@@ -471,6 +471,8 @@ mod tests {
             assert!(sound.is_lit() && sound.deviation().abs() < MAX_DEVIATION);
             let forgotten = pair(text, Some(FAULTS[0])).deviation();
             assert!(forgotten > 10.0, "{forgotten}");
+            let moved = pair(text, Some(FAULTS[4])).deviation();
+            assert!(moved.abs() > 10.0, "{moved}");
         }
     }
 
