@@ -6,20 +6,23 @@
 //! computed from their spread. If there are too few nodes, the nets disagree. Nodes are added until
 //! the error is below the requested error, or until a budget is spent.
 
+mod budget;
 mod density;
+mod moments;
 mod rays;
 mod sobol;
 
+pub use budget::RayBudget;
 pub(crate) use density::{LinearDensity, Target};
 pub use rays::RayNets;
 pub(crate) use rays::SampledNets;
 pub(crate) use sobol::{DIMENSIONS, NetPoints};
 
-use crate::geometry::Matrix;
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use etendue_transform::SliceTransform;
+use moments::WeightedMoments;
 use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
@@ -49,53 +52,6 @@ const OF_TRIAL: f64 = 1.0 / 128.0;
 /// small. If nets have not yet sampled any ray of large weight, the spread between nets
 /// underestimates the error.
 const MIN_NODES: u32 = 1 << 12;
-
-/// The criterion by which a prediction stops adding nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayBudget {
-    /// Maximum number of nodes of all nets together. If this budget ends the prediction, at least
-    /// half of these nodes have been used.
-    pub nodes: f64,
-    /// The relative error ‖error‖/‖F‖ below which no more nodes are added.
-    pub error: f64,
-    /// The norm of the light of other sources at the same plane. If it exceeds ‖F‖, `error` is
-    /// relative to it.
-    pub beside: f64,
-    /// Maximum number of computing steps of a closed form or a quadrature. If it needs more steps,
-    /// nets replace it. A core takes about a nanosecond for each step.
-    pub steps: f64,
-}
-
-/// Default maximum number of computing steps of a closed form or a quadrature. These steps take
-/// about ten seconds on one core. In the same time, nets of rays would give a prediction with more
-/// noise than the photons, so a closed form is preferred up to this limit.
-const MAX_STEPS: f64 = 1e10;
-
-impl RayBudget {
-    /// Returns the budget for the only light of a scene with one plane, from the maximum number of
-    /// nodes and the relative error.
-    #[must_use]
-    pub const fn new(nodes: f64, error: f64) -> Self {
-        Self {
-            nodes,
-            error,
-            beside: 0.0,
-            steps: MAX_STEPS,
-        }
-    }
-
-    /// Returns this budget for one of several equal parts of the work whose errors are independent.
-    #[must_use]
-    pub fn shared(self, parts: usize) -> Self {
-        let parts = parts as f64;
-        Self {
-            nodes: self.nodes / parts,
-            error: self.error / parts.sqrt(),
-            steps: self.steps / parts,
-            ..self
-        }
-    }
-}
 
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -433,41 +389,6 @@ fn relative([error, norm]: [f64; 2]) -> f64 {
         error / norm
     } else {
         f64::INFINITY
-    }
-}
-
-/// Three sums over rays: of the weights, of the weights times z, and of the weights times z zᵀ,
-/// where z is a ray.
-#[derive(Clone, Copy, Debug, Default)]
-struct WeightedMoments {
-    total: f64,
-    first: [f64; 4],
-    second: Matrix<4>,
-}
-
-impl WeightedMoments {
-    fn add(&mut self, z: [f64; 4], weight: f64) {
-        self.total += weight;
-        for (i, row) in self.second.iter_mut().enumerate() {
-            let share = weight * z[i];
-            self.first[i] += share;
-            for (sum, z) in row.iter_mut().zip(z) {
-                *sum += share * z;
-            }
-        }
-    }
-
-    fn join(&mut self, other: &Self) {
-        self.total += other.total;
-        self.first = std::array::from_fn(|i| self.first[i] + other.first[i]);
-        self.second = crate::geometry::sum(&self.second, &other.second);
-    }
-
-    fn central(&self) -> Option<Matrix<4>> {
-        let mean = self.first.map(|sum| sum / self.total);
-        let entry =
-            |i: usize, j: usize| self.second[i.min(j)][i.max(j)] / self.total - mean[i] * mean[j];
-        (self.total > 0.0).then(|| crate::geometry::from_fn(entry))
     }
 }
 
