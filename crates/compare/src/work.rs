@@ -2,6 +2,7 @@
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
+use crate::class::Class;
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -80,33 +81,37 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
     None
 }
 
-/// Seconds on one core for each photon, plane and azimuth. The measured times are 37e-9 s for
-/// `fig9b` and 33e-9 s for `ggx_sphere`, on an AMD EPYC processor.
-const SECONDS: f64 = 4e-8;
-
-/// Seconds on one core for each frequency and batch, to compare a plane with its prediction, to
-/// draw it and to save it.
-const SECONDS_OF_COMPARISON: f64 = 3e-7;
+/// Seconds on one core for each photon, on each leg of the path, and at each plane and azimuth.
+/// Tracing `fig9b` takes 37e-9 s and tracing `ggx_sphere` 33e-9 s for each photon, plane and azimuth,
+/// on an AMD EPYC processor; the legs are a fit to random scenes.
+const OF_LEG: f64 = 1e-7;
+const OF_AZIMUTH: f64 = 4e-8;
+/// Seconds on one core for each plane to compare, draw and save it, and more for each of its
+/// frequencies in each batch.
+const OF_PLANE: f64 = 0.3;
+const OF_FREQUENCY: f64 = 3e-7;
 
 /// Returns the approximate seconds that one core takes to trace the photons of a scene, the most
 /// seconds that it takes for the predictions of the scene, and the approximate seconds that it
-/// takes to compare and draw the planes.
+/// takes to compare and draw the planes, with a second tracer where no theory applies.
 #[must_use]
 pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 3] {
-    let planes = scene.planes.iter();
-    let azimuths: usize = planes.clone().map(|plane| plane.grid.azimuths).sum();
-    let frequencies = planes.clone().map(|plane| plane.grid.half_shape());
-    let frequencies: usize = frequencies.map(|[k, m, n]| k * m * n).sum();
-    let works = planes
-        .zip(theories)
-        .map(|(plane, theory)| of(scene, plane, theory));
-    let steps: f64 = works.map(|work| work.steps).sum();
+    let (mut of_photon, mut steps, mut compared) =
+        (scene.path.legs.len() as f64 * OF_LEG, 0.0, 0.0);
+    for (plane, theory) in scene.planes.iter().zip(theories) {
+        of_photon += plane.grid.azimuths as f64 * OF_AZIMUTH;
+        steps += of(scene, plane, theory).steps;
+        let frequencies = plane.grid.half_shape().iter().product::<usize>() as f64;
+        compared += OF_PLANE + frequencies * f64::from(scene.run.batches) * OF_FREQUENCY;
+    }
+    let photons = of_photon * scene.run.photons as f64;
+    let references = theories
+        .iter()
+        .filter(|of| of.class() == Class::Reference)
+        .count();
+    let of_second_tracer = photons * references as f64 / theories.len() as f64;
     // A core takes about a nanosecond for a step.
-    [
-        scene.run.photons as f64 * azimuths as f64 * SECONDS,
-        1e-9 * steps,
-        frequencies as f64 * scene.run.batches as f64 * SECONDS_OF_COMPARISON,
-    ]
+    [photons, 1e-9 * steps, compared + of_second_tracer]
 }
 
 /// Returns the work of the prediction of a plane.

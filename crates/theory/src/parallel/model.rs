@@ -163,12 +163,11 @@ impl Chain {
         }
         let work = work(self, window, grid, picture);
         let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
-        let max_steps = if fits(&work_of_nets(grid, budget)) {
-            budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes)
-        } else {
-            MAX_STEPS_WITHOUT_NETS
-        };
-        if !fits(&work) || work.steps > max_steps {
+        let is_short = work.steps <= budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes);
+        if !fits(&work)
+            || !is_short
+                && (work.steps > MAX_STEPS_WITHOUT_NETS || fits(&work_of_nets(grid, budget)))
+        {
             return true;
         }
         match path.receiver() {
