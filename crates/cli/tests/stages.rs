@@ -148,7 +148,7 @@ fn what_does_not_fit_together_is_refused() {
             "bright",
             &[
                 "bright/prediction.json",
-                "light.Rectangle.radiance is 1.0 and 2.0",
+                "light.radiance is 1.0 and 2.0",
             ],
         ),
         ("a b", "a", &["a/prediction.json", "No such file"]),
