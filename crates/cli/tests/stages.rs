@@ -146,10 +146,7 @@ fn what_does_not_fit_together_is_refused() {
         (
             "a b",
             "bright",
-            &[
-                "bright/prediction.json",
-                "light.radiance is 1.0 and 2.0",
-            ],
+            &["bright/prediction.json", "light.radiance is 1.0 and 2.0"],
         ),
         ("a b", "a", &["a/prediction.json", "No such file"]),
         ("p", "p", &["p/measurement.json", "No such file"]),
