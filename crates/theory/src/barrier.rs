@@ -89,29 +89,34 @@ pub(crate) struct Bins<'a> {
     /// Number of cells per metre along each axis.
     per_length: [f64; 2],
     /// Number of cells along each axis.
-    side: usize,
+    sides: [usize; 2],
     /// Indices of the shapes that touch each cell.
     cells: Vec<Vec<usize>>,
 }
 
 impl<'a> Bins<'a> {
     fn new(shapes: &'a [Shape]) -> Self {
-        let side = (1..).find(|n| n * n >= shapes.len()).unwrap_or(1);
         let extents = |axis| shapes.iter().map(move |s| s.bounds().extent(axis));
         let low = [0, 1].map(|axis| extents(axis).fold(f64::INFINITY, |m, e| m.min(e[0])));
         let high = [0, 1].map(|axis| extents(axis).fold(f64::NEG_INFINITY, |m, e| m.max(e[1])));
+        // Shapes as wide as the grid would touch all of its cells along this axis.
+        let abreast = [0, 1].map(|axis| {
+            let widths = extents(axis).map(|[low, high]| high - low);
+            shapes.len() as f64 * (high[axis] - low[axis]) / widths.sum::<f64>()
+        });
+        let sides = sides(shapes.len(), abreast);
         let mut bins = Self {
             shapes,
             low,
-            per_length: [0, 1].map(|axis| side as f64 / (high[axis] - low[axis])),
-            side,
-            cells: vec![vec![]; side * side],
+            per_length: [0, 1].map(|axis| sides[axis] as f64 / (high[axis] - low[axis])),
+            sides,
+            cells: vec![vec![]; sides[0] * sides[1]],
         };
         for (number, shape) in shapes.iter().enumerate() {
             let [x, y] = [0, 1].map(|axis| bins.touched(axis, shape.bounds().extent(axis)));
             for i in x {
                 for j in y.clone() {
-                    bins.cells[i * side + j].push(number);
+                    bins.cells[i * sides[1] + j].push(number);
                 }
             }
         }
@@ -140,7 +145,7 @@ impl<'a> Bins<'a> {
     )]
     fn cell(&self, axis: usize, coordinate: f64) -> usize {
         let cell = (coordinate - self.low[axis]) * self.per_length[axis];
-        cell.clamp(0.0, (self.side - 1) as f64) as usize
+        cell.clamp(0.0, (self.sides[axis] - 1) as f64) as usize
     }
 
     /// Calls `each` once for every shape whose bounds overlap the rectangle `sides`; the order of
@@ -152,7 +157,7 @@ impl<'a> Bins<'a> {
         let [x, y] = [0, 1].map(|axis| self.touched(axis, sides[axis]));
         for i in x.clone() {
             for j in y.clone() {
-                for &number in &self.cells[i * self.side + j] {
+                for &number in &self.cells[i * self.sides[1] + j] {
                     let shape = &self.shapes[number];
                     let extents = [0, 1].map(|axis| shape.bounds().extent(axis));
                     // A shape that overlaps several cells is visited only in the first of its
@@ -171,10 +176,33 @@ impl<'a> Bins<'a> {
     }
 }
 
+/// Returns the numbers of cells along two axes, with about `count` cells in all. There are at most
+/// about as many along an axis as shapes fit side by side, which `abreast` gives.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the numbers are between 1 and the number of shapes"
+)]
+fn sides(count: usize, abreast: [f64; 2]) -> [usize; 2] {
+    let count = count.max(1) as f64;
+    let most = abreast.map(|fit| {
+        if fit > 1.0 {
+            fit.ceil().min(count)
+        } else {
+            1.0
+        }
+    });
+    let narrow = count.sqrt().ceil();
+    // What one axis does not take is left for the other.
+    let other = |axis: usize| (count / most[1 - axis].min(narrow)).ceil();
+    [0, 1].map(|axis| most[axis].min(narrow.max(other(axis))) as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::testing::{blockers, square};
+    use etendue_field::Rectangle;
 
     #[test]
     fn finds_each_shape_once() {
@@ -204,5 +232,20 @@ mod tests {
             expected.sort_by(order);
             assert_eq!(found, expected);
         }
+    }
+
+    /// A bar that is as long as the mask must not be listed in each of many cells along it.
+    #[test]
+    fn long_bars_touch_few_cells() {
+        let bar = |i: u32| Rectangle {
+            center: [f64::from(i), 0.0],
+            size: [0.5, 1e9],
+        };
+        let shapes: Vec<_> = (0..1000).map(|i| Shape::Rectangle(bar(i))).collect();
+        let bins = Bins::new(&shapes);
+        assert_eq!(bins.sides, [1000, 1]);
+        let listed = bins.cells.iter().map(Vec::len);
+        assert!(listed.sum::<usize>() <= 2 * shapes.len());
+        assert_eq!(sides(400, [28.0, 28.0]), [20, 20]);
     }
 }
