@@ -142,6 +142,9 @@ impl Model for Chain {
 /// about as long as tracing four photons, and a run has about four photons for each ray of the
 /// budget.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
+/// Maximum number of computing steps of a closed form or a quadrature for each step of the nets that
+/// would replace it. Their noise is near that of the photons; a closed form has none.
+const MAX_STEPS_OF_NETS: f64 = 5.0;
 /// Maximum number of computing steps of a closed form or a quadrature if nets of rays do not fit
 /// into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
@@ -164,10 +167,13 @@ impl Chain {
         let work = work(self, window, grid, picture);
         let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
         let is_short = work.steps <= budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes);
-        if !fits(&work)
-            || !is_short
-                && (work.steps > MAX_STEPS_WITHOUT_NETS || fits(&work_of_nets(grid, budget)))
-        {
+        let is_long = || {
+            let nets = work_of_nets(grid, budget);
+            let of_nets = MAX_STEPS_OF_NETS * nets.steps;
+            let most = [MAX_STEPS_WITHOUT_NETS, of_nets][usize::from(fits(&nets))];
+            work.steps > most
+        };
+        if !fits(&work) || !is_short && is_long() {
             return true;
         }
         match path.receiver() {
