@@ -12,7 +12,7 @@ const OF_NOISE: f64 = 12.0;
 /// The number of rays of a prediction, as a share of the number of photons. This share is small
 /// enough that the prediction takes less time than tracing the photons.
 const SHARE: f64 = 0.25;
-/// The smallest number of rays, for runs with few photons.
+/// The largest number of rays for runs with few photons.
 const FEWEST: f64 = 6e5;
 
 /// Returns the ray budget of a prediction. The prediction ends when its error is half of the

@@ -461,10 +461,9 @@ impl ComparedSides<'_> {
     /// The powers where ρν ≥ 0 change, so that the changes add up whether the statistic is even or
     /// odd in ρ; the other half of the powers changes the statistic as much.
     fn transform_error(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> f64 {
-        let [still, mut moved] = [(); 2].map(|()| self.predicted_radial.clone());
-        let grid = &self.predicted.grid;
-        let change = of_transform(&still);
-        for (at, change) in change.indexed_iter() {
+        let (still, grid) = (self.predicted_radial, &self.predicted.grid);
+        let mut moved = still.clone();
+        for (at, change) in of_transform(still).indexed_iter() {
             if grid.rho.value(at.0) * grid.nu.value(at.1) >= 0.0 {
                 moved[at] += change;
             }

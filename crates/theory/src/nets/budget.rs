@@ -11,12 +11,13 @@ pub struct RayBudget {
     /// The norm of the light of other sources at the same plane. If it exceeds ‖F‖, `error` is
     /// relative to it.
     pub beside: f64,
-    /// Maximum number of computing steps of a closed form or a quadrature. If it needs more steps,
-    /// nets replace it. A core takes about a nanosecond for each step.
+    /// Number of computing steps that a closed form or a quadrature may take in any case. If it
+    /// needs more steps, nets replace it where they take far fewer. A core takes about a nanosecond
+    /// for each step.
     pub steps: f64,
 }
 
-/// Default maximum number of computing steps of a closed form or a quadrature. These steps take
+/// Default of [`RayBudget::steps`] for a closed form or a quadrature. These steps take
 /// about ten seconds on one core. In the same time, nets of rays would give a prediction with more
 /// noise than the photons, so a closed form is preferred up to this limit.
 const MAX_STEPS: f64 = 1e10;

@@ -316,8 +316,7 @@ impl Running {
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
-            // The list of fields is empty if no derivative was requested.
-            let RayNode { z, weight } = nodes.first().copied().unwrap_or(RayNode::DARK);
+            let RayNode { z, weight } = nodes[0];
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
             }
@@ -375,13 +374,12 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
 fn error_and_norm<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> [f64; 2] {
     let r = slices.len() as f64;
     let mean = mean(slices.clone());
-    let size: f64 = mean.half.iter().map(|f| f.norm_sqr()).sum();
     let spread = |one: &Slices| -> f64 {
         let apart: Array3<Complex> = &one.half - &mean.half;
         apart.iter().map(|d| d.norm_sqr()).sum()
     };
     let variance = slices.map(spread).sum::<f64>() / (r * (r - 1.0));
-    [variance.sqrt(), size.sqrt()]
+    [variance.sqrt(), mean.norm()]
 }
 
 fn relative([error, norm]: [f64; 2]) -> f64 {

@@ -166,14 +166,16 @@ impl Chain {
         }
         let work = work(self, window, grid, picture);
         let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
-        let is_short = work.steps <= budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes);
-        let is_long = || {
+        let in_any_case = budget.steps.max(MAX_STEPS_PER_RAY * budget.nodes);
+        let beside_nets = || {
             let nets = work_of_nets(grid, budget);
-            let of_nets = MAX_STEPS_OF_NETS * nets.steps;
-            let most = [MAX_STEPS_WITHOUT_NETS, of_nets][usize::from(fits(&nets))];
-            work.steps > most
+            if fits(&nets) {
+                MAX_STEPS_OF_NETS * nets.steps
+            } else {
+                MAX_STEPS_WITHOUT_NETS
+            }
         };
-        if !fits(&work) || !is_short && is_long() {
+        if !fits(&work) || work.steps > in_any_case && work.steps > beside_nets() {
             return true;
         }
         match path.receiver() {

@@ -50,7 +50,7 @@
 //! let grid = SliceGrid { azimuths: 2, rho: axis, nu: axis };
 //! let picture = ProjectionGrid::new(&window, 16);
 //! let over = (&window, &grid, &picture);
-//! let budget = RayBudget::new(1e6, 1e-3 );
+//! let budget = RayBudget::new(1e6, 1e-3);
 //! let right = view.predict(&[], over, budget);
 //! let near = linear(&view, over, &first.map, budget);
 //! // Slopes of 0.02 are small.

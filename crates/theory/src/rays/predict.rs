@@ -15,8 +15,8 @@ use glam::DVec3;
 
 /// The budget of rays in nets if no projection picture and no moments are requested.
 const NO_PICTURES: RayBudget = RayBudget::new(0.0, f64::INFINITY);
-/// The maximum number of rays in nets for a projection picture and moments, if slices are computed by a
-/// quadrature rule.
+/// The maximum number of rays in nets for a projection picture and moments, if slices are computed
+/// by a quadrature rule.
 const FOR_PICTURES: f64 = 1e6;
 
 /// Returns the prediction from rays followed through the exact geometry, and its derivatives with

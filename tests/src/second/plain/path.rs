@@ -9,10 +9,6 @@ use std::f64::consts::PI;
 /// Numbers that a path may use: four at an environment, two at each surface and at the plane.
 pub(super) const NUMBERS: usize = 14;
 
-/// Two distances along a line are the same if they differ by less than this share: rounding errors
-/// are far smaller, and the points of a surface on one line far more distant.
-const SAME: f64 = 1e-6;
-
 /// A point of the unit cube, whose coordinates are used in pairs.
 pub(super) struct Draws<'a> {
     numbers: &'a [f64; NUMBERS],
@@ -89,6 +85,8 @@ impl PlainWorld {
             Choice::Forward => None,
             Choice::Connected => Some(self.seen(draws)?),
         };
+        // The point of the first surface to which light is sent from far away.
+        let mut aimed = None;
         let mut light = match lamp.start(draws) {
             Start::At(at, weight) => Light {
                 at,
@@ -109,16 +107,9 @@ impl PlainWorld {
                     _ => surface.point(draws.next()),
                 };
                 let cosine = dot(along, surface.normal(point)).abs();
-                let at = lamp.origin(point, along);
-                // On its way to the point, light may meet another part of a curved surface.
-                let first = surface.hits(at, along);
-                let first = first.into_iter().find(|t| *t > self.begins(at))?;
-                let ahead = distance(at, point);
-                if (first - ahead).abs() > SAME * ahead {
-                    return None;
-                }
+                aimed = Some(point);
                 Light {
-                    at,
+                    at: lamp.origin(point, along),
                     weight: per_density * area * cosine,
                     along: Ok(along),
                     left: None,
@@ -127,7 +118,8 @@ impl PlainWorld {
         };
         for (i, visit) in self.visits.iter().enumerate() {
             let seen = seen.as_ref().filter(|_| i + 1 == self.visits.len());
-            light = self.visit(&light, *visit, seen, draws)?;
+            let arrives = aimed.take().or(seen.map(|seen| seen.point));
+            light = self.visit(&light, *visit, arrives, draws)?;
         }
         let Some(Seen {
             along,
@@ -165,24 +157,28 @@ impl PlainWorld {
         })
     }
 
-    /// Returns the light after its next surface. If the point is `seen`, light is per area there.
+    /// Returns the light after its next surface. If the point where it `arrives` is given, light is
+    /// per area there; it is lost if it meets another part of the surface before.
     fn visit(
         &self,
         light: &Light<'_>,
         visit: usize,
-        seen: Option<&Seen>,
+        arrives: Option<Vector>,
         draws: &mut Draws<'_>,
     ) -> Option<Light<'_>> {
         let surface = &self.surfaces[visit];
         let (point, along, area) = match &light.along {
             Ok(along) => {
-                let hits = surface.hits(light.at, *along);
-                let t = hits.into_iter().find(|t| *t > self.begins(light.at))?;
-                (plus(light.at, t, *along), *along, 1.0)
+                let first = || {
+                    let hits = surface.hits(light.at, *along);
+                    let t = hits.into_iter().find(|t| *t > self.begins(light.at))?;
+                    Some(plus(light.at, t, *along))
+                };
+                (arrives.or_else(first)?, *along, 1.0)
             }
             Err(_) => {
-                let (point, area) = match seen {
-                    Some(seen) => (seen.point, 1.0),
+                let (point, area) = match arrives {
+                    Some(point) => (point, 1.0),
                     None => surface.point(draws.next()),
                 };
                 let along = unit(plus(point, -1.0, light.at));
