@@ -19,6 +19,7 @@ scenes! {
     FIG10 = "fig10",
     FIG11 = "fig11",
     FIG14 = "fig14",
+    FIG14_PRODUCT = "fig14_product",
     FIG15 = "fig15",
     FIG3 = "fig3",
     FIG4_POINT = "fig4_point",

@@ -36,6 +36,13 @@ pub(crate) fn of_transform<D: Dimension>(power: &Array<f64, D>) -> Array<f64, D>
 }
 
 impl Residuals {
+    /// Returns residuals that were computed elsewhere, each an independent draw, [azimuth, ρ ≥ 0,
+    /// ν].
+    #[must_use]
+    pub fn of(grid: SliceGrid, parts: Vec<Array3<Complex>>) -> Self {
+        Self { grid, parts }
+    }
+
     /// Returns the differences between plane `plane` of a measurement and slices without
     /// statistical error.
     ///
@@ -139,7 +146,8 @@ impl Residuals {
     }
 
     /// Returns the variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
-    pub(crate) fn variance(&self) -> Array3<f64> {
+    #[must_use]
+    pub fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
         let mut variance = Array3::zeros(self.grid.half_shape());
         for residual in &self.parts {

@@ -94,6 +94,7 @@ pub fn chart(chart: &Chart, style: &Style) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(left + inner + RIGHT, bottom),
         csv: numbers(chart)?,
+        pictures: Vec::new(),
     })
 }
 

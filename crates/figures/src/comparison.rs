@@ -79,6 +79,7 @@ pub fn comparison(comparison: &Comparison<'_>) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(WIDTH, baseline + 13.0),
         csv: numbers(comparison)?,
+        pictures: Vec::new(),
     })
 }
 

@@ -177,6 +177,7 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(left + inner + RIGHT, bottom + LABEL_BASELINE + 14.0),
         csv: numbers(curves)?,
+        pictures: Vec::new(),
     })
 }
 
@@ -341,7 +342,8 @@ fn bar(svg: &mut Svg, [x, _]: [f64; 2], [low, high]: [f64; 2]) {
 
 /// Returns the CSV of the panels, with a row for each point.
 fn numbers(curves: &Curves) -> Result<String, Error> {
-    let header = ["panel", "axis", "curve", "x", &curves.y.heading(), "error"].map(str::to_owned);
+    let y = curves.y.heading();
+    let header = ["panel", "axis", "curve", "x", &y, "standard error"].map(str::to_owned);
     let rows = curves.panels.iter().flat_map(|panel| {
         panel.curves.iter().flat_map(|curve| {
             curve.points.iter().map(|[x, y, error]| {

@@ -139,6 +139,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(width, baseline + 13.0),
         csv: numbers(of)?,
+        pictures: Vec::new(),
     })
 }
 

@@ -1,12 +1,16 @@
 //! Writes a figure as SVG, PNG, PDF and CSV.
 
+use crate::axis::{Axis, AxisQuantity};
+use crate::grid::Picture;
 use crate::raster::encoded;
 use crate::sizes::INCH;
 use crate::svg::Svg;
+use crate::text::plain;
 use krilla::Document;
 use krilla::geom::Size;
 use krilla::page::PageSettings;
 use krilla_svg::{SurfaceExt, SvgSettings};
+use ndarray::Array2;
 use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
@@ -14,7 +18,7 @@ use std::sync::Arc;
 const PNG_SCALE: f32 = 2.0;
 
 /// A drawing with the numbers that it shows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// The drawing as SVG. Texts are stored as text, and heat maps are embedded PNGs with one pixel
     /// per cell.
@@ -22,6 +26,43 @@ pub struct Figure {
     /// The numbers that the drawing shows, as CSV. A header states names and units, and a row for
     /// each cell or line follows.
     pub csv: String,
+    /// The pictures in a plate or a strip, row by row.
+    pub pictures: Vec<DrawnPicture>,
+}
+
+/// The numbers of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPicture {
+    /// The name of the picture's row, or the name of its quantity if the row has no name.
+    pub row: String,
+    /// The heading of the picture's column.
+    pub column: String,
+    /// The unit of the values.
+    pub unit: String,
+    /// The name and unit of each axis, and the centres of its cells.
+    pub axes: [(String, Vec<f64>); 2],
+    /// The values, [x, y].
+    pub values: Array2<f64>,
+    /// The standard error of each value, if it is known.
+    pub sigma: Option<Array2<f64>>,
+}
+
+impl DrawnPicture {
+    pub(crate) fn new(row: &str, column: &str, of: &AxisQuantity, picture: &Picture<'_>) -> Self {
+        let (columns, rows) = picture.values.dim();
+        let axis = |axis: &Axis, count| {
+            let centers = (0..count).map(|i| axis.center(i, count));
+            (axis.quantity.heading(), centers.collect())
+        };
+        Self {
+            row: plain(if row.is_empty() { &of.name } else { row }),
+            column: plain(column),
+            unit: plain(&of.unit),
+            axes: [axis(&picture.x, columns), axis(&picture.y, rows)],
+            values: picture.values.to_owned(),
+            sigma: None,
+        }
+    }
 }
 
 /// The reason why a figure could not be made. The reason lies in the drawing of the figure, not in
@@ -100,7 +141,7 @@ impl Figure {
     }
 }
 
-/// Stacks figures on one page, and joins their tables.
+/// Stacks figures on one page, and joins their tables and pictures.
 #[must_use]
 pub fn stacked(figures: &[Figure]) -> Figure {
     let number = |figure: &Figure, name: &str| {
@@ -121,6 +162,7 @@ pub fn stacked(figures: &[Figure]) -> Figure {
     Figure {
         svg: svg.finish(width.fold(0.0, f64::max), y),
         csv: tables.join("\n"),
+        pictures: figures.iter().flat_map(|f| f.pictures.clone()).collect(),
     }
 }
 

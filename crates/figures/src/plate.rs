@@ -3,7 +3,7 @@
 use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
 use crate::color::Scale;
-use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::figure::{DrawnPicture, Error, Figure, csv_text, decimal};
 use crate::grid::{LEFT, PageGrid, Picture, PictureRow, RIGHT, inner};
 use crate::panel::Panel;
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LEAST_TEXT, SMALL_TEXT, SOFT, THEORY_COLOR, TICK_TEXT};
@@ -125,7 +125,21 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(LEFT + inner + RIGHT, bottom + 14.0),
         csv: numbers(plate)?,
+        pictures: plate
+            .rows
+            .iter()
+            .flat_map(|row| drawn(row, &plate.heads))
+            .collect(),
     })
+}
+
+/// Returns the numbers of the pictures of a row.
+fn drawn<'b>(
+    row: &'b PlateRow<'_>,
+    heads: &'b [String],
+) -> impl Iterator<Item = DrawnPicture> + 'b {
+    let both = row.pictures.iter().zip(heads);
+    both.map(|(picture, head)| DrawnPicture::new(row.name, head, &row.quantity, picture))
 }
 
 fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
@@ -270,7 +284,7 @@ fn numbers(plate: &Plate<'_>) -> Result<String, Error> {
     let header = [
         "column".to_owned(),
         format!("measured {quantity}"),
-        "error".to_owned(),
+        "standard error".to_owned(),
         "predicted".to_owned(),
     ];
     let rows = plate.heads.iter().enumerate().map(|(i, head)| {

@@ -76,6 +76,7 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     Ok(Figure {
         svg: svg.finish(area.right() + 20.0, bottom),
         csv: numbers(section)?,
+        pictures: Vec::new(),
     })
 }
 

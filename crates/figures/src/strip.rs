@@ -5,7 +5,7 @@ use crate::axis::AxisQuantity;
 use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::SectionLayout;
-use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::figure::{DrawnPicture, Error, Figure, csv_text, decimal};
 use crate::grid::{GAPS, Guide, LEFT, PageGrid, Picture, RIGHT, ends, guide_strokes, inner};
 use crate::plate::{OWN_PEAK, feet};
 use crate::section::Section;
@@ -228,7 +228,20 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(LEFT + inner + RIGHT, bottom + 14.0),
         csv: numbers(strip)?,
+        pictures: pictures(strip),
     })
+}
+
+/// Returns the numbers of the pictures.
+fn pictures(strip: &Strip<'_>) -> Vec<DrawnPicture> {
+    let both = || strip.columns.iter().zip(&strip.section.planes);
+    let row = |row: StripRow| {
+        let quantity = row.quantity(strip);
+        both().map(move |(column, plane)| {
+            DrawnPicture::new(row.name(), &plane.name, &quantity, row.picture(column))
+        })
+    };
+    StripRow::of(strip).into_iter().flat_map(row).collect()
 }
 
 /// Lays out the pictures below the cut.

@@ -307,9 +307,15 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         },
         shared: true,
     };
+    let mut middle = luminance("", "", &panels[2..]).drawn(&scene, &style)?;
+    if let Some(reference) = middle.pictures.last_mut() {
+        let variance = found.reference.variance.iter();
+        let sigma = variance.map(|variance| variance.sqrt() / found.white);
+        reference.sigma = Some(scene.picture(sigma.collect())?);
+    }
     Ok(stacked(&[
         luminance("A picture of few shading samples", &note, &panels[..2]).drawn(&scene, &style)?,
-        luminance("", "", &panels[2..]).drawn(&scene, &style)?,
+        middle,
         below.drawn(&scene, &style)?,
     ]))
 }

@@ -149,7 +149,8 @@ impl KernelFactor {
 }
 
 /// Draws cos₊, and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12).
-/// Also states the frequencies below which [`SHARES`] of the energy of each curve lie.
+/// Also states the frequencies below which [`SHARES`] of the energy of each curve lie; in the
+/// table, their rows have the panel `energy`, the share as x and the frequency Ω as the value.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| KernelFactor { name, fresnel };
     let dielectric = |index| Some(FresnelFactor::Dielectric { index });
@@ -198,13 +199,12 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         &note,
         panels,
     ))?;
-    figure
-        .csv
-        .push_str("\nfactor,80 % of the energy below [cycles/rad],95 %,99 %\n");
     for (of, below) in materials.iter().zip(&shares) {
-        figure
-            .csv
-            .push_str(&format!("{},{}\n", of.name, below.join(",")));
+        let name = of.name.replace(['_', '{', '}'], "");
+        for (share, frequency) in SHARES.iter().zip(below) {
+            let row = format!("energy,share below Ω [cycles/rad],{name},{share},{frequency},0.0\n");
+            figure.csv.push_str(&row);
+        }
     }
     Ok(figure)
 }

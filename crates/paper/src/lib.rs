@@ -12,11 +12,13 @@
 mod caustic;
 mod creatures;
 mod criteria;
+mod data;
 mod flat;
 mod kernels;
 mod make;
 mod parameterisations;
 mod plates;
+mod product;
 mod quality;
 mod recipe;
 mod request;

@@ -1,9 +1,10 @@
 //! Makes a figure: runs its scenes, draws it, and writes it with data and recipe.
 
+use crate::data;
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
 use crate::request::{FigureRequest, Wanted};
-use crate::scene_run::{self, Shot};
+use crate::scene_run::Shot;
 use crate::style;
 use crate::subject::{FigureData, Subject};
 use crate::user_figures;
@@ -139,10 +140,11 @@ pub(crate) fn make(
 ) -> Result<Verdict, Failure> {
     let style = request.style.as_deref().map(style::read).transpose()?;
     let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
+    let endings = endings.into_iter().chain([data::DESCRIPTION.to_owned()]);
     let texts = subject.texts.iter().map(|(name, _)| format!("{name}.ron"));
     let plan = Plan {
         index: FIGURE,
-        files: endings.into_iter().chain(texts).collect(),
+        files: endings.chain(texts).collect(),
         inputs: subject.inputs.clone(),
         force: request.force,
         arguments: request.arguments,
@@ -238,13 +240,8 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    // No table is written for a strip. A table of a strip would have a row for each cell, and the
-    // arrays store the cells more compactly.
-    if subject.has_table {
-        results.write("figure.csv", figure.csv.as_bytes())?;
-    }
-    if !taken.shots.is_empty() {
-        results.write("figure.npz", &scene_run::arrays(taken.shots)?)?;
+    for (name, bytes) in data::files(&figure, taken.shots)? {
+        results.write(name, &bytes)?;
     }
     for (name, text) in &subject.texts {
         results.write(&format!("{name}.ron"), text.as_bytes())?;

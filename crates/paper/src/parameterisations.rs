@@ -3,7 +3,7 @@
 
 use crate::rows::{DECIBEL, Seen, feet, lettered, row};
 use crate::subject::FigureData;
-use etendue_compare::Bandwidth;
+use etendue_compare::{Bandwidth, PlaneComparison};
 use etendue_field::{Orientation, Slices, percent, uncertain};
 use etendue_figures::{Figure, Plate};
 use etendue_pipeline::table::off_by;
@@ -41,7 +41,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
         foot.extend(bandwidths(seen));
     }
     feet.push(off(&angles));
-    taken.plate(&Plate {
+    let mut figure = taken.plate(&Plate {
         title: "Two parameterisations",
         note: "*ρ* runs along X in all panels. The difference is the mean of |*S*_{θ} − *S*_{u}|^{2} over azimuths, with each frequency of (b) at its place in (a). *B*: 95 % bandwidths in the azimuth where they are largest.",
         heads: lettered(&["by slopes *u*", "by angles *θ*", "difference"]),
@@ -49,7 +49,10 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
         feet,
         bars: None,
         side: None,
-    })
+    })?;
+    // The pictures of the first row are measured; the last of them is the difference.
+    figure.pictures[2].sigma = Some(difference_error(slopes.found, angles.found));
+    Ok(figure)
 }
 
 /// Returns the radial spectra over slopes and over angles, with ρ along X, and their difference.
@@ -64,22 +67,50 @@ fn panels(
 
 /// Returns |S_θ − S_u|², averaged over azimuths, as an array [ρ, ν] with ρ along X. S_θ is the
 /// spectrum over angles, and S_u is the spectrum over slopes.
+fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
+    let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
+    over_azimuths(by_slopes.dim(), |here, there| {
+        (by_slopes[here] - by_angles[there]).norm_sqr()
+    })
+}
+
+/// Returns the standard error of [`difference`]: the noise v = σ_θ² + σ_u² changes |D|² with the
+/// variance 2 |D|² v + v². The planes share photons, whose noise partly cancels in D, so this is an
+/// upper bound. Azimuths are taken as independent.
+fn difference_error(slopes: &PlaneComparison, angles: &PlaneComparison) -> Array2<f64> {
+    let [by_slopes, by_angles] = [slopes, angles].map(|of| of.measured.full());
+    let [slope_noise, angle_noise] = [slopes, angles].map(|of| {
+        let sigma = of.measured_sigma.as_ref().unwrap_or(&of.sigma);
+        of.measured.grid.unfold_even(sigma.view())
+    });
+    let azimuths = by_slopes.dim().0 as f64;
+    let variance = over_azimuths(by_slopes.dim(), |here, there| {
+        let noise = slope_noise[here].powi(2) + angle_noise[there].powi(2);
+        let square = (by_slopes[here] - by_angles[there]).norm_sqr();
+        2.0 * square * noise + noise * noise
+    });
+    variance.mapv(|v| (v / azimuths).sqrt())
+}
+
+/// Returns means over azimuths of a function of a cell over slopes and of the same cell over
+/// angles.
 ///
 /// The axis T of the surface is opposite to X, and its axis B is Y. Angles describe the direction
 /// from which light comes. Therefore the value over slopes at (ρ, ν) and azimuth φ is the value
 /// over angles at (−ρ, ν) and azimuth −φ, or at (ρ, −ν) and azimuth π − φ.
-fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
-    let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
-    let (azimuths, columns, rows) = by_slopes.dim();
+fn over_azimuths(
+    (azimuths, columns, rows): (usize, usize, usize),
+    of: impl Fn([usize; 3], [usize; 3]) -> f64,
+) -> Array2<f64> {
     Array2::from_shape_fn((columns, rows), |(i, j)| {
-        let squares = (0..azimuths).map(|k| {
+        let each = (0..azimuths).map(|k| {
             let same = match k {
                 0 => [0, columns - 1 - i, j],
                 _ => [azimuths - k, i, rows - 1 - j],
             };
-            (by_slopes[[k, i, j]] - by_angles[same]).norm_sqr()
+            of([k, i, j], same)
         });
-        squares.sum::<f64>() / azimuths as f64
+        each.sum::<f64>() / azimuths as f64
     })
 }
 

@@ -24,8 +24,6 @@ pub(crate) struct Recipe {
     pub(crate) scenes: &'static [Text],
     /// Further scenes, from which curves are computed or measured.
     pub(crate) also: &'static [Text],
-    /// Whether the figure shows curves or bars, whose numbers are also written as a table.
-    pub(crate) has_table: bool,
     /// Whether the figure shows full radial spectra.
     pub(crate) full_radial: bool,
     pub(crate) draw: fn(&FigureData<'_>) -> Result<Figure, Failure>,
@@ -45,7 +43,6 @@ impl Recipe {
             texts: self.scenes.iter().chain(self.also).copied().collect(),
             inputs: Vec::new(),
             warnings: Vec::new(),
-            has_table: self.has_table,
             full_radial: self.full_radial,
             also: self.also,
             planes: Vec::new(),
@@ -61,7 +58,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "spectra along a path, from the light to the light that leaves a diffuse receiver",
         scenes: &[("fig1", etendue_scenes::FIG1)],
         also: &[],
-        has_table: false,
         full_radial: true,
         draw: |taken| taken.strip(),
     },
@@ -70,7 +66,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "the two parameterisations, in slopes and in angles, and travel",
         scenes: &[("fig3", etendue_scenes::FIG3)],
         also: &[("fig8", etendue_scenes::FIG8)],
-        has_table: true,
         full_radial: false,
         draw: coordinates,
     },
@@ -83,7 +78,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig4_spot", etendue_scenes::FIG4_SPOT),
         ],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: lights,
     },
@@ -92,7 +86,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "the cosine over slopes, g, and its transforms in 2D and 3D",
         scenes: &[],
         also: &[],
-        has_table: true,
         full_radial: false,
         draw: kernels::slopes,
     },
@@ -101,7 +94,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "all steps of diffuse shading: computed in flatland, and measured and predicted in 3D",
         scenes: &[("fig1", etendue_scenes::FIG1)],
         also: &[],
-        has_table: false,
         full_radial: true,
         draw: steps,
     },
@@ -114,7 +106,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig7_two", etendue_scenes::FIG7_TWO),
         ],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: occluders,
     },
@@ -123,7 +114,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "the receiver by slopes and by angles: their difference, and bandwidths",
         scenes: &[("fig8", etendue_scenes::FIG8)],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: parameterisations,
     },
@@ -136,7 +126,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig9c", etendue_scenes::FIG9C),
         ],
         also: &[],
-        has_table: true,
         full_radial: true,
         draw: blockers,
     },
@@ -145,7 +134,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "the seven steps of shading a curved glossy receiver",
         scenes: &[("fig10", etendue_scenes::FIG10)],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: |taken| taken.strip(),
     },
@@ -157,7 +145,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("solar_oven", etendue_scenes::TABLE1_SOLAR_OVEN),
         ],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: caustic,
     },
@@ -166,7 +153,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "transforms of the clamped cosine, alone and with Fresnel factors",
         scenes: &[],
         also: &[],
-        has_table: true,
         full_radial: false,
         draw: kernels::fresnel,
     },
@@ -178,7 +164,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("twisted_glossy", etendue_scenes::TABLE1_TWISTED_GLOSSY),
         ],
         also: &[],
-        has_table: true,
         full_radial: false,
         draw: directions,
     },
@@ -186,8 +171,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "14",
         about: "diffuse shading under an environment map: convolution and restriction together are a product",
         scenes: &[("fig14", etendue_scenes::FIG14)],
-        also: &[],
-        has_table: true,
+        also: &[("fig14_product", etendue_scenes::FIG14_PRODUCT)],
         full_radial: false,
         draw: environment,
     },
@@ -199,7 +183,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("bandwidth", etendue_scenes::BANDWIDTH),
             ("bandwidth_edge", etendue_scenes::BANDWIDTH_EDGE),
         ],
-        has_table: true,
         full_radial: false,
         draw: adaptive,
     },
@@ -208,7 +191,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "the criteria of Fig. 17, and the shading samples they place",
         scenes: &[],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: creatures::criteria,
     },
@@ -217,7 +199,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
         about: "a picture from few shading samples: placed uniformly, by the criteria, and a reference",
         scenes: &[],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: creatures::pictures,
     },
@@ -235,7 +216,6 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("tiles", etendue_scenes::TABLE1_TILES),
         ],
         also: &[],
-        has_table: false,
         full_radial: false,
         draw: operators,
     },
@@ -268,11 +248,9 @@ mod tests {
     use etendue_figures::Style;
     use etendue_pipeline::Silent;
 
-    /// Pages are at most seven inches wide and not longer than A4; an inch has 96 units of the
-    /// drawing. Texts, including sub- and superscripts, have at least 6 points.
     #[test]
     #[ignore = "minutes: every figure is measured; .ci/pages runs it"]
-    fn every_figure_fits_its_page_and_can_be_read() {
+    fn every_figure_fits_its_page_and_has_described_data_with_errors() {
         for recipe in RECIPES {
             let quality = Quality::Sketch;
             let subject = recipe.subject().unwrap();
@@ -288,22 +266,29 @@ mod tests {
                 reporter: &Silent,
             };
             let figure = (subject.draw)(&taken).unwrap();
-            let numbers = |name: &str| -> Vec<f64> {
-                let mark = format!("{name}=\"");
-                let rest = figure.svg.split(&mark).skip(1);
-                let texts = rest.map(|rest| rest.split('"').next().unwrap());
-                texts.map(|text| text.parse().unwrap()).collect()
-            };
-            let width = numbers(" width")[0];
-            assert!(width <= 672.0, "figure {}: {width} units wide", recipe.name);
-            let height = numbers(" height")[0];
-            let is_short = height <= 1.41 * 672.0;
-            assert!(is_short, "figure {}: {width} × {height}", recipe.name);
-            let smallest = numbers("font-size").into_iter().fold(f64::MAX, f64::min);
-            let points = 0.75 * smallest;
-            assert!(points >= 6.0, "figure {}: {points} points", recipe.name);
-            let cut = figure.svg.lines().find(|line| line.contains('…'));
-            assert_eq!(cut, None, "figure {}", recipe.name);
+            fits_its_page(recipe.name, &figure);
+            crate::data::tests::has_described_data(recipe.name, &figure, &shots);
         }
+    }
+
+    /// Checks that the page is at most seven inches wide and not longer than A4; an inch has 96
+    /// units of the drawing. Texts, including sub- and superscripts, have at least 6 points.
+    fn fits_its_page(name: &str, figure: &Figure) {
+        let numbers = |attribute: &str| -> Vec<f64> {
+            let mark = format!("{attribute}=\"");
+            let rest = figure.svg.split(&mark).skip(1);
+            let texts = rest.map(|rest| rest.split('"').next().unwrap());
+            texts.map(|text| text.parse().unwrap()).collect()
+        };
+        let width = numbers(" width")[0];
+        assert!(width <= 672.0, "figure {name}: {width} units wide");
+        let height = numbers(" height")[0];
+        let is_short = height <= 1.41 * 672.0;
+        assert!(is_short, "figure {name}: {width} × {height}");
+        let smallest = numbers("font-size").into_iter().fold(f64::MAX, f64::min);
+        let points = 0.75 * smallest;
+        assert!(points >= 6.0, "figure {name}: {points} points");
+        let cut = figure.svg.lines().find(|line| line.contains('…'));
+        assert_eq!(cut, None, "figure {name}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::quality::Quality;
 use etendue_compare::{Applicability, PlaneComparison, Test};
-use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
+use etendue_field::FrequencyAxis;
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::{Reporter, judged};
 use etendue_pipeline::{field, limits};
@@ -10,8 +10,6 @@ use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_store::machine;
-use etendue_store::npz::Npz;
-use ndarray::{Axis, arr1};
 use std::path::Path;
 
 /// A scene that was measured, predicted and compared, at finer frequencies than it specifies.
@@ -71,35 +69,4 @@ pub(crate) fn resolved(
     let mut file = file.with_all(set).map_err(Failure::bad_input)?;
     file.run.photons = photons(file.run.photons);
     machine::resolved(name, file, Path::new(""), name)
-}
-
-/// Returns the results as NPZ. It holds the light field, the radial spectra and the slices at
-/// azimuth 0 of each plane, with all axes. Names are SCENE.PLANE.ARRAY.
-pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
-    let mut npz = Npz::new();
-    for shot in shots {
-        for (plane, found) in shot.scene.planes.iter().zip(&shot.planes) {
-            let name = |array: &str| format!("{}.{}.{array}", shot.scene.name, plane.name);
-            let light_field = &found.projection.mean;
-            let ProjectionGrid { half_x, half_u, .. } = light_field.grid;
-            let [measured, predicted] = [&found.measured, &found.predicted].map(Slices::full);
-            npz = npz
-                .add(&name("light_field"), &light_field.values)?
-                .add(&name("half_widths"), &arr1(&[half_x, half_u]))?
-                .add(&name("measured"), &found.radial.power)?
-                .add(&name("predicted"), &found.predicted_radial)?
-                .add(&name("measured_slice"), &measured.index_axis(Axis(0), 0))?
-                .add(&name("predicted_slice"), &predicted.index_axis(Axis(0), 0))?
-                .add(&name("rho"), &arr1(&plane.grid.rho.values()))?
-                .add(&name("nu"), &arr1(&plane.grid.nu.values()))?;
-            if let Some(full) = &found.full_radial {
-                npz = npz
-                    .add(&name("full_radial"), &full.measured.power)?
-                    .add(&name("full_radial_predicted"), &full.predicted)?
-                    .add(&name("rho_edges"), &arr1(&full.measured.rho_edges))?
-                    .add(&name("nu_edges"), &arr1(&full.measured.nu_edges))?;
-            }
-        }
-    }
-    npz.bytes()
 }

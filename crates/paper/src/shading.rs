@@ -2,15 +2,11 @@
 //! reflections.
 
 use crate::criteria::criteria;
-use crate::rows::{Seen, compared, feet, lettered};
+use crate::product::{Explanation, ShadedCylinder};
+use crate::rows::{Seen, compared, feet, letter_panels, lettered};
 use crate::subject::FigureData;
-use etendue_field::{
-    Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
-};
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, stacked};
 use etendue_store::Failure;
-use etendue_theory::shading::environment::{Glow, irradiance};
-use std::f64::consts::TAU;
 
 /// Draws Fig. 14: a diffuse sphere in an environment.
 pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
@@ -27,104 +23,49 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         bars: None,
         side: None,
     })?;
-    Ok(stacked(&[steps, product(taken, &seen[3])?]))
+    Ok(stacked(&[steps, product(taken)?]))
 }
 
-/// Returns the spectrum at ν = 0, and the product of the spectrum of the environment and the
-/// spectrum of the cosine.
-fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
-    let scene = &taken.shots[0].scene;
-    let k = scene
-        .patches
-        .first()
-        .map_or(1.0, |object| object.patch.curvature[0]);
-    let glows = glows(&scene.light);
-    let sky = |nu: f64| glows.iter().map(|glow| glow.spectrum(nu)).sum::<Complex>();
-    let rho = shaded.plane.grid.rho.values();
-    let over = |spectrum: &dyn Fn(f64) -> Complex| {
-        let values = windowed(spectrum, &shaded.plane.window.x, &rho);
-        let peak = values[rho.len() / 2];
-        let both = rho.iter().zip(values);
-        both.map(|(rho, value)| [*rho, value / peak, 0.0]).collect()
+/// Draws the spectrum of the light that leaves a cylinder, the product of the spectra of
+/// environment and cosine, and three explanations that photons reject.
+fn product(taken: &FigureData<'_>) -> Result<Figure, Failure> {
+    let cylinder = ShadedCylinder::new(taken, &taken.also[0])?;
+    let found = cylinder.measured();
+    let explanations = cylinder.explanations()?;
+    let rho = cylinder.frequencies();
+    let line = |kind, of: &Explanation, part: usize| {
+        let points = rho.iter().zip(&of.relative);
+        let points = points.map(|(rho, f)| [*rho, [f.re, f.im][part], 0.0]);
+        let digits = if of.chi2_per_dof < 100.0 { 2 } else { 0 };
+        let chi2 = format!("{:.digits$}", of.chi2_per_dof);
+        let name = format!("{}: *χ*²/dof {chi2}, *p* {:.5}", of.name, of.p_value);
+        Curve::new(kind, &name, points.collect())
     };
-    let panel = CurvePanel {
-        title: "(e) leaving the sphere".to_owned(),
-        x: AxisQuantity::new("*ρ*", "cycles/m"),
-        curves: vec![
-            Curve::new(
-                CurveKind::Rival,
-                "environment alone",
-                over(&|rho| sky(rho / k)),
-            ),
-            Curve::new(
-                CurveKind::Theory,
-                "environment × cosine",
-                over(&|rho| irradiance(k, rho, &sky)),
-            ),
-            Curve::new(
-                CurveKind::Measured,
-                "photons",
-                at_zero_nu(&shaded.found.measured),
-            ),
-        ],
-        is_log: [false; 2],
-    };
+    let [right, rejected @ ..] = &explanations;
+    let panels = rejected.iter().zip([0, 0, 1]).map(|(rejected, part)| {
+        let points = rho.iter().zip(&found);
+        let points = points.map(|(rho, (s, errors))| [*rho, [s.re, s.im][part], errors[part]]);
+        CurvePanel {
+            title: format!("{}, {}", ["Re", "Im"][part], rejected.name),
+            x: AxisQuantity::new("*ρ*", "cycles/m"),
+            curves: vec![
+                line(CurveKind::Rival, rejected, part),
+                line(CurveKind::Theory, right, part),
+                Curve::new(CurveKind::Measured, "photons", points.collect()),
+            ],
+            is_log: [false; 2],
+        }
+    });
+    let mut panels: Vec<CurvePanel> = panels.collect();
+    letter_panels('e', &mut panels);
     taken.curves(&Curves {
         title: "The product".to_owned(),
-        note: "|*S*_{0}| at *ν* = 0, the line of the light that leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
+        note: "*S*(*ρ*)/*S*(0) at *ν* = 0 of the light that leaves a diffuse cylinder under two lobes of light, over arc length. \
+               *p*: probability of a difference at least as large as that of the photons, if the line is true."
             .to_owned(),
-        y: AxisQuantity::new("relative to 0", ""),
-        panels: vec![panel],
+        y: AxisQuantity::new("*S*/*S*(0)", ""),
+        panels,
     })
-}
-
-/// Returns the lobes of an environment over longitude, integrated over latitude.
-fn glows(light: &Light) -> Vec<Glow> {
-    let Light::Environment { environment } = light else {
-        return Vec::new();
-    };
-    let EnvironmentMap::Lobes(lobes) = &environment.map else {
-        return Vec::new();
-    };
-    let glow = |lobe: &SphericalGaussian| Glow {
-        amplitude: lobe.radiance * lobe.width,
-        mean: libm::atan2(lobe.from.x, lobe.from.z.abs()),
-        deviation: lobe.width,
-    };
-    lobes.iter().map(glow).collect()
-}
-
-/// Returns |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied
-/// by the window and transformed back.
-fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
-    const STEPS: i32 = 400;
-    // The range extends to four times the last frequency, because lobes of a tenth of a radian
-    // have no power beyond this range.
-    let last = 4.0 * rho.last().copied().unwrap_or(1.0);
-    let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
-    let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();
-    let wave = |z: f64| cis(TAU * z);
-    let field = |s: f64| {
-        let terms = values.iter().map(|(q, value)| value * wave(q * s));
-        terms.sum::<Complex>() * window.value(s)
-    };
-    let field: Vec<(f64, Complex)> = along(window.half_width()).map(|s| (s, field(s))).collect();
-    let at = |rho: &f64| {
-        let terms = field.iter().map(|(s, value)| value * wave(-rho * s));
-        modulus(terms.sum::<Complex>())
-    };
-    rho.iter().map(at).collect()
-}
-
-/// Returns |S| at azimuth 0 and ν = 0 as a function of ρ, divided by its value at ρ = 0.
-fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
-    let full = slices.full();
-    let (grid, peak) = (&slices.grid, slices.at_zero());
-    let rho = grid.rho.values();
-    let points = rho.iter().enumerate();
-    points
-        .map(|(i, rho)| [*rho, modulus(full[[0, i, grid.nu.half]]) / peak, 0.0])
-        .collect()
 }
 
 /// Draws Fig. 15: the steps of section 6.2, and the criteria of this section compared with photons.

@@ -30,8 +30,6 @@ pub struct Subject {
     pub(crate) inputs: Vec<PathBuf>,
     /// Warnings about the scenes.
     pub(crate) warnings: Vec<String>,
-    /// Whether the figure shows curves or bars, whose numbers are also written as a table.
-    pub(crate) has_table: bool,
     /// Whether the figure shows full radial spectra.
     pub(crate) full_radial: bool,
     /// Other scene files, from which curves are computed or measured.
@@ -79,7 +77,8 @@ impl FigureData<'_> {
         curves(of, &self.style).map_err(Failure::cannot_run)
     }
 
-    /// Draws the planes of the first scene along its path, measured and predicted.
+    /// Draws the planes of the first scene along its path, measured and predicted. The figure has
+    /// no table, because arrays store cells more compactly.
     pub(crate) fn strip(&self) -> Result<Figure, Failure> {
         let Shot {
             scene,
@@ -87,6 +86,10 @@ impl FigureData<'_> {
             theories,
             planes,
         } = &self.shots[0];
-        pictures::strip_of(scene, *photons, theories, planes, Some(&self.style))
+        let strip = pictures::strip_of(scene, *photons, theories, planes, Some(&self.style))?;
+        Ok(Figure {
+            csv: String::new(),
+            ..strip
+        })
     }
 }

@@ -56,7 +56,6 @@ pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
         texts: Vec::new(),
         inputs,
         warnings,
-        has_table: false,
         full_radial: false,
         also: &[],
         draw: if planes.is_empty() {

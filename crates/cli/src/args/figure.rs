@@ -51,9 +51,10 @@ Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show ker
 from theory only; all other figures are measured and predicted. The folder of each figure contains
   figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a
                            journal)
-  figure.npz               light fields and spectra of all planes
-                           (docs/conventions.md)
-  figure.csv               the numbers of curves and bars
+  figure.npz               light fields and spectra of all planes, and
+                           other pictures, with errors
+  figure.csv               the numbers of curves and bars, with errors
+  columns.csv              unit and meaning of each array and column
   figure.json              the verdict of each plane, and the command that
                            repeats the figure
   NAME.ron                 the scenes of a figure of the paper; your own
