@@ -9,7 +9,7 @@ use etendue_figures::{
 };
 use etendue_import::{Options, import};
 use etendue_paths::Paths;
-use etendue_pipeline::Work;
+use etendue_pipeline::{Reporter, Work};
 use etendue_store::Failure;
 use etendue_world::Camera;
 use ndarray::{Array2, Axis as Along};
@@ -200,7 +200,8 @@ struct ComparedPictures {
 }
 
 impl ComparedPictures {
-    fn new(scene: &CreatureScene) -> Self {
+    fn new(scene: &CreatureScene, reporter: &dyn Reporter) -> Self {
+        let _stage = reporter.begin(Work::Stage("rendering"));
         let methods = [
             (SampleMethod::Uniform, true),
             (SampleMethod::Predicted, true),
@@ -220,6 +221,12 @@ impl ComparedPictures {
     /// most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
+    }
+
+    /// Returns the standard error of the reference's relative luminance.
+    fn reference_error(&self, scene: &CreatureScene) -> Result<Array2<f64>, Failure> {
+        let variance = self.reference.variance.iter();
+        scene.picture(variance.map(|v| v.sqrt() / self.white).collect())
     }
 
     /// Returns the difference from the reference, relative to white.
@@ -259,9 +266,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "(c) criteria, anisotropic",
     ];
     let scene = CreatureScene::new(taken.quality)?;
-    let stage = taken.reporter.begin(Work::Stage("rendering"));
-    let found = ComparedPictures::new(&scene);
-    drop(stage);
+    let found = ComparedPictures::new(&scene, taken.reporter);
     let few = found.few.iter().chain([&found.reference.mean]);
     let shown: Vec<Array2<f64>> = few
         .map(|of| found.luminance(&scene, of))
@@ -307,17 +312,13 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         },
         shared: true,
     };
-    let mut middle = luminance("", "", &panels[2..]).drawn(&scene, &style)?;
-    if let Some(reference) = middle.pictures.last_mut() {
-        let variance = found.reference.variance.iter();
-        let sigma = variance.map(|variance| variance.sqrt() / found.white);
-        reference.sigma = Some(scene.picture(sigma.collect())?);
-    }
-    Ok(stacked(&[
+    let mut figure = stacked(&[
         luminance("A picture of few shading samples", &note, &panels[..2]).drawn(&scene, &style)?,
-        middle,
+        luminance("", "", &panels[2..]).drawn(&scene, &style)?,
         below.drawn(&scene, &style)?,
-    ]))
+    ]);
+    figure.pictures[HEADS.len()].sigma = Some(found.reference_error(&scene)?);
+    Ok(figure)
 }
 
 /// Returns the radiance that a hundredth of the pixels exceed.

@@ -338,9 +338,9 @@ impl Arrays {
     }
 }
 
-/// Returns a text as a word: letters and digits, in lower case, joined by underscores.
+/// Returns a text as a word: its ASCII letters and digits, in lower case, joined by underscores.
 fn word(text: &str) -> String {
-    let parts = text.split(|c: char| !c.is_alphanumeric());
+    let parts = text.split(|c: char| !c.is_ascii_alphanumeric());
     let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
     parts.join("_").to_lowercase()
 }
@@ -354,8 +354,7 @@ pub(crate) mod tests {
     /// Checks that a figure has data, that names are unique, that each array and column has a
     /// meaning, and that what photons measured has standard errors.
     pub(crate) fn has_described_data(figure: &str, drawn: &Figure, shots: &[Shot]) {
-        let files: BTreeMap<&str, Vec<u8>> =
-            super::files(drawn, shots).unwrap().into_iter().collect();
+        let files: BTreeMap<&str, Vec<u8>> = files(drawn, shots).unwrap().into_iter().collect();
         assert!(files.len() > 1, "figure {figure} has no data");
         let mut rows = csv::Reader::from_reader(&files[DESCRIPTION][..]);
         let mut known = BTreeSet::new();
@@ -449,16 +448,16 @@ pub(crate) mod tests {
             pictures: vec![picture("theory", "(c) G(u, v)", 2.5)],
         };
         has_described_data("of a picture", &figure, &[]);
-        let files = super::files(&figure, &[]).unwrap();
-        let mut npz = NpzFile::new("figure.npz".into(), files[0].1.clone()).unwrap();
+        let written = files(&figure, &[]).unwrap();
+        let mut npz = NpzFile::new("figure.npz".into(), written[0].1.clone()).unwrap();
         let stored: Array2<f64> = npz.array("figure.theory.c_g_u_v", (1, 1)).unwrap();
-        assert_eq!(stored[[0, 0]], 2.5);
-        let described = String::from_utf8(files[2].1.clone()).unwrap();
+        assert_eq!(stored, Array2::from_elem((1, 1), 2.5));
+        let described = String::from_utf8(written[2].1.clone()).unwrap();
         assert!(described.contains("figure.npz,figure.theory.c_g_u_v.x,slope,u,centres of cells"));
         assert!(described.contains("figure.csv,B,1/m,,value on the vertical axis"));
         // Two arrays of one name would hide each other.
         figure.pictures.push(picture("theory", "(c) G u v", 1.0));
-        assert!(super::files(&figure, &[]).is_err());
+        assert!(files(&figure, &[]).is_err());
     }
 
     #[test]
