@@ -24,7 +24,7 @@ pub(crate) fn caustic(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let name = |seen: &Seen<'_>| spaced(&seen.plane.name);
     let oblique = taken.plate(&Plate {
         title: "The same mirror at an incidence of 40°",
-        note: "Measured. The mirror has two foci, one in the plane of incidence and one across it; no plane has all its light on *ν* = 0.",
+        note: "Measured. Two foci, in and across the plane of incidence: no plane has all its light on *ν* = 0.",
         heads: seen.iter().map(name).collect(),
         rows: vec![spectra],
         feet: feet(&seen),
