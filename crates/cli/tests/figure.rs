@@ -106,9 +106,9 @@ fn photons_tell_the_criteria_from_their_print() {
     };
     let mut told = 0;
     for panel in [
-        "\"Eq. 20 as a function of curvature\"",
-        "\"Eq. 20 as a function of distance\"",
-        "\"Eq. 21",
+        "(h) Eq. 20 over curvature",
+        "(i) Eq. 20 over distance",
+        "\"(j) Eq. 21",
     ] {
         let lines = ["corrected", "as printed"].map(|line| points(line, panel));
         assert!(lines.iter().all(|line| line.len() == 41), "{panel}");

@@ -1,11 +1,8 @@
 //! Writes a figure as SVG, PNG, PDF and CSV.
 
-use crate::axis::{Axis, AxisQuantity};
-use crate::grid::Picture;
 use crate::raster::encoded;
 use crate::sizes::INCH;
 use crate::svg::Svg;
-use crate::text::plain;
 use krilla::Document;
 use krilla::geom::Size;
 use krilla::page::PageSettings;
@@ -45,24 +42,6 @@ pub struct DrawnPicture {
     pub values: Array2<f64>,
     /// The standard error of each value, if it is known.
     pub sigma: Option<Array2<f64>>,
-}
-
-impl DrawnPicture {
-    pub(crate) fn new(row: &str, column: &str, of: &AxisQuantity, picture: &Picture<'_>) -> Self {
-        let (columns, rows) = picture.values.dim();
-        let axis = |axis: &Axis, count| {
-            let centers = (0..count).map(|i| axis.center(i, count));
-            (axis.quantity.heading(), centers.collect())
-        };
-        Self {
-            row: plain(if row.is_empty() { &of.name } else { row }),
-            column: plain(column),
-            unit: plain(&of.unit),
-            axes: [axis(&picture.x, columns), axis(&picture.y, rows)],
-            values: picture.values.to_owned(),
-            sigma: None,
-        }
-    }
 }
 
 /// The reason why a figure could not be made. The reason lies in the drawing of the figure, not in

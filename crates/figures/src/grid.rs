@@ -1,13 +1,14 @@
 //! Lays out a grid of pictures, with its columns split into blocks that fit the page width.
 
-use crate::axis::{Axis, COMFORTABLE};
+use crate::axis::{Axis, AxisQuantity, COMFORTABLE};
 use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
-use crate::figure::Error;
+use crate::figure::{DrawnPicture, Error};
 use crate::panel::Panel;
 use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
+use crate::text::plain;
 use ndarray::ArrayView2;
 
 /// Values on a grid [x, y], with both axes ascending. A cell without a value is NaN.
@@ -31,6 +32,23 @@ impl Picture<'_> {
             return rows as f64 / columns as f64;
         }
         1.0
+    }
+
+    /// Returns the numbers of this picture, which shows `of` in a row and a column.
+    pub(crate) fn numbers(&self, row: &str, column: &str, of: &AxisQuantity) -> DrawnPicture {
+        let (columns, rows) = self.values.dim();
+        let axis = |axis: &Axis, count| {
+            let centers = (0..count).map(|i| axis.center(i, count));
+            (axis.quantity.heading(), centers.collect())
+        };
+        DrawnPicture {
+            row: plain(if row.is_empty() { &of.name } else { row }),
+            column: plain(column),
+            unit: plain(&of.unit),
+            axes: [axis(&self.x, columns), axis(&self.y, rows)],
+            values: self.values.to_owned(),
+            sigma: None,
+        }
     }
 }
 

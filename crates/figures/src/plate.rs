@@ -139,7 +139,7 @@ fn drawn<'b>(
     heads: &'b [String],
 ) -> impl Iterator<Item = DrawnPicture> + 'b {
     let both = row.pictures.iter().zip(heads);
-    both.map(|(picture, head)| DrawnPicture::new(row.name, head, &row.quantity, picture))
+    both.map(|(picture, head)| picture.numbers(row.name, head, &row.quantity))
 }
 
 fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {

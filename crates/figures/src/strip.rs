@@ -238,7 +238,8 @@ fn pictures(strip: &Strip<'_>) -> Vec<DrawnPicture> {
     let row = |row: StripRow| {
         let quantity = row.quantity(strip);
         both().map(move |(column, plane)| {
-            DrawnPicture::new(row.name(), &plane.name, &quantity, row.picture(column))
+            row.picture(column)
+                .numbers(row.name(), &plane.name, &quantity)
         })
     };
     StripRow::of(strip).into_iter().flat_map(row).collect()
