@@ -23,7 +23,7 @@ from etendue.variance import Variance
 Point = Sequence[float]
 Size = Union[str, "tuple[int, int]"]
 Color = Literal["luminance", "red", "green", "blue"]
-Sampling = Literal["reference", "auto", "uniform", "predicted", "printed", "weighted", "variance"]
+Sampling = Literal["reference", "auto", "uniform", "predicted", "paper", "weighted", "variance"]
 
 
 @dataclass(frozen=True)
@@ -195,9 +195,9 @@ def render(
 
     `camera` is the name of a camera, by default the first; `size` is the width and height in pixels, (64, 48) or "64x48", and replaces that
     of the camera. `method` is "reference", with `samples` paths for each pixel (64 by default), or a way to distribute a small number of
-    `shading_samples` with `paths` paths each (128 by default): "auto", "uniform", "predicted", "printed", "weighted" or "variance". If
-    only `shading_samples` is given, it is "auto". `blocker_rays` is the number of rays that find the distance of blockers; with `isotropic`,
-    samples are equally dense along all directions.
+    `shading_samples` with `paths` paths each (128 by default): "auto", "uniform", "predicted", "paper", "weighted" or "variance". If
+    only `shading_samples` is given, it is "auto". `blocker_rays` is the number of rays that find the distance of blockers, by default 100 for
+    "paper" and otherwise 16; with `isotropic`, samples are equally dense along all directions.
 
     `root` is the folder that must contain all files of the scene; `color` is the number to which a colour is converted; `set` sets
     parameters of a Mitsuba file. `bounces` is the maximum number of surfaces that light meets; `sky` adds light of this radiance from all

@@ -64,6 +64,13 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
+    /// Reads a whole number that has no default.
+    pub(crate) fn given(&self, name: &str, range: &RangeInclusive<u64>) -> PyResult<Option<u32>> {
+        let mut number = 0;
+        self.whole(name, range, &mut number)?;
+        Ok(self.get(name)?.map(|_| number))
+    }
+
     /// Reads a number of rays, which may be a float such as 1e6.
     pub(crate) fn count(
         &self,

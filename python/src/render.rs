@@ -28,19 +28,11 @@ fn request(scene: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<PictureReq
     let mut request = PictureRequest::new(world::source(scene, arguments)?);
     request.camera = world::camera(arguments)?;
     arguments.whole("samples", &ranges::SAMPLES, &mut request.samples)?;
-    if arguments.get("shading_samples")?.is_some() {
-        let mut samples = 0;
-        arguments.whole("shading_samples", &ranges::SHADING_SAMPLES, &mut samples)?;
-        request.shading_samples = Some(samples);
-    }
+    request.shading_samples = arguments.given("shading_samples", &ranges::SHADING_SAMPLES)?;
     request.method = PictureRequest::usual_method(request.shading_samples);
     arguments.one_of("method", &PictureRequest::METHODS, &mut request.method)?;
     arguments.whole("paths", &ranges::PATHS, &mut request.paths)?;
-    arguments.whole(
-        "blocker_rays",
-        &ranges::BLOCKER_RAYS,
-        &mut request.blocker_rays,
-    )?;
+    request.blocker_rays = arguments.given("blocker_rays", &ranges::BLOCKER_RAYS)?;
     arguments.flag("isotropic", &mut request.isotropic)?;
     arguments.whole("seed", &(0..=u64::MAX), &mut request.seed)?;
     arguments.flag("force", &mut request.force)?;

@@ -17,11 +17,7 @@ pub(crate) fn source(path: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<W
     if let Some(set) = arguments.get("set")? {
         source.options.set = set.extract()?;
     }
-    if arguments.get("bounces")?.is_some() {
-        let mut bounces = 0;
-        arguments.whole("bounces", &(0..=u32::MAX.into()), &mut bounces)?;
-        source.bounces = Some(bounces);
-    }
+    source.bounces = arguments.given("bounces", &(0..=u32::MAX.into()))?;
     if arguments.get("sky")?.is_some() {
         let mut radiance = 0.0;
         let allowed = format!("a number from {} to {:e}", SKY.start(), SKY.end());

@@ -6,7 +6,7 @@ usage: shading_error.py ETENDUE SCENE... --reference DIR [--samples 20000,40000]
 A reference is DIR/NAME/picture.npz, as `etendue render scenes/worlds/NAME.xml --samples 1024 --seed 1000 --out DIR/NAME` leaves it: many paths for
 each pixel, and a seed that no other picture here has. Pictures are made at its size. Columns:
 * relMSE: mean of (x - r)² / (r² + ε²), with ε = 0.01 of the reference's mean radiance; "less noise" is without the reference's own share, which
-  its standard errors tell; "best 99.9 %" leaves out the thousandth of pixels with the largest errors.
+  its standard errors tell; "best 99.9 %" leaves out the thousandth of pixels with the largest errors. With --crop, relMSE counts only pixels inside.
 * FLIP: mean HDR-FLIP (Andersson et al. 2021), the one channel as three equal ones (package flip-evaluator).
 * shading samples and seconds: what `timing.json` and `picture.json` say; where they are silent, what was asked for, and the clock of the whole
   program, in brackets.
@@ -28,15 +28,20 @@ USED = ["shading_samples_used", "shading_samples"]
 class Reference:
     """A picture of many samples, with its standard errors."""
 
-    def __init__(self, path):
+    def __init__(self, path, crop):
         arrays = np.load(path)
-        self.radiance, self.error = arrays["radiance"], arrays["error"]
-        self.scale = self.radiance**2 + (EPSILON * self.radiance.mean()) ** 2
+        left, top, width, height = crop or (0, 0, *arrays["radiance"].shape[::-1])
+        self.crop = np.s_[top : top + height, left : left + width]
+        self.shape = arrays["radiance"].shape
+        least = EPSILON * arrays["radiance"].mean()
+        self.radiance, self.error = arrays["radiance"][self.crop], arrays["error"][self.crop]
+        self.scale = self.radiance**2 + least**2
         self.floor = float((self.error**2 / self.scale).mean())
         self.relative_error = float((self.error / np.sqrt(self.scale)).mean())
 
     def errors(self, picture, flip):
         """The numbers of the first table."""
+        picture = picture[self.crop]
         each = np.sort(((picture - self.radiance) ** 2 / self.scale).ravel())
         kept = each[: len(each) - round(WORST * len(each))]
         found = {"relmse": each.mean(), "less": each.mean() - self.floor, "kept": kept.mean()}
@@ -70,7 +75,7 @@ def seconds_of(folder):
 
 def run(args, scene, reference, method, samples, seed):
     """One picture: its errors, shading samples and seconds, and whether the files told the latter two."""
-    h, w = reference.radiance.shape
+    h, w = reference.shape
     folder = args.out / scene.stem
     if method == "plain":
         each = max(2, round(samples / (w * h)))
@@ -153,6 +158,7 @@ def arguments():
     parser.add_argument("--ladder", type=numbers(float), default=[0.5, 1, 2, 4, 8, 16, 32])
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--flip", action="store_true")
+    parser.add_argument("--crop", type=numbers(int), help="left, top, width and height in pixels of the part that counts")
     parser.add_argument("--more", default="", help="further arguments of `etendue render`")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/shading_error"))
     args = parser.parse_args()
@@ -173,7 +179,7 @@ def main():
     line(heads)
     line(["---"] * len(heads))
     for scene in args.scenes:
-        reference = Reference(args.reference / scene.stem / "picture.npz")
+        reference = Reference(args.reference / scene.stem / "picture.npz", args.crop)
         notes.append(f"{scene.stem}: the reference's mean relative standard error is {100 * reference.relative_error:.2f} %, its share of relMSE {reference.floor:.2e}")
         found = {}
         def result(method, samples):

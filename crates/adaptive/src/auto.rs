@@ -9,13 +9,14 @@
 //! Half of the remaining samples have this density. The other half follow the measured errors,
 //! which also show light that the criterion misses, such as shadows.
 
-use crate::criterion::shaded;
+use crate::criterion::{BandwidthCriterion, shaded};
 use crate::cross::{cross_errors, squared};
-use crate::density::{scaled, to_power};
+use crate::density::{even, scaled, to_power};
 use crate::guide::{LightGuide, SampleGuide};
-use crate::method::{AdaptiveRun, POWER, Stage, by_error, sums, values};
+use crate::method::{AdaptiveRun, Stage, by_error, sums, values};
 use crate::metric::Metric;
 use crate::objects::ObjectSums;
+use crate::parts::POWER;
 use crate::reconstruct::ShadedSample;
 
 /// The share of the samples that are taken first, evenly distributed.
@@ -29,11 +30,11 @@ impl AdaptiveRun<'_> {
     pub(crate) fn auto(&mut self) -> Vec<ShadedSample> {
         let count = self.plan.samples as f64;
         let rest = (1.0 - EVEN_SHARE) * count;
-        let first = scaled(&self.even(), EVEN_SHARE * count);
+        let first = scaled(&even(self.visible), EVEN_SHARE * count);
         let points = self.points(&first, EVEN_SHARE * count, 0);
         let pilot = self.shaded(&points, 0);
         let missed = self.guided(&pilot);
-        let criterion = self.predicted();
+        let criterion = self.predicted(BandwidthCriterion::Corrected);
         let factors = self.factors(&first, &criterion, &missed);
         let shapes = self.visible.pixels(|pixel| {
             let surface = self.visible.of_pixel(pixel).iter().find_map(shaded)?;

@@ -12,18 +12,41 @@
 //! paper states. The printed equations use only the larger curvature, and are isotropic.
 
 use crate::metric::Metric;
-use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
+use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible, at};
 use etendue_paths::Nearness;
-use etendue_theory::shading::Criterion;
+use etendue_world::Camera;
 use glam::DVec3;
 
-/// Returns the squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
-/// shaded.
-pub(crate) fn criterion(
-    visible: &Visible,
-    pixel: [usize; 2],
-    nearness: Nearness,
-) -> Option<Metric> {
+/// The formula for the bandwidth of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BandwidthCriterion {
+    /// Eqs. 20 and 21 with corrections and half-shadows, along each direction.
+    Corrected,
+    /// Eqs. 20 and 21 as printed, isotropic.
+    Printed,
+}
+
+impl BandwidthCriterion {
+    /// Returns the squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
+    /// shaded.
+    pub(crate) fn squared(
+        self,
+        visible: &Visible,
+        camera: &Camera,
+        pixel: [usize; 2],
+        nearness: Nearness,
+    ) -> Option<Metric> {
+        match self {
+            Self::Corrected => corrected(visible, pixel, nearness),
+            Self::Printed => {
+                let bandwidth = printed(visible, camera, pixel, nearness)?;
+                Some(Metric::even(bandwidth * bandwidth))
+            }
+        }
+    }
+}
+
+fn corrected(visible: &Visible, pixel: [usize; 2], nearness: Nearness) -> Option<Metric> {
     let places = visible.of_pixel(pixel);
     let first = places.iter().find_map(shaded)?;
     let [right, down] = steps(places, first.shape);
@@ -34,42 +57,33 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// Returns the squared bandwidth, as seen from `eye`, by the printed Eqs. 20 and 21; `None` if the
-/// surface has no lobe.
-pub(crate) fn printed(
+/// Returns the bandwidth of a pixel, in cycles per pixel, by Eq. 21 of Durand et al. 2005 as
+/// printed, B' = d/(n·v) (1/d' + 2k) Ω_ρ. Without blockers, 1/d' = 0, this is Eq. 20. As the paper
+/// does, it computes 2kd/(n·v) by finite differences on the screen: twice the turn of the normal
+/// from pixel to pixel, in the direction where it is largest. A surface without a lobe has the
+/// cutoff of its cosine as Ω_ρ.
+fn printed(
     visible: &Visible,
+    camera: &Camera,
     pixel: [usize; 2],
-    nearness: Nearness,
-    eye: DVec3,
-) -> Option<Metric> {
-    let corrected = criterion(visible, pixel, nearness)?;
+    Nearness { reflected, .. }: Nearness,
+) -> Option<f64> {
     let places = visible.of_pixel(pixel);
-    let first = places.iter().find_map(shaded)?;
-    let steps = steps(places, first.shape);
-    if !first.has_lobe || steps[0].position == DVec3::ZERO {
-        return Some(corrected);
-    }
-    let view = eye - first.position;
-    let distance = view.length();
-    let angle = libm::acos(first.normal.dot(view / distance).clamp(-1.0, 1.0));
-    let criterion = Criterion {
-        curvature: bend(&steps),
-        incidence: angle,
-        outgoing: angle,
-        distance,
-        blocker_distance: (nearness.reflected > 0.0).then(|| nearness.reflected.recip()),
-        lobe_cutoff: first.cutoff,
-        environment_cutoff: f64::INFINITY,
-    };
-    let per_angle = match criterion.blocker_distance {
-        Some(_) => criterion.printed_blocker(),
-        None => criterion.printed_environment(),
-    };
-    let [right, down] = steps.map(|step| across(step.position, view / distance) / distance);
-    let lobe = of_columns(right, down).times(per_angle * per_angle);
-    let of_position = of_columns(steps[0].position, steps[1].position);
-    Some(lobe.plus(of_position.times(nearness.shadow * nearness.shadow)))
+    let (i, first) = (0..)
+        .zip(places)
+        .find_map(|(i, place)| Some((i, shaded(place)?)))?;
+    let [right, down] = steps(places, first.shape);
+    let along = camera.look(at(pixel, i), [0.0; 2]).along;
+    let largest = |right, down| of_columns(right, down).largest().max(0.0).sqrt();
+    let turn = largest(right.normal, down.normal);
+    // Seen from the eye, the point moves by d times the angle of a pixel.
+    let moved = largest(across(right.position, along), across(down.position, along));
+    let cosine = (-first.normal.dot(along)).max(GRAZING);
+    Some(first.cutoff * (2.0 * turn + reflected * moved / cosine))
 }
+
+/// The smallest cosine of the view in Eq. 21, which has no value at 0.
+const GRAZING: f64 = 1e-3;
 
 /// Returns the principal curvature of larger magnitude in a pixel, per unit of length, positive if
 /// convex; NaN if nothing is shaded.
@@ -156,11 +170,12 @@ mod tests {
     use crate::cutoffs::Cutoffs;
     use crate::shading::Shader;
     use etendue_paths::Paths;
+    use etendue_theory::shading::Criterion;
     use etendue_world::{
         Camera, Geometry, Material, MicrofacetDistribution, Projection, Roughness, Shape, Texture,
         World,
     };
-    use glam::{DAffine3, DVec3};
+    use glam::DAffine3;
 
     const RADIUS: f64 = 0.5;
     const DISTANCE: f64 = 3.0;
@@ -242,19 +257,18 @@ mod tests {
                 } else {
                     theory.environment()
                 };
-                let metric = criterion(
-                    &visible,
-                    [column, 400],
-                    Nearness {
-                        reflected: nearness,
-                        shadow: 0.0,
-                    },
-                )
-                .unwrap();
+                let near = Nearness {
+                    reflected: nearness,
+                    shadow: 0.0,
+                };
+                let by = |which: BandwidthCriterion| {
+                    let metric = which.squared(&visible, &camera, [column, 400], near);
+                    metric.unwrap().xx.sqrt()
+                };
                 // The angle that a pixel subtends is proportional to the squared cosine of its
                 // direction.
                 let off = (column as f64 - 400.0) * slope;
-                let found = metric.xx.sqrt() / (slope / (1.0 + off * off));
+                let found = by(BandwidthCriterion::Corrected) / (slope / (1.0 + off * off));
                 // The tolerance covers the error of finite differences over a pixel, and the
                 // change of the cosine within the pixel.
                 assert!(
@@ -269,16 +283,7 @@ mod tests {
                 farthest = farthest.max((found / printed - 1.0).abs());
                 // The printed criterion equals the criterion of the theory crate, and the curvature
                 // equals the curvature of the ball.
-                let drawn = super::printed(
-                    &visible,
-                    [column, 400],
-                    Nearness {
-                        reflected: nearness,
-                        shadow: 0.0,
-                    },
-                    eye,
-                );
-                let drawn = drawn.unwrap().xx.sqrt() / (slope / (1.0 + off * off));
+                let drawn = by(BandwidthCriterion::Printed) / (slope / (1.0 + off * off));
                 assert!(
                     (drawn / printed - 1.0).abs() < 0.02,
                     "{column} {nearness}: {drawn} {printed}"

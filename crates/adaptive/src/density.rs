@@ -1,7 +1,9 @@
 //! Computes the sampling densities of pixels by distributing a number of samples according to the
 //! criterion.
 
+use crate::criterion::shaded;
 use crate::metric::Metric;
+use crate::visible::Visible;
 
 /// Maximum number of samples per pixel, equal to the number of visible points per pixel.
 const DENSEST: f64 = 4.0;
@@ -12,6 +14,15 @@ const MAX_SPACING: f64 = 32.0;
 /// Maximum anisotropy of the density. Finite differences are not accurate enough for a larger
 /// anisotropy.
 const LONGEST: f64 = 3.0;
+
+/// Returns the metrics of evenly distributed samples.
+pub(crate) fn even(visible: &Visible) -> Vec<Option<Metric>> {
+    visible.pixels(|pixel| {
+        let places = visible.of_pixel(pixel);
+        let is_shaded = places.iter().any(|place| shaded(place).is_some());
+        is_shaded.then_some(Metric::even(1.0))
+    })
+}
 
 /// Returns metrics proportional to `wanted` within the bounds. The square root of the determinant
 /// of a metric is the number of samples in its pixel, and these numbers add up to `samples`.

@@ -20,19 +20,20 @@ const TURN: f64 = 0.1;
 /// The light at all stored points of the picture; `None` where nothing is shaded.
 pub(crate) type Values = [Option<[f64; 2]>];
 
-/// Computes the mean radiance of a pixel.
+/// Computes the mean radiance of a pixel. Pixels with an edge are examined only if `shader` is
+/// given.
 pub(crate) fn radiance(
     visible: &Visible,
-    shader: &Shader<'_>,
+    shader: Option<&Shader<'_>>,
     values: &Values,
     pixel: [usize; 2],
 ) -> f64 {
     let places = visible.of_pixel(pixel);
     let stored = places.iter().zip(&values[visible.range(pixel)]);
     let stored: f64 = stored.map(|(place, value)| light(place, *value)).sum();
-    if !has_edge(visible, pixel) {
+    let Some(shader) = shader.filter(|_| has_edge(visible, pixel)) else {
         return stored / FOUR as f64;
-    }
+    };
     let step = (FINE as f64).recip();
     let further = (0..FINE * FINE).filter_map(|i| {
         let inside = [i % FINE, i / FINE].map(|k| (k as f64 + 0.5) * step);

@@ -1,43 +1,21 @@
-//! Defines the methods to distribute shading samples, and the stages from the camera to the
-//! picture.
+//! The stages from the camera to the picture.
 
-use crate::blockers::nearness;
+use crate::blockers::{self, nearness};
 use crate::blue_noise::{PicturePoint, PixelPosition, blue_noise};
-use crate::criterion::{criterion, curvature, printed, shaded};
+use crate::criterion::{BandwidthCriterion, curvature, shaded};
 use crate::cross::{WIDER, cross_errors, squared};
 use crate::cutoffs::Cutoffs;
-use crate::density::{scaled, to_power, wanted};
+use crate::density::{even, scaled, to_power, wanted};
 use crate::edges;
 use crate::guide::{LightGuide, direct};
 use crate::metric::Metric;
+use crate::parts::{SampleMethod, SamplePlacing};
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct, reconstruct_pixels};
 use crate::shading::Shader;
 use crate::smooth::PlaceValues;
 use crate::visible::{FOUR, Visible, at};
-use etendue_paths::Paths;
+use etendue_paths::{Nearness, Paths};
 use etendue_world::Camera;
-
-/// The distribution of shading samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SampleMethod {
-    /// Samples are uniform over all shaded pixels.
-    Uniform,
-    /// Samples follow the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
-    Predicted,
-    /// Samples follow the criteria as printed, to show the cost of their approximations.
-    Printed,
-    /// Half of the samples follow the criteria, and half follow the measured light. The first
-    /// quarter of the samples measures the light: planes are fitted to one half of this quarter,
-    /// and their error is evaluated at the other half.
-    Weighted,
-    /// The default. The first samples are evenly distributed. Half of the remaining samples follow
-    /// the criteria, and half follow the errors at the first samples. The errors at the first
-    /// samples also calibrate the criteria for each object.
-    Auto,
-    /// Samples follow only the measured light. The first quarter of the samples is distributed
-    /// uniformly, and the standard deviation of these samples is the measure.
-    Variance,
-}
 
 /// Options of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -48,9 +26,10 @@ pub struct SamplePlan {
     pub samples: usize,
     /// Paths per sample.
     pub each: u32,
-    /// Rays per point to find the distance of blockers; Durand et al. 2005 use a hundred.
+    /// Rays per point to find the distance of blockers.
     pub blocker_rays: u32,
-    /// Whether sample densities are isotropic, as in the paper, or adapted to each direction.
+    /// Whether sample densities are isotropic, as always in [`SampleMethod::Paper`], or adapted to
+    /// each direction.
     pub is_even: bool,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -80,10 +59,13 @@ pub enum Stage {
 pub struct Layers {
     /// The largest bandwidth over all directions by the criterion, cycles per pixel.
     pub bandwidth: Vec<f64>,
+    /// The bandwidth without blockers, by Eq. 20 as printed; only by [`SampleMethod::Paper`].
+    pub unoccluded: Vec<f64>,
     /// The principal curvature of larger magnitude, per unit of length, positive if convex. It is
     /// computed by finite differences on the screen.
     pub curvature: Vec<f64>,
-    /// The mean of 1/distance over the reflected objects, per unit of length.
+    /// The mean of 1/distance over the reflected objects, per unit of length. By
+    /// [`SampleMethod::Paper`], it is the mean over the hemisphere.
     pub blockers: Vec<f64>,
     /// The highest frequency of penumbrae, cycles per unit of length.
     pub shadow: Vec<f64>,
@@ -112,12 +94,6 @@ pub struct Rendered {
 
 /// A method takes this share of the samples first, to determine the density of the other samples.
 const FIRST_SHARE: f64 = 0.25;
-
-/// The squared error of a plane fitted to samples is proportional to the fourth power of their
-/// spacing, and therefore to 1/n² for a density n of samples. Let c be the contrast and B the
-/// bandwidth. For a fixed number of samples, the sum of this error over the picture is minimal if n
-/// ∝ (c² B⁴)^(1/3).
-pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture. `stage` receives the next stage and its number of steps, and `progress`
 /// receives the number of finished steps.
@@ -179,20 +155,20 @@ pub(crate) struct AdaptiveRun<'a> {
 impl AdaptiveRun<'_> {
     /// Shades all samples of the method. Each sample stores the common metric of all samples.
     fn samples(&mut self) -> Vec<ShadedSample> {
-        let method = self.plan.method;
-        let (wanted, power) = match method {
-            SampleMethod::Auto => return self.auto(),
-            SampleMethod::Uniform | SampleMethod::Variance => (self.even(), 1.0),
-            SampleMethod::Predicted | SampleMethod::Printed | SampleMethod::Weighted => {
-                (self.predicted(), POWER)
-            }
+        let parts = self.plan.method.parts();
+        if parts.placing == SamplePlacing::Calibrated {
+            return self.auto();
+        }
+        let wanted = match parts.criterion {
+            Some(criterion) => self.predicted(criterion),
+            None => even(self.visible),
         };
         let count = self.plan.samples as f64;
         let wanted: Vec<Option<Metric>> = wanted
             .iter()
-            .map(|metric| metric.map(|metric| to_power(metric, power)))
+            .map(|metric| metric.map(|metric| to_power(metric, parts.power)))
             .collect();
-        if !matches!(method, SampleMethod::Weighted | SampleMethod::Variance) {
+        if parts.placing == SamplePlacing::Together {
             let metrics = scaled(&wanted, count);
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);
@@ -204,7 +180,7 @@ impl AdaptiveRun<'_> {
         let pilot = self.shaded(&points, 0);
         let contrast = self.contrast(&pilot);
         let rest = (1.0 - FIRST_SHARE) * count;
-        let then = if method == SampleMethod::Weighted {
+        let then = if parts.placing == SamplePlacing::ByErrors {
             let errors = cross_errors(self.visible, &values(&pilot));
             let found = by_error(&first, &self.around(&squared(&pilot, &errors)));
             let halves = [scaled(&wanted, 0.5 * rest), scaled(&found, 0.5 * rest)];
@@ -217,15 +193,6 @@ impl AdaptiveRun<'_> {
             scaled(&wanted, rest)
         };
         self.both(&first, pilot, &then, rest)
-    }
-
-    /// Returns the metrics of evenly distributed samples.
-    pub(crate) fn even(&self) -> Vec<Option<Metric>> {
-        self.visible.pixels(|pixel| {
-            let places = self.visible.of_pixel(pixel);
-            let is_shaded = places.iter().any(|place| shaded(place).is_some());
-            is_shaded.then_some(Metric::even(1.0))
-        })
     }
 
     /// Shades the samples `rest`, and returns all samples with their common metric.
@@ -255,39 +222,36 @@ impl AdaptiveRun<'_> {
         values.iter().map(of).collect()
     }
 
-    /// Returns the metrics by the criteria.
-    pub(crate) fn predicted(&mut self) -> Vec<Option<Metric>> {
-        let [w, h] = self.visible.size;
-        let Shader {
-            paths,
-            camera,
-            cutoffs,
-            seed,
-            ..
-        } = self.shader;
-        (self.stage)(Stage::Blockers, w.div_ceil(4) * h.div_ceil(4));
-        let near = nearness(
-            self.visible,
-            (paths, camera, cutoffs, seed),
-            self.plan.blocker_rays,
-            self.progress,
-        );
+    /// Returns the metrics of densities that are proportional to the squared bandwidth by a
+    /// criterion.
+    pub(crate) fn predicted(&mut self, by: BandwidthCriterion) -> Vec<Option<Metric>> {
+        let (visible, camera) = (self.visible, self.shader.camera);
+        let points = blockers::points(visible, by, self.plan.seed);
+        (self.stage)(Stage::Blockers, points.len());
+        let rays = self.plan.blocker_rays;
+        let near = nearness(visible, &self.shader, (by, &points), rays, self.progress);
         (self.stage)(Stage::Criterion, 1);
-        let eye = camera.to_world.translation;
-        let squared = self.visible.pixels(|[column, row]| {
-            let near = near[row * w + column];
-            match self.plan.method {
-                SampleMethod::Printed => printed(self.visible, [column, row], near, eye),
-                _ => criterion(self.visible, [column, row], near),
-            }
+        let squared = visible.pixels(|pixel @ [column, row]| {
+            by.squared(visible, camera, pixel, near[row * visible.size[0] + column])
         });
-        self.layers.curvature = self.visible.pixels(|pixel| curvature(self.visible, pixel));
         let root = |metric: &Option<Metric>| metric.map_or(f64::NAN, |m| m.largest().sqrt());
-        self.layers.bandwidth = squared.iter().map(root).collect();
-        self.layers.blockers = near.iter().map(|near| near.reflected).collect();
-        self.layers.shadow = near.iter().map(|near| near.shadow).collect();
-        let wanted_of = |metric: &Option<Metric>| metric.map(|m| wanted(m, self.plan.is_even));
-        squared.iter().map(wanted_of).collect()
+        let layers = &mut self.layers;
+        layers.bandwidth = squared.iter().map(root).collect();
+        layers.curvature = visible.pixels(|pixel| curvature(visible, pixel));
+        layers.blockers = near.iter().map(|near| near.reflected).collect();
+        match by {
+            BandwidthCriterion::Printed => {
+                let far = Nearness::default();
+                let without = |pixel| root(&by.squared(visible, camera, pixel, far));
+                layers.unoccluded = visible.pixels(without);
+                squared
+            }
+            BandwidthCriterion::Corrected => {
+                layers.shadow = near.iter().map(|near| near.shadow).collect();
+                let wanted = |metric: &Option<Metric>| metric.map(|m| wanted(m, self.plan.is_even));
+                squared.iter().map(wanted).collect()
+            }
+        }
     }
 
     pub(crate) fn points(
@@ -366,9 +330,12 @@ impl AdaptiveRun<'_> {
         let mut values = self.reconstructed(&samples);
         let added = self.fill(&mut values, &mut samples);
         let [w, h] = self.visible.size;
+        // The paper reconstructs means, at four points per pixel.
+        let is_plane = self.plan.method.parts().fit == SampleFit::Plane;
+        let further = is_plane.then_some(&self.shader);
         let radiance = self
             .visible
-            .pixels(|pixel| edges::radiance(self.visible, &self.shader, &values, pixel));
+            .pixels(|pixel| edges::radiance(self.visible, further, &values, pixel));
         let mut counts = vec![0.0; w * h];
         for sample in &samples {
             counts[self.visible.pixel_index(sample.at)] += 1.0;
@@ -383,14 +350,15 @@ impl AdaptiveRun<'_> {
         }
     }
 
-    /// Returns the light at all points. It consists of planes through samples, or of the guide plus
-    /// planes through the differences between the samples and the guide.
+    /// Returns the light at all points. It is fitted to samples, or is the guide plus a fit to the
+    /// differences between the samples and the guide.
     fn reconstructed(&self, samples: &[ShadedSample]) -> Vec<Option<[f64; 2]>> {
+        let fit = self.plan.method.parts().fit;
         let Some(guide) = &self.guide else {
-            return reconstruct(self.visible, samples, SampleFit::Plane);
+            return reconstruct(self.visible, samples, fit);
         };
         let left = guide.without(self.visible, samples);
-        let mut values = reconstruct(self.visible, &left, SampleFit::Plane);
+        let mut values = reconstruct(self.visible, &left, fit);
         for (index, (value, place)) in values.iter_mut().zip(&self.visible.places).enumerate() {
             if let (Some(value), Some(surface)) = (value, shaded(place)) {
                 let guide = guide.used(index, surface);

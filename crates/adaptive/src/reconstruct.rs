@@ -305,3 +305,54 @@ fn pixels([low, high]: [f64; 2], count: usize) -> Range<usize> {
     let high = (high.floor() + 1.0).max(0.0) as usize;
     low.min(count)..high.min(count)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::visible::SeenPlace;
+
+    fn surface([x, y]: PixelPosition) -> SeenSurface {
+        SeenSurface {
+            shape: 0,
+            position: DVec3::new(x, y, 0.0),
+            normal: DVec3::Z,
+            axis: DVec3::Z,
+            cutoff: 1.0,
+            factors: [1.0, 0.0],
+        }
+    }
+
+    /// Two samples 24 pixels apart have the values 0 and 1. Between them, Gaussian weights of
+    /// standard deviation σ have the mean 1/(1 + exp(−24 x/σ²)) at a distance x from the middle. A
+    /// prediction of twice the bandwidth halves σ.
+    #[test]
+    fn the_width_of_the_filter_follows_the_prediction() {
+        let size = [64, 8];
+        let place = |i: usize| SeenPlace {
+            emitted: 0.0,
+            surface: Some(surface(at([i / FOUR % 64, i / FOUR / 64], i % FOUR))),
+        };
+        let visible = Visible {
+            size,
+            places: (0..FOUR * 64 * 8).map(place).collect(),
+        };
+        for bandwidth in [1.0 / 24.0, 2.0 / 24.0] {
+            let sample = |value: f64| ShadedSample {
+                at: [20.0 + 24.0 * value, 4.0],
+                metric: Metric::even(bandwidth * bandwidth),
+                surface: surface([20.0 + 24.0 * value, 4.0]),
+                value: [value, 0.0],
+            };
+            let samples = [sample(0.0), sample(1.0)];
+            let values = reconstruct(&visible, &samples, SampleFit::Mean);
+            let sigma = WIDTH / bandwidth;
+            for column in 29..35 {
+                let index = visible.range([column, 4]).start;
+                let off = at([column, 4], 0)[0] - 32.0;
+                let expected = (1.0 + (-24.0 * off / (sigma * sigma)).exp()).recip();
+                let [found, _] = values[index].unwrap();
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}"); // rounding
+            }
+        }
+    }
+}

@@ -66,8 +66,6 @@ pub(crate) struct SeenSurface {
     /// The central direction of incident light: the mirror direction, or the normal of a material
     /// without a lobe.
     pub(crate) axis: DVec3,
-    /// Whether the material has a lobe. If it has a lobe, the axis is the mirror direction.
-    pub(crate) has_lobe: bool,
     /// The material preserves frequencies around the axis up to this frequency, cycles per radian;
     /// 0 if the material is black.
     pub(crate) cutoff: f64,
@@ -94,7 +92,6 @@ impl SeenSurface {
             } else {
                 seen.normal()
             },
-            has_lobe,
             cutoff: cutoffs.of(reflects),
             factors: paths.factors(seen),
         }

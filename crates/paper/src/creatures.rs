@@ -3,7 +3,7 @@
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
-use etendue_adaptive::{BLOCKER_RAYS, Rendered, SampleMethod, SamplePlan, render};
+use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
 use etendue_figures::{
     Axis, AxisQuantity, Figure, Palette, Picture, Plate, PlateRow, Scale, Style, plate, stacked,
 };
@@ -65,13 +65,13 @@ impl CreatureScene {
         })
     }
 
-    fn rendered(&self, method: SampleMethod, is_even: bool) -> Rendered {
+    fn rendered(&self, method: SampleMethod) -> Rendered {
         let plan = SamplePlan {
             method,
             samples: self.samples,
             each: PATHS_PER_SAMPLE,
-            blocker_rays: BLOCKER_RAYS,
-            is_even,
+            blocker_rays: method.blocker_rays(),
+            is_even: method == SampleMethod::Paper,
             seed: 1,
         };
         render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
@@ -155,44 +155,60 @@ impl CreatureRow<'_> {
 /// Draws Fig. 16.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let scene = CreatureScene::new(taken.quality)?;
-    let layers = scene.rendered(SampleMethod::Predicted, false).layers;
+    let [paper, corrected] =
+        [SampleMethod::Paper, SampleMethod::Predicted].map(|method| scene.rendered(method).layers);
     let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
-    let [blockers, bandwidth] = [squares(&layers.blockers)?, squares(&layers.bandwidth)?];
+    let [curvature, blockers] = [squares(&paper.unoccluded)?, squares(&paper.blockers)?];
+    let [printed, corrected] = [squares(&paper.bandwidth)?, squares(&corrected.bandwidth)?];
     let up_to_one =
         |values: &[f64]| scene.picture(values.iter().map(|n| n.clamp(0.0, 1.0)).collect());
-    let [density, dots] = [up_to_one(&layers.density)?, up_to_one(&layers.samples)?];
-    let above = CreatureRow {
-        title: "Criteria and shading samples",
-        note: "(a) 1/*d'*, the nearness of what is reflected. (b) The bandwidth by Eq. 21, corrected, in the direction where it is largest. Both squared, in decibels below the largest value of each picture.",
-        panels: &[
-            PicturePanel::new("(a) blockers", &blockers),
-            PicturePanel::new("(b) bandwidth", &bandwidth),
-        ],
+    let [density, dots] = [up_to_one(&paper.density)?, up_to_one(&paper.samples)?];
+    let squared = |title, note, panels| CreatureRow {
+        title,
+        note,
+        panels,
         quantity: AxisQuantity::new("square", ""),
         scale: Scale::Decibel { floor: -50.0 },
         shared: false,
     };
     let below = CreatureRow {
         title: "",
-        note: "(c) Requested samples per pixel, shown up to one. (d) Pixels that have a sample.",
+        note: "(e) Requested samples per pixel by (c), shown up to one. (f) Pixels that have a sample.",
         panels: &[
-            PicturePanel::new("(c) density", &density),
-            PicturePanel::new("(d) samples", &dots),
+            PicturePanel::new("(e) density", &density),
+            PicturePanel::new("(f) samples", &dots),
         ],
         quantity: AxisQuantity::new("samples per pixel", ""),
         scale: Scale::Linear,
         shared: true,
     };
     Ok(stacked(&[
-        above.drawn(&scene, &taken.style)?,
+        squared(
+            "Criteria and shading samples",
+            "(a) The bandwidth by Eq. 20, from finite differences on the screen. (b) 1/*d'*, the harmonic mean over the hemisphere. (a) to (d) are squared, in decibels below the largest value of each picture.",
+            &[
+                PicturePanel::new("(a) curvature", &curvature),
+                PicturePanel::new("(b) blockers", &blockers),
+            ],
+        )
+        .drawn(&scene, &taken.style)?,
+        squared(
+            "",
+            "(c) The bandwidth by Eq. 21, as printed. (d) The same, corrected, in the direction where it is largest.",
+            &[
+                PicturePanel::new("(c) Eq. 21", &printed),
+                PicturePanel::new("(d) Eq. 21, corrected", &corrected),
+            ],
+        )
+        .drawn(&scene, &taken.style)?,
         below.drawn(&scene, &photographs(&taken.style))?,
     ]))
 }
 
 /// The pictures of Fig. 17: radiance in rows from the top.
 struct ComparedPictures {
-    /// The pictures from few samples: uniform samples, isotropic samples by the criteria, and
-    /// anisotropic samples by the criteria.
+    /// The pictures from few samples: uniform samples, the paper's algorithm, and samples by the
+    /// corrected criteria.
     few: [Vec<f64>; 3],
     reference: etendue_paths::Picture,
     /// The radiance shown as white.
@@ -203,11 +219,11 @@ impl ComparedPictures {
     fn new(scene: &CreatureScene, reporter: &dyn Reporter) -> Self {
         let _stage = reporter.begin(Work::Stage("rendering"));
         let methods = [
-            (SampleMethod::Uniform, true),
-            (SampleMethod::Predicted, true),
-            (SampleMethod::Predicted, false),
+            SampleMethod::Uniform,
+            SampleMethod::Paper,
+            SampleMethod::Predicted,
         ];
-        let few = methods.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
+        let few = methods.map(|method| scene.rendered(method).radiance);
         let paths = &scene.paths;
         let reference = paths.picture(&scene.camera, scene.reference, 2, &|_| {});
         Self {
@@ -235,35 +251,51 @@ impl ComparedPictures {
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// Returns the mean of `squares`, such as (x − r)², each divided by r² + ε².
-    fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
+    /// Returns the relative mean square error of a picture, and this error without the thousandth
+    /// of the pixels that have the largest errors. The noise of the reference is subtracted.
+    fn errors(&self, of: &[f64]) -> [f64; 2] {
         let reference = &self.reference.mean;
-        let count = reference.len() as f64;
-        let least = 0.01 * reference.iter().sum::<f64>() / count;
-        let each = squares.zip(reference);
-        each.map(|(square, r)| square / (r * r + least * least))
-            .sum::<f64>()
-            / count
-    }
-
-    /// Returns the relative mean square error of a picture.
-    fn error(&self, of: &[f64]) -> f64 {
-        let both = of.iter().zip(&self.reference.mean);
-        self.relative(both.map(|(x, r)| (x - r).powi(2)))
+        let both = of.iter().zip(reference).zip(&self.reference.variance);
+        let squares = self.relative(both.map(|((x, r), noise)| [(x - r).powi(2), *noise]));
+        mean_errors(squares)
     }
 
     /// Returns the relative mean square error of the reference due to its noise.
     fn noise(&self) -> f64 {
-        self.relative(self.reference.variance.iter().copied())
+        let squares = self.reference.variance.iter().map(|noise| [*noise, 0.0]);
+        mean_errors(self.relative(squares))[0]
     }
+
+    /// Divides squares, such as (x − r)², by r² + ε².
+    fn relative(&self, squares: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+        let reference = &self.reference.mean;
+        let least = 0.01 * reference.iter().sum::<f64>() / reference.len() as f64;
+        let each = squares.zip(reference);
+        each.map(|(squares, r)| squares.map(|square| square / (r * r + least * least)))
+            .collect()
+    }
+}
+
+/// Returns the mean of differences between errors and their noise, over all pixels and without the
+/// thousandth of the pixels that have the largest errors.
+fn mean_errors(mut each: Vec<[f64; 2]>) -> [f64; 2] {
+    each.sort_unstable_by(|[a, _], [b, _]| a.total_cmp(b));
+    let count = each.len();
+    [count, count - count / 1000].map(|count| {
+        let sum: f64 = each[..count]
+            .iter()
+            .map(|[error, noise]| error - noise)
+            .sum();
+        sum / count as f64
+    })
 }
 
 /// Draws Fig. 17.
 pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     const HEADS: [&str; 3] = [
         "(a) uniform",
-        "(b) criteria, isotropic",
-        "(c) criteria, anisotropic",
+        "(b) the paper's algorithm",
+        "(c) corrected criteria",
     ];
     let scene = CreatureScene::new(taken.quality)?;
     let found = ComparedPictures::new(&scene, taken.reporter);
@@ -277,8 +309,8 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         .map(|of| found.difference(&scene, of))
         .collect::<Result<_, _>>()?;
     let noise = found.noise();
-    let errors = found.few.iter().map(|of| found.error(of) - noise);
-    let feet = errors.map(|error| format!("relMSE {error:.4}"));
+    let errors = found.few.iter().map(|of| found.errors(of));
+    let feet = errors.map(|[error, robust]| format!("relMSE {error:.4}, robust {robust:.4}"));
     let feet = feet.chain([format!("noise: relMSE {noise:.4}")]);
     let heads = HEADS.into_iter().chain(["(d) reference"]);
     let panels = heads.zip(&shown).zip(feet);
@@ -290,7 +322,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         .map(|(head, values)| PicturePanel::new(head, values))
         .collect();
     let note = format!(
-        "(a) to (c): {} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 per pixel. (d): {} paths in each pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²) over the reference *r*, less its noise; *ε* is a hundredth of the mean.",
+        "(a) to (c): {} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 per pixel. (d): {} paths in each pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²) over the reference *r*, less its noise; *ε* is a hundredth of the mean. Robust: without the thousandth of the pixels with the largest errors.",
         scene.samples, scene.reference
     );
     let style = photographs(&taken.style);
@@ -333,5 +365,19 @@ fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,
         ..*style
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One bright pixel of a thousand dominates the mean, but not the robust mean.
+    #[test]
+    fn the_robust_error_omits_the_largest_thousandth() {
+        let errors = (0..2000).map(|i| [if i % 1000 == 7 { 1e6 } else { 3.0 }, 1.0]);
+        let [all, robust] = mean_errors(errors.collect());
+        assert!((all - 1001.997).abs() < 1e-9, "{all}"); // rounding
+        assert!((robust - 2.0).abs() < 1e-12, "{robust}"); // rounding
     }
 }

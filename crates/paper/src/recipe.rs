@@ -196,7 +196,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "17",
-        about: "a picture from few shading samples: placed uniformly, by the criteria, and a reference",
+        about: "a picture from few shading samples: placed uniformly, by the paper, by the corrected criteria, and a reference",
         scenes: &[],
         also: &[],
         full_radial: false,

@@ -5,6 +5,7 @@ use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::{LightSearch, Paths, TracedPath};
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
+use etendue_sampling::sphere;
 use etendue_transform::Net;
 use etendue_transform::random::Stream;
 use etendue_world::Look;
@@ -190,13 +191,10 @@ impl Paths {
             }
             reflected += scatter
                 .sample(&seen.hit.point, seen.wo(), numbers.draw())
-                .and_then(|bounce| {
+                .map_or(0.0, |bounce| {
                     let along = (seen.hit.frame * bounce.wi).normalize();
-                    let from = seen.hit.position;
-                    self.geometry
-                        .first(&Ray { from, along }, [0.0, f64::INFINITY])
-                })
-                .map_or(0.0, |hit| hit.distance.max(nearest).recip());
+                    self.inverse_distance(seen, along, nearest)
+                });
         }
         // A point that is fully lit or fully blocked is in no penumbra.
         let contrast = 4.0 * lit * blocked / (lit + blocked).powi(2);
@@ -208,6 +206,40 @@ impl Paths {
                 0.0
             },
         }
+    }
+
+    /// Returns 1/d', where d' is the harmonic mean of the distances to occluders (Durand et al.
+    /// 2005, section 6.2). The `rays` rays are uniform over the hemisphere around the normal,
+    /// whatever the material; the paper does not state their distribution. For a ray that hits
+    /// nothing, 1/distance is 0. Distances below `nearest` count as `nearest`.
+    #[must_use]
+    pub fn harmonic_nearness(
+        &self,
+        seen: &SurfaceHit,
+        rays: u32,
+        nearest: f64,
+        seed: u64,
+        number: u64,
+    ) -> f64 {
+        let net = Net::new(seed, Stream::EvenNet, number, JOINT);
+        let normal = seen.normal();
+        let of = |ray: u32| {
+            let mut numbers = PathNumbers::new(seed, number).of_net(&net, ray);
+            let along = sphere(numbers.draw());
+            // The opposite of a direction below the surface is above it.
+            let along = along * along.dot(normal).signum();
+            self.inverse_distance(seen, along, nearest)
+        };
+        (0..rays).map(of).sum::<f64>() / f64::from(rays.max(1))
+    }
+
+    /// Returns 1/distance of what a ray from the point hits, or 0 if it hits nothing.
+    fn inverse_distance(&self, seen: &SurfaceHit, along: DVec3, nearest: f64) -> f64 {
+        let from = seen.hit.position;
+        let hit = self
+            .geometry
+            .first(&Ray { from, along }, [0.0, f64::INFINITY]);
+        hit.map_or(0.0, |hit| hit.distance.max(nearest).recip())
     }
 
     /// Samples a light, and finds what blocks it.

@@ -46,8 +46,8 @@ pub(crate) fn render(
         method,
         samples,
         each: request.paths,
-        blocker_rays: request.blocker_rays,
-        is_even: request.isotropic,
+        blocker_rays: request.blocker_rays.unwrap_or(method.blocker_rays()),
+        is_even: request.isotropic || method == SampleMethod::Paper,
         seed: request.seed,
     };
     let watch = StageWatch::new(reporter);
@@ -64,8 +64,8 @@ pub(crate) fn render(
     made_from["shading_samples"] = tree_of!(samples);
     made_from["shading_samples_added"] = tree_of!(rendered.added);
     made_from["paths"] = tree_of!(request.paths);
-    made_from["blocker_rays"] = tree_of!(request.blocker_rays);
-    made_from["isotropic"] = tree_of!(request.isotropic);
+    made_from["blocker_rays"] = tree_of!(plan.blocker_rays);
+    made_from["isotropic"] = tree_of!(plan.is_even);
     write(results, &rendered, made_from)?;
     let total: f64 = seconds.values().sum();
     results.write_unlisted(
@@ -168,6 +168,7 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     require_finite(rendered.size, &rendered.radiance)?;
     let Layers {
         bandwidth,
+        unoccluded,
         curvature,
         blockers,
         shadow,
@@ -178,6 +179,7 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     let layers = [
         ("radiance", &rendered.radiance),
         ("bandwidth", bandwidth),
+        ("unoccluded", unoccluded),
         ("curvature", curvature),
         ("blockers", blockers),
         ("shadow", shadow),

@@ -1,7 +1,7 @@
 //! A request for a picture.
 
 use crate::world_source::{CameraChoice, WorldSource};
-use etendue_adaptive::{BLOCKER_RAYS, SampleMethod};
+use etendue_adaptive::SampleMethod;
 
 /// A request for a picture.
 #[derive(Clone, Debug)]
@@ -18,8 +18,8 @@ pub struct PictureRequest {
     pub shading_samples: Option<u32>,
     /// Paths of each shading sample.
     pub paths: u32,
-    /// Rays per point that estimate the distance of blockers.
-    pub blocker_rays: u32,
+    /// Rays per point that estimate the distance of blockers; by default, those of the method.
+    pub blocker_rays: Option<u32>,
     /// Whether sample density is the same along all directions.
     pub isotropic: bool,
     /// Seed of the paths.
@@ -33,8 +33,6 @@ impl PictureRequest {
     pub const SAMPLES: u32 = 64;
     /// Default number of paths of each shading sample.
     pub const PATHS: u32 = 128;
-    /// Default number of rays that estimate the distance of blockers.
-    pub const BLOCKER_RAYS: u32 = BLOCKER_RAYS;
     /// Default seed.
     pub const SEED: u64 = 1;
 
@@ -44,7 +42,7 @@ impl PictureRequest {
         ("auto", Some(SampleMethod::Auto)),
         ("uniform", Some(SampleMethod::Uniform)),
         ("predicted", Some(SampleMethod::Predicted)),
-        ("printed", Some(SampleMethod::Printed)),
+        ("paper", Some(SampleMethod::Paper)),
         ("weighted", Some(SampleMethod::Weighted)),
         ("variance", Some(SampleMethod::Variance)),
     ];
@@ -59,7 +57,7 @@ impl PictureRequest {
             samples: Self::SAMPLES,
             shading_samples: None,
             paths: Self::PATHS,
-            blocker_rays: Self::BLOCKER_RAYS,
+            blocker_rays: None,
             isotropic: false,
             seed: Self::SEED,
             force: false,

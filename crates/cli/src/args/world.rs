@@ -176,12 +176,12 @@ Writes to out/NAME, or to the folder of --out:
   picture.png    for viewing; the brightest hundredth of the pixels is white
 OBJ, PLY and many glTF files have no camera or light: add them with --look-from, --look-at and --sky.
 With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain maps \
-(bandwidth, curvature, blockers, shadow, density, samples, variance). picture.npz also contains the \
+(bandwidth, unoccluded, curvature, blockers, shadow, density, samples, variance). picture.npz also contains the \
 positions of the samples (points). bandwidth.png and samples.png show two of the maps, and timing.json \
 contains the time of each stage in seconds. Methods:
   uniform     blue noise of even density
   predicted   density by the paper's criteria, Eqs. 20 and 21, corrected
-  printed     density by the same criteria as printed in the paper
+  paper       the paper's algorithm as printed
   weighted    half by the criteria, half by the interpolation error of a first
               quarter of the samples
   variance    density by the standard deviation of a first quarter of the
@@ -213,12 +213,13 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point that measure how far away the blockers are. The same number of rays measures
-    /// how far away the lights are. The paper uses 100
-    #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
-    pub(crate) blocker_rays: u32,
+    /// Rays per point that measure how far away the blockers are. Except by `--method paper`, the
+    /// same number of rays measures how far away the lights are [default: 100 by `--method paper`,
+    /// otherwise 16]
+    #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
+    pub(crate) blocker_rays: Option<u32>,
 
-    /// Use isotropic sample densities, as in the paper; by default, samples are denser along the
+    /// Use isotropic sample densities, as `--method paper` does; by default, samples are denser along the
     /// direction in which light changes faster
     #[arg(long)]
     pub(crate) isotropic: bool,
