@@ -1,6 +1,6 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{Hole, Light, Patch, Rectangle, Shape};
+use etendue_field::{Disc, Hole, Light, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// an element of a system.
@@ -23,6 +23,10 @@ pub enum Parameter {
     /// shapes of the mask scale by the same factor about their centres, and a polygon scales about
     /// its centroid.
     BlockerSide(usize),
+    /// The position of an opaque mask's shapes, or of the hole of an aperture, along X (0) or Y (1).
+    /// The value is the mean of the shapes' centres, or the centroid of a polygon. All shapes of the
+    /// mask move together; its half-planes do not move.
+    BlockerPosition(usize, usize),
     /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
     /// other edges do not move.
     HalfPlaneEdge(usize, usize),
@@ -70,6 +74,7 @@ impl Parameter {
             | Self::ImageWidth
             | Self::Travel(_)
             | Self::BlockerSide(_)
+            | Self::BlockerPosition(..)
             | Self::HalfPlaneEdge(..)
             | Self::FocalLength(_) => "m",
         }
@@ -79,6 +84,8 @@ impl Parameter {
     /// compared with this scale.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
+            // The distance from the central ray tells nothing about how far an edge may move.
+            Self::BlockerPosition(..) | Self::HalfPlaneEdge(..) => 1.0,
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
                 value.abs().max(0.1)
             }
@@ -170,6 +177,42 @@ pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
             Shape::Disc(disc) => disc.radius *= factor,
         }
     }
+}
+
+/// Sets the mean position of shapes along an axis, and moves all shapes by the same distance.
+pub(crate) fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
+    let centers = shapes.iter().map(|shape| shape.bounds().center[axis]);
+    let old = centers.sum::<f64>() / shapes.len() as f64;
+    let by = new(old) - old;
+    for shape in shapes {
+        let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) = shape;
+        center[axis] += by;
+    }
+}
+
+/// Sets the position of a hole along an axis.
+pub(crate) fn reposition_hole(hole: &mut Hole, axis: usize, new: New<'_>) {
+    match hole {
+        Hole::Shape(shape) => reposition(std::slice::from_mut(shape), axis, new),
+        Hole::Polygon(_) => {
+            let old = hole.moments().centroid[axis];
+            let mut shift = [0.0; 2];
+            shift[axis] = new(old) - old;
+            *hole = hole.mapped(1.0, shift);
+        }
+    }
+}
+
+/// Returns the axes along which a displacement of the shapes changes the light: all axes along
+/// which a shape ends.
+pub(crate) fn movable_axes(shapes: &[Shape]) -> Vec<usize> {
+    let ends = |shape: &Shape, axis: usize| match shape {
+        Shape::Rectangle(rectangle) => rectangle.size[axis] <= MAX_SIDE,
+        Shape::Disc(_) => true,
+    };
+    let axes = [0, 1].into_iter();
+    axes.filter(|axis| shapes.iter().any(|shape| ends(shape, *axis)))
+        .collect()
 }
 
 /// Returns the word for the size of a hole in parameter names.

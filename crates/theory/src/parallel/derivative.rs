@@ -5,7 +5,8 @@ use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::{Chain, Parameter};
 use etendue_field::{SliceGrid, Slices, Window};
 
-/// The step of the forward difference divided by the value of the parameter.
+/// The step of the forward difference divided by the scale of the parameter; also the largest change
+/// of phases, in turns.
 ///
 /// The error of the difference is half the second derivative times the step. Since a parameter
 /// changes phases by at most some tens of radians, this error is about 10⁻³ of the derivative.
@@ -13,8 +14,7 @@ use etendue_field::{SliceGrid, Slices, Window};
 const RELATIVE_STEP: f64 = 1e-4;
 
 /// Returns the derivative of the slices with respect to a parameter, per unit of the parameter.
-/// The derivative is a forward difference with a step of 10⁻⁴ of the parameter's value. If the
-/// value is zero, the step is 10⁻⁴ of the parameter's unit.
+/// The derivative is a forward difference with a step of at most 10⁻⁴ of the parameter's scale.
 ///
 /// `prediction` must be the slices of this chain under the same window and on the same grid.
 ///
@@ -29,7 +29,8 @@ pub fn derivative(
     prediction: &Slices,
 ) -> Slices {
     let value = chain.value(parameter).expect("a parameter of the chain");
-    let moved = value + RELATIVE_STEP * parameter.scale(value);
+    let step = chain.step(parameter, (window, grid), [RELATIVE_STEP; 2]);
+    let moved = value + step.expect("the same");
     // Discs are split into the same rectangles as in `prediction`, so the quadrature errors cancel
     // in the difference.
     let fineness = fineness(&chain.path(), window, grid);
@@ -83,7 +84,7 @@ mod tests {
             for parameter in chain.parameters() {
                 let forward = derivative(&chain, parameter, &window, &grid, &prediction);
                 let value = chain.value(parameter).unwrap();
-                let step = 1e-3 * value;
+                let step = 1e-3 * value.abs().max(0.1);
                 let moved = |v| slices(&chain.with(parameter, v).unwrap(), &window, &grid);
                 let [up, down] = [value + step, value - step].map(moved);
                 let (mut worst, mut largest) = (0.0, 0.0);

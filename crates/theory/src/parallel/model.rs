@@ -4,11 +4,14 @@ use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
-use crate::parameter::{New, Parameter, hole_word, resize, resize_hole, size_of};
+use crate::parameter::{
+    New, Parameter, hole_word, movable_axes, reposition, reposition_hole, resize, resize_hole,
+    size_of,
+};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
-use etendue_field::{Light, Mask, Window};
+use etendue_field::{Light, Mask, Shape, SliceGrid, Window};
 
 impl Model for Chain {
     fn light(&self) -> &Light {
@@ -51,6 +54,9 @@ impl Model for Chain {
                 (Parameter::BlockerSide(_), Mask::Aperture(hole)) => {
                     Some(format!("{} of {name}", hole_word(hole)))
                 }
+                (Parameter::BlockerPosition(_, axis), _) => {
+                    Some(format!("position {} of {name}", ["x", "y"][axis]))
+                }
                 (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
                     let number = (half_planes.len() > 1).then(|| format!(" {}", edge + 1));
                     Some(format!("edge{} of {name}", number.unwrap_or_default()))
@@ -75,6 +81,14 @@ impl Model for Chain {
                     resize(shapes, new);
                 }
                 (Parameter::BlockerSide(_), Mask::Aperture(hole)) => resize_hole(hole, new),
+                (Parameter::BlockerPosition(_, axis), Mask::Opaque { shapes, .. })
+                    if !shapes.is_empty() =>
+                {
+                    reposition(shapes, axis, new);
+                }
+                (Parameter::BlockerPosition(_, axis), Mask::Aperture(hole)) => {
+                    reposition_hole(hole, axis, new);
+                }
                 (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
                     let half = half_planes.get_mut(edge)?;
                     half.edge = new(half.edge);
@@ -187,6 +201,23 @@ impl Chain {
         }
     }
 
+    /// Returns the step of a finite difference: `relative` times the scale of the parameter, but not
+    /// so large that the phases of the highest frequencies change by more than `turns` turns.
+    pub(super) fn step(
+        &self,
+        parameter: Parameter,
+        (window, grid): (&Window, &SliceGrid),
+        [relative, turns]: [f64; 2],
+    ) -> Option<f64> {
+        let half_width = window.x.half_width();
+        let most = match self.unit(parameter) {
+            "m" => turns / grid.rho.max().max(1.0 / half_width),
+            "1/m" => turns / half_width,
+            _ => f64::INFINITY,
+        };
+        Some((relative * parameter.scale(self.value(parameter)?)).min(most))
+    }
+
     /// Returns ∫ L W, the light in the window if all occluders are removed.
     fn unblocked(&self, window: &Window) -> f64 {
         let mut open = self.clone();
@@ -203,6 +234,7 @@ impl Parameter {
         match self {
             Self::Travel(i)
             | Self::BlockerSide(i)
+            | Self::BlockerPosition(i, _)
             | Self::HalfPlaneEdge(i, _)
             | Self::GratingFrequency(i)
             | Self::GratingPhase(i) => Some(i),
@@ -212,16 +244,21 @@ impl Parameter {
 }
 
 fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
+    let of_shapes = |shapes: &[Shape]| {
+        let side = (!shapes.is_empty()).then_some(Parameter::BlockerSide(index));
+        let axes = movable_axes(shapes).into_iter();
+        let positions = axes.map(|axis| Parameter::BlockerPosition(index, axis));
+        side.into_iter().chain(positions).collect::<Vec<_>>()
+    };
     match mask {
         Mask::Opaque {
             shapes,
             half_planes,
         } => {
-            let side = (!shapes.is_empty()).then_some(Parameter::BlockerSide(index));
             let edges = (0..half_planes.len()).map(|edge| Parameter::HalfPlaneEdge(index, edge));
-            side.into_iter().chain(edges).collect()
+            of_shapes(shapes).into_iter().chain(edges).collect()
         }
-        Mask::Aperture(_) => vec![Parameter::BlockerSide(index)],
+        Mask::Aperture(hole) => of_shapes(&[Shape::Rectangle(hole.bounds())]),
         Mask::Grating(_) => vec![
             Parameter::GratingFrequency(index),
             Parameter::GratingPhase(index),
@@ -234,7 +271,7 @@ mod tests {
     use super::*;
     use crate::testing::*;
     use etendue_field::{
-        FrequencyAxis, HalfPlane, Profile, ProjectionGrid, Rectangle, Shape, SliceGrid,
+        ConvexPolygon, FrequencyAxis, HalfPlane, Hole, Profile, ProjectionGrid, Rectangle,
     };
 
     #[test]
@@ -247,23 +284,28 @@ mod tests {
                 "side of light",
                 "travel a to b",
                 "side of b",
+                "position x of b",
+                "position y of b",
                 "travel b to c"
             ]
         );
     }
 
-    /// Tests that the size of bars is their width, along either axis, and not their length.
+    /// Tests that the size of bars is their width, along either axis, and not their length, and that
+    /// bars move only across their length.
     #[test]
     fn the_size_of_bars_is_their_width() {
-        for size in [[0.05, 2e9], [2e9, 0.05]] {
+        for (size, across) in [([0.05, 2e9], "x"), ([2e9, 0.05], "y")] {
             let bar = Rectangle {
                 center: [0.0; 2],
                 size,
             };
             let chain = chain(0.2, &[(1.0, vec![bar]), (0.5, vec![])]);
-            let parameter = Parameter::BlockerSide(1);
-            assert_eq!(chain.name(parameter), "width of b");
-            assert_eq!(chain.value(parameter), Some(0.05));
+            let names: Vec<_> = chain.parameters().iter().map(|&p| chain.name(p)).collect();
+            let moved = format!("position {across} of b");
+            assert_eq!(names[2..4], ["width of b".to_owned(), moved]);
+            assert_eq!(names.len(), 5);
+            assert_eq!(chain.value(Parameter::BlockerSide(1)), Some(0.05));
         }
     }
 
@@ -352,7 +394,7 @@ mod tests {
     /// Builds a chain with every kind of parameter.
     fn rich() -> Chain {
         let mixed = Mask::Opaque {
-            shapes: vec![disc([0.0, 0.1], 0.2)],
+            shapes: vec![disc([0.3, 0.1], 0.2)],
             half_planes: [(-0.3, false), (0.4, true)]
                 .map(|(edge, above)| HalfPlane {
                     axis: 1,
@@ -381,6 +423,8 @@ mod tests {
                 "exponent of light []",
                 "travel a to b [m]",
                 "radius of b [m]",
+                "position x of b [m]",
+                "position y of b [m]",
                 "edge 1 of b [m]",
                 "edge 2 of b [m]",
                 "travel b to c [m]",
@@ -397,6 +441,37 @@ mod tests {
         }
         let point = chain_of(Light::Point { intensity: 1.0 }, [(1.0, None)]);
         assert_eq!(point.parameters(), [Parameter::Travel(0)]);
+    }
+
+    #[test]
+    fn positions_move_all_shapes_of_a_mask_and_no_edge() {
+        let mut chain = rich();
+        let moved = |chain: &Chain, axis, to| {
+            let moved = chain.with(Parameter::BlockerPosition(1, axis), to).unwrap();
+            let Operator::Visibility { mask, .. } = moved.operators[1].clone() else {
+                unreachable!("the second operator is a mask")
+            };
+            mask
+        };
+        let Mask::Opaque { half_planes, .. } = moved(&chain, 0, 0.0) else {
+            unreachable!("the mask is opaque")
+        };
+        let at = |x, y| Mask::Opaque {
+            shapes: vec![disc([x, y], 0.2)],
+            half_planes: half_planes.clone(),
+        };
+        assert_eq!(moved(&chain, 0, 0.5), at(0.5, 0.1));
+        assert_eq!(moved(&chain, 1, -0.5), at(0.3, -0.5));
+        let Operator::Visibility { mask, .. } = &mut chain.operators[1] else {
+            unreachable!("the second operator is a mask")
+        };
+        let corners = [[0.0, 0.0], [0.3, 0.0], [0.0, 0.3]].to_vec();
+        *mask = Mask::Aperture(Hole::Polygon(ConvexPolygon::new(corners).unwrap()));
+        let Mask::Aperture(hole) = moved(&chain, 1, 0.4) else {
+            unreachable!("the mask is an aperture")
+        };
+        let [x, y] = hole.moments().centroid;
+        assert!((x - 0.1).abs() < 1e-12 && (y - 0.4).abs() < 1e-12); // rounding
     }
 
     #[test]

@@ -65,19 +65,13 @@ impl Chain {
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Relative step for parameters of masks, which move shadows. This step is large enough for
-        // some rays to cross the shadow's edge, and small enough to change phases by at most a
-        // third of a radian.
-        const STEP: f64 = 1e-2;
-        const PHASE: f64 = 0.05;
+        // Steps of parameters of masks move shadows. They are large enough for some rays to cross the
+        // shadow's edge, and small enough to change phases by at most a third of a radian.
+        const RELATIVE_STEP: f64 = 1e-2;
+        const TURNS: f64 = 0.05;
         let moved = |parameter: &Parameter| {
-            let most = match self.unit(*parameter) {
-                "m" => PHASE / over.1.rho.max().max(f64::MIN_POSITIVE),
-                "1/m" => PHASE / over.0.x.half_width(),
-                _ => f64::INFINITY,
-            };
-            let step = STEP * parameter.scale(self.value(*parameter)?);
-            ShiftedModels::new(self, *parameter, step.min(most), &into)
+            let step = self.step(*parameter, (over.0, over.1), [RELATIVE_STEP, TURNS])?;
+            ShiftedModels::new(self, *parameter, step, &into)
         };
         let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
         moved.expect("parameters of the chain")
