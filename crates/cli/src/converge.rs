@@ -34,7 +34,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     })?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "this command needs a plane whose light has met only mirrors, interfaces and lenses, and no BRDF; this scene has no such plane",
+            "this command needs a plane behind a mirror, an interface, a lens or a surface with a lobe, and no Lambertian surface before the plane; this scene has no such plane",
         ));
     }
     say(&format!(

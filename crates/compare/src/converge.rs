@@ -2,7 +2,7 @@
 //! central ray shrinks.
 
 use crate::applicability::Applicability;
-use crate::system::print;
+use crate::system::{print, reflected};
 use crate::theories::Theory;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -20,7 +20,7 @@ pub struct Convergence {
     pub steps: Vec<[f64; 2]>,
     /// The order n. The error is proportional to eⁿ, and n is fitted by least squares to the last
     /// three steps. The order is `None` where the error is not clearly above the error of the
-    /// quadrature. This condition is not checked where several surfaces scatter.
+    /// quadrature. This condition is not checked where surfaces scatter.
     pub order: Option<f64>,
 }
 
@@ -32,9 +32,9 @@ const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// whether the chain is right.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks the light and the window of a plane behind specular surfaces. Where several surfaces
-/// scatter, shrinks their lobes instead. Widens the frequencies by the same factor. Returns `None`
-/// for any other plane. No photons are traced.
+/// Shrinks the light and the window of a plane behind specular surfaces. Where surfaces scatter
+/// light, shrinks their lobes and textures too. Widens the frequencies by the same factor. Returns
+/// `None` for any other plane, and for Lambertian surfaces. No photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
@@ -61,7 +61,8 @@ pub fn converge(
         let [error, own] = match &applicability.theory {
             Theory::Specular(view) => by_rays(scene, view, e, over)?,
             Theory::Reflections(view) => [by_paths(view, e, over)?, 0.0],
-            _ => return None,
+            Theory::Scattering(_) => [by_paths(&reflected(scene, plane)?, e, over)?, 0.0],
+            Theory::Parallel(_) | Theory::None => return None,
         };
         clear &= error > CLEAR * own;
         steps.push([e, error]);
@@ -93,7 +94,7 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// Returns the error of the chain where several surfaces scatter. The same paths give the exact sum
+/// Returns the error of the chain where surfaces scatter. The same paths give the exact sum
 /// and the sum of the chain. Their difference gives the error of the chain to a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,

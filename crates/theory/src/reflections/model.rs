@@ -8,15 +8,15 @@ use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::rays::shrunk_light;
 use crate::work::PredictionWork;
-use etendue_field::{Complex, Light};
+use etendue_field::{Complex, Light, Pattern, Reflectance, Weight};
 
 impl ReflectionSystem {
     fn before_plane(&self) -> &[PathSurface] {
         &self.surfaces[..self.visited]
     }
 
-    /// Returns the system with a light and lobes `factor` times as wide. Returns `None` if a
-    /// surface reflects diffusely, since its lobe has no width.
+    /// Returns the system with a light, lobes and textures `factor` times as wide. Returns `None` if
+    /// a surface reflects diffusely, since its lobe has no width.
     ///
     /// If windows become narrower and frequencies higher by the same factor, the error of
     /// first-order maps falls with the factor.
@@ -25,11 +25,10 @@ impl ReflectionSystem {
         let mut system = self.clone();
         system.light = shrunk_light(&self.light, factor);
         for surface in &mut system.surfaces[..self.visited] {
-            if surface.scatters() {
-                match surface.lobe_mut()? {
-                    ("exponent", exponent) => *exponent /= factor * factor,
-                    (_, roughness) => *roughness *= factor,
-                }
+            match &mut surface.interaction {
+                Interaction::Specular(_) => {}
+                Interaction::Diffuse { .. } => return None,
+                Interaction::Reflects(reflectance) => shrink(reflectance, factor)?,
             }
         }
         Some(system)
@@ -39,6 +38,30 @@ impl ReflectionSystem {
     fn last_scatterer(&self) -> Option<usize> {
         self.before_plane().iter().rposition(PathSurface::scatters)
     }
+}
+
+/// Makes the lobes and the patterns of a reflectance `factor` times as wide. Returns `None` if a
+/// term is Lambertian.
+fn shrink(reflectance: &mut Reflectance, factor: f64) -> Option<()> {
+    let Reflectance { terms, texture } = reflectance;
+    for term in &mut *terms {
+        match term.brdf.lobe.number_mut()? {
+            ("exponent", exponent) => *exponent /= factor * factor,
+            (_, roughness) => *roughness *= factor,
+        }
+    }
+    let weights = terms.iter_mut().filter_map(|term| match &mut term.weight {
+        Weight::One => None,
+        Weight::Pattern(pattern) | Weight::Rest(pattern) => Some(pattern),
+    });
+    for pattern in weights.chain(texture) {
+        match pattern {
+            Pattern::Cosine(grating) => grating.frequency /= factor,
+            Pattern::Checkerboard { period } => *period *= factor,
+            Pattern::Picture(picture) => picture.size = picture.size.map(|side| side * factor),
+        }
+    }
+    Some(())
 }
 
 impl PathSurface {
