@@ -30,7 +30,7 @@ use std::fmt::Write;
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]
 #[command(
-    version,
+    version = env!("ETENDUE_VERSION"),
     about,
     help_template = "{about-with-newline}\n{usage-heading} {usage}\n{before-help}{after-help}",
     after_help = "Options:

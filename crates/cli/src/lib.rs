@@ -37,6 +37,7 @@ mod warnings;
 mod workers;
 
 use args::{Cli, Command};
+use etendue_store::COMMIT;
 use exit::{ended, not_parsed};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ pub fn main() -> ExitCode {
 ///
 /// The signal handlers of the command stay installed after the function returns.
 pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    COMMIT.get_or_init(|| env!("ETENDUE_COMMIT"));
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => return not_parsed(&error),

@@ -5,9 +5,9 @@ use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
 use etendue_scene::{Emission, SceneFile};
 use etendue_store::Method;
-use etendue_store::VERSION;
 use etendue_store::machine;
 use etendue_store::sealed::json;
+use etendue_store::{COMMIT, VERSION};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -155,6 +155,8 @@ impl Stopwatch {
     pub fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
         struct Timing {
+            /// The commit of the program.
+            commit: Option<&'static str>,
             /// The command line.
             command: Vec<String>,
             seconds: BTreeMap<&'static str, f64>,
@@ -165,6 +167,7 @@ impl Stopwatch {
         }
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         json(&Timing {
+            commit: COMMIT.get().copied().filter(|commit| !commit.is_empty()),
             command: words.collect(),
             seconds: self.seconds.iter().copied().collect(),
             threads: rayon::current_num_threads(),

@@ -38,4 +38,4 @@ pub use results::{
     COVARIANCE, EXPORT, FIGURE, Finished, MAX_INDEX_BYTES, MEASUREMENT, PICTURE, PREDICTION, PROBE,
     Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, below, hash_of,
 };
-pub use version::VERSION;
+pub use version::{COMMIT, VERSION};
