@@ -53,7 +53,7 @@ impl Files {
             is_outside = true;
         }
         Err(if is_outside {
-            "is outside of the folder that a scene may read from, after links are followed"
+            "is outside of the folder that a scene may read from, after links are followed; --root DIR allows a folder above"
                 .to_owned()
         } else {
             "is not found".to_owned()

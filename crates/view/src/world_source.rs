@@ -3,7 +3,7 @@
 use etendue_import::{Imported, Options, import};
 use etendue_paths::Paths;
 use etendue_store::{ArgumentStyle, Failure, machine};
-use etendue_world::{Camera, Light, Projection, World};
+use etendue_world::{Camera, Light, Material, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::PathBuf;
 
@@ -122,7 +122,18 @@ pub(crate) fn paths(world: &World) -> Result<Paths, Failure> {
 
 /// Returns notes on omissions and approximations of the scene, for result files and the terminal.
 pub(crate) fn notes(imported: &Imported) -> Vec<String> {
-    imported.notes.iter().map(ToString::to_string).collect()
+    let notes = imported.notes.iter().map(ToString::to_string);
+    notes.chain(lost_light(&imported.world)).collect()
+}
+
+/// Returns a note if light may reach surfaces on a way that paths from the camera cannot find: from
+/// a light without size, by way of a mirror or smooth glass.
+fn lost_light(world: &World) -> Option<String> {
+    let has_no_size = |light: &Light| !matches!(light, Light::Constant { .. } | Light::Sky(_));
+    let is_smooth = world.materials.iter().any(Material::has_smooth_part);
+    (is_smooth && world.lights.iter().any(has_no_size)).then(|| {
+        "light of point, spot, directional and projected lights is not found behind smooth glass or mirrors, and errors of pictures do not include it; a light with a small size is found".to_owned()
+    })
 }
 
 /// Returns the camera that a viewpoint adds to the scene.

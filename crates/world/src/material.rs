@@ -62,6 +62,20 @@ pub enum Material {
     },
 }
 
+impl Material {
+    /// Checks whether a part of the material is a mirror or smooth glass.
+    #[must_use]
+    pub fn has_smooth_part(&self) -> bool {
+        match self {
+            Self::Conductor(of) => of.roughness.is_none(),
+            Self::Dielectric(of) => of.is_thin || of.roughness.is_none(),
+            Self::TwoSided(of) | Self::Blend { of, .. } => of.iter().any(Self::has_smooth_part),
+            Self::Mask { of, .. } => of.has_smooth_part(),
+            _ => false,
+        }
+    }
+}
+
 /// A metal: a mirror, or mirror-like microfacets (Walter et al. 2007).
 #[derive(Clone, Debug)]
 pub struct Conductor {

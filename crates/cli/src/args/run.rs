@@ -22,7 +22,9 @@ use std::time::Duration;
   etendue run scenes/colors.ron --rgb                              one result for each channel
 
 Results are in out/NAME unless --out names another folder. Photon counts may be written as 10_000_000, 1e7 \
-or 2^23.")]
+or 2^23.
+
+Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (folder, memory, interruption), 4 undecided")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
