@@ -212,7 +212,7 @@ class Result(Mapping[str, Plane]):
 
     def _repr_html_(self) -> str:
         rows = "".join(_row(plane.report) for plane in self._planes.values())
-        heads = "".join(f"<th>{head}</th>" for head in ("plane", "class", "p", "rel. error", "noise alone", "verdict"))
+        heads = "".join(f"<th>{head}</th>" for head in ("plane", "class", "p", "p of power", "rel. error", "noise alone", "verdict"))
         photons = f"{self.summary['photons']:,}".replace(",", "\u202f")
         return (
             f"<p><b>{escape(self.scene.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
@@ -230,11 +230,14 @@ def _row(report: Mapping[str, Any]) -> str:
     def share(value: float | None) -> str:
         return "–" if value is None else f"{100 * value:.3f} %"
 
-    p = report["p_value"]
+    def p(value: float | None) -> str:
+        return "–" if value is None else f"{value:.5f}"
+
     cells = [
         report["name"],
         report["class"],
-        "–" if p is None else f"{p:.5f}",
+        p(report["p_value"]),
+        p((report["radial"] or {}).get("p_value")),
         share(report["relative_error"]),
         share(report["noise_limit"]),
         report["verdict"],

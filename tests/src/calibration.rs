@@ -4,7 +4,7 @@
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{fig9b, predicted, sampled, traced, words};
+use crate::scenes::{named, predicted, sampled, traced, words};
 use crate::statistics::{mean, uniformity};
 use etendue_compare::{PlaneReport, Prediction, Test, compare};
 use etendue_scene::{Sampling, Scene};
@@ -12,10 +12,15 @@ use etendue_spectrum::{Batch, Measurement};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// The scene in which faults are planted.
+pub(crate) const MAIN: &str = "fig9b";
+
 /// The results of all seeds at one plane.
 struct CalibratedPlane {
     name: String,
     p_values: Vec<f64>,
+    /// The p-values of the radial spectrum.
+    of_power: Vec<f64>,
     chi2: Vec<f64>,
     /// The pull of every parameter: (measured − scene) / error.
     pulls: Vec<f64>,
@@ -42,28 +47,29 @@ const FAULTS: [(DependenceFault, &str); 2] = [
     ),
 ];
 
-/// Compares the scene `fig9b`, traced with `photons` photons for each seed, with its prediction,
+/// Compares a scene, traced with `photons` photons for each seed, with its prediction,
 /// and checks the statistics of the comparisons.
 ///
 /// Then the function checks the same statistics with planted faults: σ that is 10 % too small or
 /// too large, and dependent batches. Each of the planted faults must be detected.
 pub(crate) fn calibration(
+    name: &'static str,
     seeds: Range<u64>,
     photons: u64,
     sampling: Sampling,
 ) -> Vec<ReportSection> {
     // With fewer seeds, a change of the variance by 3 % cannot be detected.
     let count = seeds.end - seeds.start;
-    let plants = count >= 1000 && seeds.start == 1;
+    let plants = count >= 1000 && seeds.start == 1 && name == MAIN;
     let faults = FAULTS.iter().filter(|_| plants);
     let faults: Vec<Option<DependenceFault>> = faults.map(|(fault, _)| Some(*fault)).collect();
-    let scene = sampled(fig9b(photons, 1), sampling);
+    let scene = sampled(named(name, Some(photons), Some(1)), sampling);
     let all = sample(seeds, &scene, &[&[None], &faults[..]].concat());
     let seeds = count;
     let judged = |scale: f64| judge(&all[0], seeds, &scene, scale);
     let mut sections = vec![judged(1.0)];
     let sound = sections[0].passes();
-    for scale in [0.9, 1.1] {
+    for scale in [0.9, 1.1].into_iter().filter(|_| name == MAIN) {
         let title = format!("The same with σ scaled by {scale}");
         let text = "A fault is planted in the stated errors. Required: the calibration fails by \
             the bounds above.";
@@ -118,6 +124,7 @@ fn sample(
         CalibratedPlane {
             name: reports[0][fault][i].name.clone(),
             p_values: of_plane().filter_map(|r| r.p_value).collect(),
+            of_power: of_plane().filter_map(|r| r.radial?.p_value).collect(),
             chi2: of_plane().filter_map(|r| r.chi2_per_dof).collect(),
             pulls: of_plane()
                 .flat_map(|r| r.parameters.iter())
@@ -168,6 +175,7 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;
     for plane in planes {
         let uniform = uniformity(&plane.p_values);
+        let of_power = uniformity(&plane.of_power);
         let chi2: Vec<f64> = plane.chi2.iter().map(|t| t / (scale * scale)).collect();
         let [chi2, error] = mean(&chi2);
         let squares: Vec<f64> = plane.pulls.iter().map(|z| (z / scale).powi(2)).collect();
@@ -175,11 +183,24 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         // A pull from R = 64 batches has Student's distribution: the mean of its square is 63/61.
         let expected_pull = 63.0 / 61.0;
         let share = (below(&plane.p_values) - 0.1).abs();
+        let share_of_power = (below(&plane.of_power) - 0.1).abs();
         let level = 1.0 - 0.99_f64.powf(1.0 / planes.len() as f64);
         let few = "four standard errors, and the few frequencies whose residual is real";
         let (apart, off) = ((chi2 - 1.0).abs(), (pull - expected_pull).abs());
         let checks = vec![
             Check::new("uniform p", uniform, AtLeast(level), "1 % over the planes"),
+            Check::new(
+                "p of power",
+                of_power,
+                AtLeast(level),
+                "1 % over the planes",
+            ),
+            Check::new(
+                "p of power < 10 %",
+                share_of_power,
+                Below(allowed_each),
+                "three deviations",
+            ),
             Check::new("p < 10 %", share, Below(allowed_each), "three deviations"),
             Check::new("χ²/dof", apart, Below(4.0 * error + 0.003), few),
             Check::new("pull", off, Below(4.0 * pull_error), "four standard errors"),
@@ -188,6 +209,8 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
             plane.name.clone(),
             format!("{uniform:.3}"),
             format!("{:.1} %", 100.0 * below(&plane.p_values)),
+            format!("{of_power:.3}"),
+            format!("{:.1} %", 100.0 * below(&plane.of_power)),
             format!("{chi2:.4} ± {error:.4}"),
             format!("{pull:.3} ± {pull_error:.3}"),
         ];
@@ -202,17 +225,21 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         format!("{:.1} %", 100.0 * share),
         "".into(),
         "".into(),
+        "".into(),
+        "".into(),
     ];
     rows.push(Row::new(cells, vec![check]));
     ReportSection {
         title: format!(
-            "Calibration over {seeds} seeds at {:.0e} photons, {}",
+            "Calibration of {} over {seeds} seeds at {:.0e} photons, {}",
+            scene.name,
             scene.run.photons as f64,
             words(scene.run.sampling)
         ),
         text: format!(
-            "The main scene is measured with many seeds, to test whether p-values and stated \
-            errors are correct. *KS p of uniformity* is the p-value of a Kolmogorov–Smirnov test \
+            "A scene is measured with many seeds, to test whether p-values and stated errors are \
+            correct: the p of the slices, and the p of power, which is that of the radial \
+            spectrum. *KS p of uniformity* is the p-value of a Kolmogorov–Smirnov test \
             of whether p is uniform. *p < 10 %* is the share of seeds with such a p. A pull is \
             the deviation of a parameter from the scene, in units of its stated error. Required: \
             p is uniform by the Kolmogorov–Smirnov test at 1 % over all planes together. The \
@@ -230,6 +257,8 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
             "plane",
             "KS p of uniformity",
             "p < 10 %",
+            "KS p of power",
+            "p of power < 10 %",
             "mean χ²/dof",
             "mean squared pull",
         ],

@@ -1,12 +1,13 @@
 //! Faults planted in the prediction or in the photons, which a comparison must reject.
 
 mod holes;
+mod power;
 mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, named, traced};
-use etendue_compare::{Residuals, chain, sidak};
+use etendue_compare::{Residuals, TESTS, chain, radial, sidak};
 use etendue_field::{
     Complex, Crossing, Ledger, Mask, PhotonSource, Rectangle, Shape, Slices, VirtualPlane,
 };
@@ -14,6 +15,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
+pub(crate) use power::power;
 pub(crate) use smallest::smallest;
 
 /// Returns the section on all faults planted in the main scene; its first row is the comparison
@@ -52,12 +54,13 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     ReportSection {
         title: format!("Planted faults at {:.0e} photons", photons as f64),
         text: "Each fault is planted in the prediction or in the photons, and every plane is \
-              compared again. The second column has the p-values of the planes in order. A dash \
+              compared again. The second column has the p-values of the planes in order, and the \
+              third column those of their radial spectra. A dash \
               stands for a plane that the fault does not change, and the smallest possible p is \
               0.00005. Required: the run is rejected with every fault, and accepted without a \
               fault."
             .to_owned(),
-        header: vec!["fault", "p of each plane", "run is"],
+        header: vec!["fault", "p of each plane", "p of its power", "run is"],
         rows,
         checks: Vec::new(),
     }
@@ -114,7 +117,13 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
               fault does not change. Required: the run is rejected with every fault, and accepted \
               without a fault."
             .to_owned(),
-        header: vec!["scene", "fault", "p of each plane", "run is"],
+        header: vec![
+            "scene",
+            "fault",
+            "p of each plane",
+            "p of its power",
+            "run is",
+        ],
         rows,
         checks,
     }
@@ -254,18 +263,34 @@ const NONE: &str = "none";
 type Predict = dyn Fn(&Scene, &VirtualPlane) -> Option<Slices>;
 
 fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &Predict) -> Row {
-    let p_value = |(i, plane): (usize, &VirtualPlane)| {
-        let prediction = predict(scene, plane)?;
-        Residuals::new(measurement, i, &prediction).p_value(scene.run.seed)
+    let p_values = |(i, plane): (usize, &VirtualPlane)| {
+        let prediction = predict(scene, plane);
+        prediction.map_or([None; 2], |prediction| {
+            p_values(scene, measurement, (i, &prediction, &[]))
+        })
     };
-    let p_values: Vec<Option<f64>> = scene.planes.iter().enumerate().map(p_value).collect();
-    judged(scene, name, &p_values)
+    let all: Vec<[Option<f64>; 2]> = scene.planes.iter().enumerate().map(p_values).collect();
+    judged(scene, name, &all)
 }
 
-/// Returns the row of a fault that has the given p-value at each plane.
-fn judged(scene: &Scene, name: &'static str, p_values: &[Option<f64>]) -> Row {
-    let level = sidak(scene.run.alpha, scene.planes.len());
+/// Returns the p-value of the slices of a plane, and that of its radial spectrum.
+fn p_values(
+    scene: &Scene,
+    measurement: &Measurement,
+    (index, prediction, replicates): (usize, &Slices, &[Slices]),
+) -> [Option<f64>; 2] {
+    let residuals = Residuals::between(measurement, index, prediction, replicates);
+    let seed = scene.run.seed;
+    let power = radial(measurement, index, prediction, replicates, seed);
+    [residuals.p_value(seed), power.p_value]
+}
+
+/// Returns the row of a fault that has the given p-values at each plane: of the slices, and of the
+/// radial spectrum.
+fn judged(scene: &Scene, name: &'static str, p_values: &[[Option<f64>; 2]]) -> Row {
+    let level = sidak(scene.run.alpha, TESTS * scene.planes.len());
     let least = p_values
+        .as_flattened()
         .iter()
         .flatten()
         .copied()
@@ -274,15 +299,20 @@ fn judged(scene: &Scene, name: &'static str, p_values: &[Option<f64>]) -> Row {
         NONE => Check::p("accepted", Some(least), level),
         _ => Check::new("rejected", least, Below(level), "a fault is planted"),
     };
-    let show = |p: &Option<f64>| p.map_or("–".to_owned(), |p| format!("{p:.5}"));
-    let p_values: Vec<String> = p_values.iter().map(show).collect();
+    let shown = [0, 1].map(|kind| joined(p_values.iter().map(|p| p[kind])));
     let outcome = if least < level {
         "rejected"
     } else {
         "accepted"
     };
-    let cells = vec![name.to_owned(), p_values.join(", "), outcome.to_owned()];
+    let [slices, power] = shown;
+    let cells = vec![name.to_owned(), slices, power, outcome.to_owned()];
     Row::new(cells, vec![check])
+}
+
+fn joined(p_values: impl Iterator<Item = Option<f64>>) -> String {
+    let show = |p: Option<f64>| p.map_or("–".to_owned(), |p| format!("{p:.5}"));
+    p_values.map(show).collect::<Vec<_>>().join(", ")
 }
 
 fn unchanged(scene: &Scene, plane: &VirtualPlane) -> Option<Slices> {

@@ -177,10 +177,13 @@ fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<Ful
 
 /// Returns a table row that summarises the p-values of many seeds.
 fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
-    let p: Vec<f64> = found.iter().filter_map(|report| report.p_value).collect();
+    let p: Vec<f64> = found
+        .iter()
+        .filter_map(|report| report.power.p_value)
+        .collect();
     let chi2: Vec<f64> = found
         .iter()
-        .filter_map(|report| report.chi2_per_bin)
+        .filter_map(|report| report.power.chi2_per_bin)
         .collect();
     let uniform = uniformity(&p);
     let n = found.len() as f64;
@@ -210,7 +213,7 @@ fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     ];
     let cells = vec![
         name.to_owned(),
-        found[0].bins.to_string(),
+        found[0].power.bins.to_string(),
         format!("{uniform:.3}"),
         format!("{:.1} %", 100.0 * low),
         format!("{chi2:.3} ± {error:.3}"),
@@ -257,13 +260,13 @@ fn faults(photons: u64) -> ReportSection {
     let sound = predicted(&scene);
     let found = |name: &str, prediction: &PredictedField, rejected: bool| {
         let report = compared(&scene, &field, prediction);
-        let p = report.p_value.unwrap_or(f64::NAN);
+        let p = report.power.p_value.unwrap_or(f64::NAN);
         let check = if rejected {
             Check::new("rejected", p, Below(LEVEL), "a fault is planted")
         } else {
             Check::new("accepted", p, AtLeast(LEVEL), "no fault is planted")
         };
-        let chi2 = report.chi2_per_bin.unwrap_or(f64::NAN);
+        let chi2 = report.power.chi2_per_bin.unwrap_or(f64::NAN);
         Row::new(
             vec![name.to_owned(), format!("{p:.5}"), format!("{chi2:.2}")],
             vec![check],

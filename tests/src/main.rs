@@ -421,6 +421,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
 fn faults(photons: u64) -> Vec<ReportSection> {
     vec![
         faults::planted(photons, SEED),
+        faults::power(photons, SEED),
         faults::smallest(photons, SEED),
     ]
 }
@@ -428,8 +429,12 @@ fn faults(photons: u64) -> Vec<ReportSection> {
 /// Returns the sections on calibration, for photons from lattices, from nets and from independent
 /// random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
-    let kinds = [Sampling::Lattice, Sampling::Net, Sampling::Random].into_iter();
-    let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));
+    let others = ["grating", "two_layers"].map(|scene| (scene, Sampling::Lattice));
+    let kinds = [Sampling::Lattice, Sampling::Net, Sampling::Random];
+    let main = kinds.map(|kind| (calibration::MAIN, kind));
+    let all = main.into_iter().chain(others);
+    let sections =
+        all.flat_map(|(scene, kind)| calibration::calibration(scene, seeds.clone(), photons, kind));
     sections.collect()
 }
 

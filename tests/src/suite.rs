@@ -3,7 +3,7 @@
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
-use etendue_compare::{PlaneComparison, PlaneReport, Verdict, sidak};
+use etendue_compare::{PlaneComparison, PlaneReport, TESTS, Verdict, sidak};
 use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -26,8 +26,8 @@ pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
         .iter()
         .map(|(name, _)| named(name, photons, None))
         .collect();
-    let planes = scenes.iter().map(|scene| scene.planes.len()).sum();
-    let level = sidak(ALPHA, planes);
+    let planes: usize = scenes.iter().map(|scene| scene.planes.len()).sum();
+    let level = sidak(ALPHA, TESTS * planes);
     let outcomes: Vec<SuiteRun> = scenes.into_iter().map(|scene| run(scene, level)).collect();
     vec![
         table(&outcomes, planes, level),

@@ -224,7 +224,7 @@ mod tests {
         let bins = RadialBins::new(&grid);
         let p = |exact: &PredictedField| {
             let (report, ..) = compared(&bins, &groups, exact, 1);
-            report.p_value.unwrap()
+            report.power.p_value.unwrap()
         };
         let closed = closed_form(&chain, plane, over).unwrap();
         assert!(p(&closed) > 0.01); // a single test with fixed nets

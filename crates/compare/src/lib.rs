@@ -27,7 +27,9 @@ mod memory;
 mod noise;
 mod parallel;
 mod plane;
+mod power;
 mod prediction;
+mod radial;
 mod report;
 mod residuals;
 mod score;
@@ -53,7 +55,9 @@ pub use full_radial::{FullRadialComparison, FullRadialReport};
 pub use memory::Memory;
 pub use noise::noise_dof;
 pub use plane::{MIN_PHOTONS_PER_BATCH, PlaneComparison, compare};
+pub use power::PowerReport;
 pub use prediction::{PredictedParameter, Prediction};
+pub use radial::radial;
 pub use report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
     WedgeShare,
@@ -64,5 +68,5 @@ pub use system::{scattered, system};
 pub use theories::Theory;
 pub use two_samples::{Estimate, Sample, TwoSamples, pull};
 pub use validity::OffPatches;
-pub use verdict::{Test, Verdict, sidak};
+pub use verdict::{TESTS, Test, Verdict, sidak};
 pub use work::{TooMuchWork, seconds, too_much_work};

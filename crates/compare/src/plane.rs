@@ -6,7 +6,9 @@ use crate::first_order::FirstOrderReport;
 use crate::full_radial::FullRadialComparison;
 use crate::heavy_rays::too_few;
 use crate::noise::noise_dof;
+use crate::power::PowerReport;
 use crate::prediction::Prediction;
+use crate::radial::RadialTest;
 use crate::report::{Covariance, HighFrequencyShare, Pair, PlaneReport, WedgeShare};
 use crate::residuals::{Residuals, largest, of_transform};
 use crate::score::{ParameterReport, score};
@@ -134,11 +136,23 @@ struct ComparedSides<'a> {
     predicted_radial: &'a Array2<f64>,
 }
 
+/// The tests of a plane: of its slices, and of its radial spectrum.
+struct PlaneTests {
+    p_value: Option<f64>,
+    chi2_per_dof: Option<f64>,
+    radial: PowerReport,
+}
+
+impl PlaneTests {
+    fn are_passed(&self, test: &Test) -> bool {
+        test.accepts(self.p_value) && test.accepts(self.radial.p_value)
+    }
+}
+
 /// The outcome of a comparison.
 struct Judgement {
     agreement: Agreement,
-    p_value: Option<f64>,
-    chi2_per_dof: Option<f64>,
+    tests: PlaneTests,
     first_order: Option<FirstOrderReport>,
     verdict: Verdict,
     photons_needed: Option<f64>,
@@ -148,20 +162,18 @@ struct Judgement {
 impl ComparedSides<'_> {
     fn judged(&self, test: &Test) -> Judgement {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
-        let mut tested = Cow::Borrowed(self.residuals);
-        let mut p_value = tested.p_value(test.seed);
-        if !test.accepts(p_value) {
+        let mut tests = self.tests(None, test);
+        if !tests.are_passed(test) {
             // The error of the photons' transform may exceed their noise.
-            let within = self.residuals.forgiving(self.predicted, 0.0);
-            let p_within = within.p_value(test.seed);
-            if test.accepts(p_within) {
-                (tested, p_value) = (Cow::Owned(within), p_within);
+            let within = self.tests(Some(0.0), test);
+            if within.are_passed(test) {
+                tests = within;
             }
         }
         let agrees = if self.predicted.is_dark() {
             self.is_dark()
         } else {
-            test.accepts(p_value)
+            tests.are_passed(test)
                 || agreement.is_explained(self.prediction)
                 || self.is_excused(test)
         };
@@ -179,8 +191,7 @@ impl ComparedSides<'_> {
         let has_wrong_map = first_order.as_ref().map(|f| f.verdict) == Some(Verdict::Fail);
         Judgement {
             agreement,
-            p_value,
-            chi2_per_dof: tested.chi2_per_dof(self.variance),
+            tests,
             first_order,
             photons_needed: photons_needed.filter(|_| open.is_some()),
             open,
@@ -263,10 +274,25 @@ impl ComparedSides<'_> {
     /// prediction by the possible error of a quadrature or of the photons' transform.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
-        error.is_some_and(|error| {
-            let within = self.residuals.forgiving(self.predicted, error);
-            test.accepts(within.p_value(test.seed))
-        })
+        error.is_some_and(|error| self.tests(Some(error), test).are_passed(test))
+    }
+
+    /// Tests the difference between measurement and prediction, or between the measurement and the
+    /// closest spectrum within a relative error of the prediction
+    /// ([`forgiving`](Residuals::forgiving)).
+    fn tests(&self, within: Option<f64>, test: &Test) -> PlaneTests {
+        let forgiven = within.map(|error| self.residuals.forgiven(self.predicted, error));
+        let tested = match &forgiven {
+            Some(forgiven) => Cow::Owned(self.residuals.without(forgiven)),
+            None => Cow::Borrowed(self.residuals),
+        };
+        let measured = (self.measurement, self.index);
+        let radial = RadialTest::new(measured, self.predicted, &self.prediction.replicates);
+        PlaneTests {
+            p_value: tested.p_value(test.seed),
+            chi2_per_dof: tested.chi2_per_dof(self.variance),
+            radial: radial.report(forgiven.as_ref(), test.seed),
+        }
     }
 
     /// Returns the number of photons with which the comparison would be decided. Returns `None`
@@ -355,8 +381,9 @@ impl ComparedSides<'_> {
             excess_squared_error: agreement.excess_squared_error.filter(|_| tells_noise),
             noise_floor_db: agreement.noise_floor_db.filter(|_| tells_noise),
             noise_dof: noise_dof(self.measurement, self.index)?,
-            chi2_per_dof: judged.chi2_per_dof.filter(|_| tells_noise),
-            p_value: judged.p_value.filter(|_| tells_noise),
+            chi2_per_dof: judged.tests.chi2_per_dof.filter(|_| tells_noise),
+            p_value: judged.tests.p_value.filter(|_| tells_noise),
+            radial: tells_noise.then_some(judged.tests.radial),
             parameters: if tells_noise {
                 self.parameters()
             } else {
@@ -560,7 +587,7 @@ impl PlaneComparison {
     ) {
         let report = &mut self.report;
         let numbers = full_radial.report;
-        let disagrees = !test.accepts(numbers.p_value);
+        let disagrees = !test.accepts(numbers.power.p_value);
         let error = prediction.systematic_error().zip(report.noise_limit);
         let is_excused = error.is_some_and(|(error, noise)| error > UNSEEN * noise);
         report.full_radial = Some(numbers);

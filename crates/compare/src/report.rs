@@ -3,6 +3,7 @@
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::full_radial::FullRadialReport;
+use crate::power::PowerReport;
 use crate::score::ParameterReport;
 use crate::verdict::Verdict;
 use etendue_field::Frame;
@@ -130,8 +131,11 @@ pub struct PlaneReport {
     pub noise_dof: Option<f64>,
     /// Mean of |S − F|²/σ². It is corrected for the bias that arises because σ² is an estimate.
     pub chi2_per_dof: Option<f64>,
-    /// Probability of a disagreement at least this large if the prediction is true.
+    /// Probability of a disagreement of the slices at least this large if the prediction is true.
     pub p_value: Option<f64>,
+    /// The comparison of the radial spectrum; `None` if a batch has no photons. The plane passes
+    /// only if this p-value and the p-value of the slices pass.
+    pub radial: Option<PowerReport>,
     /// The score test of each parameter of the chain.
     pub parameters: Vec<ParameterReport>,
     /// Shear slope of the radial spectrum, metres.

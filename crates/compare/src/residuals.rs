@@ -20,7 +20,7 @@ pub struct Residuals {
 }
 
 /// Number of rounds of random signs. With this number, the p-value is a multiple of 1/20,000.
-pub(crate) const ROUNDS: u64 = 19_999;
+const ROUNDS: u64 = 19_999;
 /// Number of sums that are computed side by side, which the compiler turns into vector instructions.
 const LANES: usize = 8;
 /// Error of the fast transform of photons, as a share of the largest value: at most 2·10⁻⁷ with
@@ -109,6 +109,20 @@ impl Residuals {
     /// error of the fast transform, which is relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
+        self.without(&self.forgiven(prediction, error))
+    }
+
+    /// Returns the residuals with a part of their mean subtracted from each.
+    pub(crate) fn without(&self, part: &Array3<Complex>) -> Self {
+        let parts = self.parts.iter().map(|residual| residual - part);
+        Self {
+            grid: self.grid,
+            parts: parts.collect(),
+        }
+    }
+
+    /// Returns the part of the mean residual that [`Self::forgiving`] removes.
+    pub(crate) fn forgiven(&self, prediction: &Slices, error: f64) -> Array3<Complex> {
         let mut moved = self.mean();
         let of_transform = TRANSFORM * largest(&prediction.half);
         moved.zip_mut_with(&prediction.half, |mean, f| {
@@ -117,11 +131,7 @@ impl Residuals {
                 *mean *= ((error * modulus(*f)).max(of_transform) / distance).min(1.0);
             }
         });
-        let parts = self.parts.iter().map(|part| part - &moved);
-        Self {
-            grid: self.grid,
-            parts: parts.collect(),
-        }
+        moved
     }
 
     /// Returns the number of residuals R.
@@ -321,31 +331,38 @@ impl Residuals {
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis, a
     /// residual and its negative are equally likely. Therefore the statistic with random signs has
     /// the same distribution as the observed statistic. The random signs also account for
-    /// correlations between neighbouring frequencies. The p-value is the share of rounds in which
-    /// the statistic is at least as large as the observed value. The observed signs count as one
-    /// round.
+    /// correlations between neighbouring frequencies.
     ///
     /// Returns `None` when all residuals are zero, for example when no light is measured or
     /// predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);
-        if products.diag().sum() <= 0.0 {
-            return None;
-        }
-        let r = self.count();
-        let observed = signed_sums(&products, &vec![[1.0; LANES]; r])[0];
-        let reached: usize = (0..ROUNDS)
-            .step_by(LANES)
-            .map(|first| {
-                let sums = signed_sums(&products, &signs_of_rounds(seed, first, r));
-                // The last block has fewer rounds than lanes.
-                let drawn = sums.iter().zip(first..ROUNDS);
-                drawn.filter(|(sum, _)| **sum >= observed).count()
-            })
-            .sum();
-        Some((reached + 1) as f64 / (ROUNDS + 1) as f64)
+        let is_noisy = products.diag().sum() > 0.0;
+        is_noisy.then(|| p_of_signs(&products, self.count(), seed, |signs| signs))
     }
+}
+
+/// Returns the p-value of a quadratic form of `count` random signs, or of what `factors` makes of
+/// the signs: factors that are 1 or −1. It is the share of rounds in which the form is at least as
+/// large as for signs that are all 1, which count as one round.
+pub(crate) fn p_of_signs(
+    form: &Array2<f64>,
+    count: usize,
+    seed: u64,
+    factors: impl Fn(Vec<[f64; LANES]>) -> Vec<[f64; LANES]>,
+) -> f64 {
+    let observed = signed_sums(form, &factors(vec![[1.0; LANES]; count]))[0];
+    let reached: usize = (0..ROUNDS)
+        .step_by(LANES)
+        .map(|first| {
+            let sums = signed_sums(form, &factors(signs_of_rounds(seed, first, count)));
+            // The last block has fewer rounds than lanes.
+            let drawn = sums.iter().zip(first..ROUNDS);
+            drawn.filter(|(sum, _)| **sum >= observed).count()
+        })
+        .sum();
+    (reached + 1) as f64 / (ROUNDS + 1) as f64
 }
 
 /// Panics if the measured and the predicted slices have different frequencies.
@@ -387,7 +404,7 @@ fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
 }
 
 /// Returns random signs for the batches of one round.
-pub(crate) fn signs(seed: u64, round: u64) -> impl Iterator<Item = f64> {
+fn signs(seed: u64, round: u64) -> impl Iterator<Item = f64> {
     let words = (0..).flat_map(move |block| random::words(seed, Stream::Flip, round, block));
     words.flat_map(|word| (0..32).map(move |bit| 1.0 - 2.0 * f64::from(word >> bit & 1)))
 }

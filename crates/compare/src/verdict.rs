@@ -15,11 +15,14 @@ pub struct Test {
     pub seed: u64,
 }
 
+/// The number of tests of a plane: a test of the slices, and a test of the radial spectrum.
+pub const TESTS: usize = 2;
+
 impl Test {
-    /// Returns the test of a scene, with the level α for all its planes together.
+    /// Returns the test of a scene, with the level α for all tests of its planes together.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        Self::each(scene, 1)
+        Self::each(scene, TESTS)
     }
 
     /// Returns the test of a scene in which each plane is tested `times` times, with the level α
@@ -66,9 +69,9 @@ impl Verdict {
     }
 }
 
-/// Returns the level of each of `planes` tests for which the probability that all tests pass is 1 −
+/// Returns the level of each of `tests` tests for which the probability that all tests pass is 1 −
 /// `alpha` (Šidák 1967).
 #[must_use]
-pub fn sidak(alpha: f64, planes: usize) -> f64 {
-    1.0 - libm::pow(1.0 - alpha, 1.0 / planes as f64)
+pub fn sidak(alpha: f64, tests: usize) -> f64 {
+    1.0 - libm::pow(1.0 - alpha, 1.0 / tests as f64)
 }

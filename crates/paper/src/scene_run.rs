@@ -1,7 +1,7 @@
 //! Runs a scene for a figure.
 
 use crate::quality::Quality;
-use etendue_compare::{Applicability, PlaneComparison, Test};
+use etendue_compare::{Applicability, PlaneComparison, TESTS, Test};
 use etendue_field::FrequencyAxis;
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::{Reporter, judged};
@@ -43,7 +43,7 @@ impl Shot {
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         let case = MeasuredScene::of(scene, theories, Method::Photons, reporter)?;
-        let tests = if full_radial { field::TESTS } else { 1 };
+        let tests = if full_radial { field::TESTS } else { TESTS };
         let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
         if full_radial {
             field::compare(None, &case, &mut planes, reporter)?;

@@ -178,9 +178,9 @@ pub fn compare(
     Ok(())
 }
 
-/// The number of tests of a plane if its light field is saved: a test of the slices, and a test of
+/// The number of tests of a plane if its light field is saved: those of every plane, and a test of
 /// the full radial spectrum.
-pub const TESTS: usize = 2;
+pub const TESTS: usize = etendue_compare::TESTS + 1;
 
 /// The share of Nyquist up to which the grid is compared with the slices.
 const COMPARED: f64 = 0.5;

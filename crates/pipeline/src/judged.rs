@@ -5,7 +5,7 @@ use crate::inquiry::inquire;
 use crate::reporter::{Reporter, Work};
 use crate::summary::Summary;
 use crate::{enough_photons, field};
-use etendue_compare::{PlaneComparison, Test, compare};
+use etendue_compare::{PlaneComparison, TESTS, Test, compare};
 use etendue_store::{Failure, Results};
 use rayon::prelude::*;
 
@@ -27,7 +27,11 @@ impl Judged {
         reporter: &dyn Reporter,
     ) -> Result<Self, Failure> {
         let _stage = reporter.begin(Work::Stage("comparing"));
-        let tests = if fields.is_some() { field::TESTS } else { 1 };
+        let tests = if fields.is_some() {
+            field::TESTS
+        } else {
+            TESTS
+        };
         let mut planes = judged(case, &Test::each(&case.scene, tests))?;
         if let Some(results) = fields {
             field::compare(Some(results), case, &mut planes, reporter)?;

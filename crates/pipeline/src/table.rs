@@ -2,7 +2,7 @@
 
 use crate::summary::Summary;
 use etendue_compare::{
-    FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, Verdict, sidak,
+    FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, TESTS, Verdict, sidak,
 };
 use etendue_field::{brief, decimals, fixed, uncertain};
 
@@ -90,6 +90,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         "in window",
         "χ²/dof",
         "p",
+        "p of power",
         "rel. error",
         "noise alone",
         "shear slope [m]",
@@ -105,6 +106,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
             grouped(plane.in_window),
             number(plane.chi2_per_dof, 3),
             number(plane.p_value, 5),
+            number(plane.radial.and_then(|radial| radial.p_value), 5),
             percent(plane.relative_error),
             percent(plane.noise_limit),
             match (plane.slope.measured, plane.slope.error) {
@@ -195,11 +197,11 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     let row = |(name, found): (&String, FullRadialReport)| {
         vec![
             name.clone(),
-            found.bins.to_string(),
-            number(found.chi2_per_bin, 3),
-            number(found.p_value, 5),
-            percent(found.relative_error),
-            percent(found.noise_limit),
+            found.power.bins.to_string(),
+            number(found.power.chi2_per_bin, 3),
+            number(found.power.p_value, 5),
+            percent(found.power.relative_error),
+            percent(found.power.noise_limit),
             number(found.aliasing, 2),
         ]
     };
@@ -217,13 +219,13 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 }
 
 /// Returns the measured value of a parameter, and the smallest change of the parameter that the
-/// photons can detect. If the parameter is not zero, this change is a share of the parameter;
-/// otherwise the change has the parameter's unit. If the smallest detectable change is larger than
+/// photons can detect. This change is a share of the parameter, or has the parameter's unit if the
+/// parameter is zero or a position, which may be zero by chance. If the smallest detectable change is larger than
 /// the parameter, both texts are “–”. If the error of the value is larger than the value, only the
 /// text of the value is “–”.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
-    if parameter.scene.abs() < 1e-12 {
+    if parameter.scene.abs() < 1e-12 || parameter.name.starts_with("position ") {
         let change = format!("{:.1e} {}", parameter.detectable, parameter.unit);
         return [value, change.trim_end().to_owned()];
     }
@@ -283,7 +285,8 @@ pub fn verdict_text(summary: &Summary) -> String {
     match summary.verdict {
         Verdict::Pass => {
             let fields = summary.planes.iter().filter(|p| p.full_radial.is_some());
-            let level = sidak(summary.alpha, summary.planes.len() + fields.count());
+            let tests = TESTS * summary.planes.len() + fields.count();
+            let level = sidak(summary.alpha, tests);
             format!(
                 "pass: no plane disagrees with its prediction (α = {alpha} % over all planes: p ≥ {level:.4} at each)"
             )
@@ -381,6 +384,15 @@ mod tests {
         assert_eq!(shown(1.0, 1.0, 6.3e-6)[1], "0.0024 %");
         assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
         assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1 m"]);
+        let position = ParameterReport {
+            name: "position x of b".to_owned(),
+            unit: "m".to_owned(),
+            scene: 1e-5,
+            measured: 1e-3,
+            error: 2e-3,
+            detectable: 8e-3,
+        };
+        assert_eq!(measured(&position), ["0.0010 ± 0.0020", "8.0e-3 m"]);
     }
 
     #[test]

@@ -251,7 +251,12 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     };
     let chi2 = report.chi2_per_dof;
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
-    let full_radial = report.full_radial.and_then(|full| full.p_value);
+    // The power is tested too. Its p is stated where it may decide.
+    let of_power = report.radial.and_then(|radial| radial.p_value);
+    if let Some(p) = of_power.filter(|p| *p < 0.01) {
+        lines.push(format!("power: {}", probability(p)));
+    }
+    let full_radial = report.full_radial.and_then(|full| full.power.p_value);
     if let Some(p) = full_radial {
         lines.extend(["full radial:".to_owned(), format!("*p* = {p:.3}")]);
     }
@@ -267,9 +272,13 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
 }
 
 fn p_value(report: &PlaneReport) -> String {
-    match report.p_value {
-        None => "no photons".to_owned(),
-        Some(p) if p < 0.001 => "*p* < 0.001".to_owned(),
-        Some(p) => format!("*p* = {p:.3}"),
+    report.p_value.map_or("no photons".to_owned(), probability)
+}
+
+fn probability(p: f64) -> String {
+    if p < 0.001 {
+        "*p* < 0.001".to_owned()
+    } else {
+        format!("*p* = {p:.3}")
     }
 }

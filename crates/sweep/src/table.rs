@@ -102,6 +102,10 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
         ("class", text("class")),
         ("verdict", text("verdict")),
         ("p_value", share("p_value")),
+        (
+            "radial_p_value",
+            values(&|row| row.plane["radial"]["p_value"].as_f64()),
+        ),
         ("relative_error", share("relative_error")),
         ("noise_limit", share("noise_limit")),
         ("quantity", words(&|row| row.number.quantity.clone())),

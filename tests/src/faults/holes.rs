@@ -1,10 +1,10 @@
 //! Faults in the holes of apertures. One hole is a polygon, so nets of rays predict the light behind
 //! it, and comparisons include the error of these nets.
 
-use super::{NONE, judged};
+use super::{NONE, judged, p_values};
 use crate::report::Row;
 use crate::scenes::traced;
-use etendue_compare::{Residuals, chain};
+use etendue_compare::chain;
 use etendue_field::{ConvexPolygon, Hole, Mask, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -36,29 +36,32 @@ pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     ];
     let rows = changes.iter().map(|(name, change)| {
         let planes = scene.planes.iter().enumerate();
-        let p_values = planes.map(|(i, plane)| {
+        let each = planes.map(|(i, plane)| {
             let mut changed = chain(scene, plane);
             change(&mut changed);
             let is_changed = *name == NONE || changed != chain(scene, plane);
-            let found = is_changed.then(|| p_value(scene, &sound, (i, plane), &changed));
-            found.flatten()
+            let found = is_changed.then(|| of_chain(scene, &sound, (i, plane), &changed));
+            found.unwrap_or_default()
         });
-        judged(scene, name, &p_values.collect::<Vec<_>>())
+        judged(scene, name, &each.collect::<Vec<_>>())
     });
     rows.collect()
 }
 
-/// Returns the p-value of a plane that a chain predicts.
-fn p_value(
+/// Returns the p-values of a plane that a chain predicts.
+fn of_chain(
     scene: &Scene,
     measurement: &Measurement,
     (index, plane): (usize, &VirtualPlane),
     chain: &Chain,
-) -> Option<f64> {
+) -> [Option<f64>; 2] {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let found = chain.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);
-    let residuals = Residuals::between(measurement, index, &found.slices, &found.replicates);
-    residuals.p_value(scene.run.seed)
+    p_values(
+        scene,
+        measurement,
+        (index, &found.slices, &found.replicates),
+    )
 }
 
 /// Changes the hole of the aperture with the given name.

@@ -5,7 +5,7 @@ use crate::progress::progress;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, sampled, traced};
-use etendue_compare::{Residuals, sidak};
+use etendue_compare::{Residuals, TESTS, sidak};
 use etendue_field::{Crossing, VirtualPlane};
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
@@ -144,7 +144,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
 
 /// Checks whether photons and prediction disagree at any plane.
 fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
-    let level = sidak(scene.run.alpha, scene.planes.len());
+    let level = sidak(scene.run.alpha, TESTS * scene.planes.len());
     let p_value = |(i, plane): (usize, &VirtualPlane)| {
         let prediction = predict(scene, plane)?;
         Residuals::new(measurement, i, &prediction).p_value(scene.run.seed)

@@ -6,7 +6,7 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use crate::scenes::{compared, predicted, referred, traced, traced_backwards};
-use etendue_compare::{PlaneComparison, Verdict, sidak};
+use etendue_compare::{PlaneComparison, TESTS, Verdict, sidak};
 use etendue_field::{Lobe, Orientation, Quantity, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 
@@ -29,8 +29,8 @@ struct ShadedRun {
 /// `None`, each scene is traced with the number of photons in its file.
 pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
-    let planes = all.iter().map(|scene| scene.planes.len()).sum();
-    let level = sidak(ALPHA, planes);
+    let planes: usize = all.iter().map(|scene| scene.planes.len()).sum();
+    let level = sidak(ALPHA, TESTS * planes);
     let mut rows: Vec<Row> = Vec::new();
     let mut whole = String::new();
     for scene in all {

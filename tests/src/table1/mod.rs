@@ -19,7 +19,7 @@ pub(crate) use quadrature::apart;
 
 use crate::report::ReportSection;
 use crate::scenes::{compared, predicted, traced};
-use etendue_compare::{PlaneComparison, Prediction, sidak, system};
+use etendue_compare::{PlaneComparison, Prediction, TESTS, sidak, system};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::Observed;
@@ -60,8 +60,8 @@ impl TableRun {
 /// `None`, each scene is traced with the number of photons in its file.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
-    let planes = all.iter().map(|scene| scene.planes.len()).sum();
-    let level = sidak(ALPHA, planes);
+    let planes: usize = all.iter().map(|scene| scene.planes.len()).sum();
+    let level = sidak(ALPHA, TESTS * planes);
     let outcomes: Vec<TableRun> = all.into_iter().map(|scene| run(scene, level)).collect();
     let named = |name: &str| {
         let found = outcomes.iter().find(|o| o.scene.name == name);

@@ -3,7 +3,7 @@
 use super::effort::{Effort, PlaneEffort, TracePlan, targets};
 use super::found::{Found, SecondEstimate, verdict};
 use super::scene::{ALPHA, BATCHES, ProbeRequest, RESOLUTION, budget, seed_at};
-use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
+use etendue_compare::{Prediction, TESTS, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
 use etendue_paths::{BackwardProbe, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
@@ -206,7 +206,7 @@ impl Estimator<'_> {
     /// Compares the two estimates of a plane.
     fn compared(&self, i: usize, plane: &PlaneEstimates) -> Result<(Found, Prediction), Failure> {
         let test = Test {
-            level: sidak(ALPHA, self.comparisons() * self.probe.planes.len()),
+            level: sidak(ALPHA, TESTS * self.comparisons() * self.probe.planes.len()),
             resolution: RESOLUTION,
             seed: self.request.seed,
         };
