@@ -1,10 +1,12 @@
 """How far two result folders are apart: the largest distance of two arrays, relative to the norm of the first.
 
-usage: distance.py A B BOUND     fails beyond BOUND, and where folders hold other files, arrays or verdicts
+usage: distance.py A B BOUND            fails beyond BOUND, and where folders hold other files, arrays or verdicts
+       distance.py A B BOUND --kept     the same, but B may hold files that are not kept in A
 
-Arrays are those of .npz and .npy files. Numbers in other files are drawn from these, or rounded.
+Arrays are those of .npz and .npy files, and the columns of .csv files. Numbers in other files are drawn from these, or
+rounded.
 """
-import array, ast, json, math, pathlib, struct, sys, zipfile
+import array, ast, csv, json, math, pathlib, struct, sys, zipfile
 
 
 def npy(data):
@@ -21,9 +23,30 @@ def npy(data):
     return str(header), values
 
 
+def number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return None
+
+
+def columns(path):
+    """Each column of a table: its words, and its numbers."""
+    with path.open(newline="") as file:
+        header, *rows = csv.reader(file)
+    found = {}
+    for name, cells in zip(header, zip(*rows)):
+        numbers = [number(cell) for cell in cells]
+        words = [cell for cell, n in zip(cells, numbers) if n is None]
+        found[name] = str(words), array.array("d", [n for n in numbers if n is not None])
+    return found
+
+
 def arrays(path):
     if path.suffix == ".npy":
         return {"": npy(path.read_bytes())}
+    if path.suffix == ".csv":
+        return columns(path)
     with zipfile.ZipFile(path) as archive:
         return {name: npy(archive.read(name)) for name in archive.namelist()}
 
@@ -42,20 +65,24 @@ def distance(a, b):
 
 
 def verdicts(folder):
-    summary = json.loads((folder / "summary.json").read_text())
-    return summary["verdict"], [(plane["name"], plane.get("verdict")) for plane in summary["planes"]]
+    index = folder / "summary.json"
+    summary = json.loads((index if index.exists() else folder / "figure.json").read_text())
+    planes = [(plane.get("name"), plane.get("plane"), plane.get("verdict")) for plane in summary["planes"]]
+    return summary.get("verdict"), planes
 
 
-def main(first, second, bound):
+def main(first, second, bound, kept=""):
     first, second = pathlib.Path(first), pathlib.Path(second)
     files = [sorted(p.relative_to(f) for p in f.rglob("*") if p.is_file()) for f in (first, second)]
+    if kept:
+        files[1] = [file for file in files[1] if file in files[0]]
     if files[0] != files[1]:
         sys.exit(f"other files: {set(files[0]) ^ set(files[1])}")
     if verdicts(first) != verdicts(second):
         sys.exit(f"verdicts {verdicts(first)} and {verdicts(second)}")
     largest, where = 0.0, "none"
     for file in files[0]:
-        if file.suffix not in (".npy", ".npz"):
+        if file.suffix not in (".npy", ".npz", ".csv"):
             continue
         a, b = arrays(first / file), arrays(second / file)
         if a.keys() != b.keys():
@@ -70,4 +97,4 @@ def main(first, second, bound):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], float(sys.argv[3]))
+    main(sys.argv[1], sys.argv[2], float(sys.argv[3]), *sys.argv[4:])
