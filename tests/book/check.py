@@ -190,6 +190,16 @@ def check_commands(page: Path, program: Path) -> list[str]:
     return wrong
 
 
+def check_statements(page: Path) -> list[str]:
+    """The page on the paper states how many of its rows are of each kind."""
+    text = page.read_text()
+    rows = re.findall(r"^\| (?!statement).+$", text, flags=re.MULTILINE)
+    computed, future = [sum(f"*{kind}*" in row for row in rows) for kind in ("computed", "future work")]
+    stated = re.findall(r"Of (\d+) statements, (\d+) .*\n(\d+) .*? (\d+) are marked", text)
+    found = [str(n) for n in (len(rows), len(rows) - computed - future, computed, future)]
+    return [] if stated == [tuple(found)] else [f"{page}: states {stated}, but has {found}"]
+
+
 def check_schema(folder: Path, program: Path) -> list[str]:
     """All scenes of the repository fit the schema, and a few that are wrong do not."""
     import json
@@ -239,6 +249,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         environment = tools(Path(folder) / "bin", program)
         wrong += check_schema(Path(folder), program)
+        wrong += check_statements(TOP / "docs" / "paper.md")
         for page in pages:
             if blocks(page):
                 chapter = Path(folder) / page.stem
