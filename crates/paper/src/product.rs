@@ -8,56 +8,26 @@ use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::Residuals;
 use etendue_field::{
-    Complex, Crossing, Environment, FrequencyAxis, Ledger, Light, PhotonSource, Profile, SliceGrid,
-    TwoPlane, cis,
+    Complex, Crossing, Environment, FrequencyAxis, Light, Profile, SliceGrid, TwoPlane, cis,
 };
 use etendue_pipeline::{Work, method};
 use etendue_scene::Scene;
-use etendue_spectrum::measure;
+use etendue_spectrum::{mapped_photons, measure};
 use etendue_store::{Failure, Method};
 use etendue_theory::shading::environment::irradiance;
 use etendue_transform::gauss_legendre;
 use ndarray::Array3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Photons whose positions x = sin(k s)/k on a cylinder are replaced by the arc lengths s.
-struct ArcLengths {
-    source: Box<dyn PhotonSource>,
-    curvature: f64,
-}
-
-impl PhotonSource for ArcLengths {
-    fn emitted(&self, batch: u32) -> u64 {
-        self.source.emitted(batch)
-    }
-
-    fn is_precise(&self) -> bool {
-        self.source.is_precise()
-    }
-
-    fn parts(&self, batch: u32) -> u32 {
-        self.source.parts(batch)
-    }
-
-    fn emit_part(
-        &self,
-        batch: u32,
-        part: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let k = self.curvature;
-        let along = |crossing: &Crossing| Crossing {
-            ray: TwoPlane {
-                x: libm::asin((k * crossing.ray.x).clamp(-1.0, 1.0)) / k,
-                ..crossing.ray
-            },
-            ..*crossing
-        };
-        let mut record = |plane: usize, crossings: &[Crossing]| {
-            record(plane, &crossings.iter().map(along).collect::<Vec<_>>());
-        };
-        self.source.emit_part(batch, part, &mut record, progress)
+/// Returns a photon whose position x = sin(k s)/k on a cylinder of curvature k is replaced by the arc
+/// length s.
+fn at_arc_length(crossing: &Crossing, k: f64) -> Crossing {
+    Crossing {
+        ray: TwoPlane {
+            x: libm::asin((k * crossing.ray.x).clamp(-1.0, 1.0)) / k,
+            ..crossing.ray
+        },
+        ..*crossing
     }
 }
 
@@ -121,13 +91,11 @@ impl ShadedCylinder {
 
     /// Adds the light on an arc.
     fn add(&mut self, taken: &FigureData<'_>, scene: &Scene, center: f64) -> Result<(), Failure> {
-        let source = ArcLengths {
-            source: method::source(scene, Method::Photons)?,
-            curvature: self.curvature,
-        };
+        let (source, k) = (method::source(scene, Method::Photons)?, self.curvature);
+        let source = mapped_photons(source, move |crossing| at_arc_length(crossing, k));
         let bar = taken.reporter.begin(Work::Photons(scene.run.photons));
         let progress = |photons| bar.advance(photons);
-        let found = measure(&source, &scene.planes, 0..scene.run.batches, &progress);
+        let found = measure(&*source, &scene.planes, 0..scene.run.batches, &progress);
         self.batches.resize(
             found.batches().len(),
             vec![Complex::default(); self.rho.half + 1],

@@ -8,9 +8,10 @@ use crate::measured_power::box_window;
 use crate::radiance::RayRadiance;
 use crate::{VarianceError, WindowRadiance};
 use etendue_field::{
-    Crossing, Ledger, Orientation, PhotonSource, Profile, Quantity, Side, TwoPlane, VirtualPlane,
+    Crossing, Orientation, PhotonSource, Profile, Quantity, Side, TwoPlane, VirtualPlane,
 };
 use etendue_scene::Scene;
+use etendue_spectrum::mapped_photons;
 
 /// The rays from points of the light to points of a plane.
 #[derive(Clone, Debug)]
@@ -19,12 +20,6 @@ pub struct LightPoints {
     pub seen: VirtualPlane,
     /// The plane with points on the light in the places of slopes.
     pub plane: VirtualPlane,
-}
-
-/// A source of photons whose slopes are replaced by points on the light.
-struct PhotonsFromPoints<'a> {
-    source: Box<dyn PhotonSource + 'a>,
-    points: LightPoints,
 }
 
 /// The radiance along rays that are given by points on the light.
@@ -81,10 +76,8 @@ impl LightPoints {
     /// Returns photons that have points on the light in the places of slopes.
     #[must_use]
     pub fn photons<'a>(&self, source: Box<dyn PhotonSource + 'a>) -> Box<dyn PhotonSource + 'a> {
-        Box::new(PhotonsFromPoints {
-            source,
-            points: self.clone(),
-        })
+        let points = self.clone();
+        mapped_photons(source, move |crossing| points.crossing(crossing))
     }
 
     /// Returns the radiance at points of the window, which has points on the light in the places of
@@ -120,40 +113,6 @@ impl LightPoints {
             v: (point.y - point.v) / d,
             ..*point
         }
-    }
-}
-
-impl PhotonSource for PhotonsFromPoints<'_> {
-    fn emitted(&self, batch: u32) -> u64 {
-        self.source.emitted(batch)
-    }
-
-    fn is_precise(&self) -> bool {
-        self.source.is_precise()
-    }
-
-    fn parts(&self, batch: u32) -> u32 {
-        self.source.parts(batch)
-    }
-
-    fn emit_part(
-        &self,
-        batch: u32,
-        part: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let mut moved = Vec::new();
-        let record = &mut |plane: usize, crossings: &[Crossing]| {
-            moved.clear();
-            moved.extend(
-                crossings
-                    .iter()
-                    .map(|crossing| self.points.crossing(crossing)),
-            );
-            record(plane, &moved);
-        };
-        self.source.emit_part(batch, part, record, progress)
     }
 }
 
