@@ -105,10 +105,10 @@ pub(crate) fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
 
 /// The sums over all bins from which the test of a radial spectrum follows.
 ///
-/// The statistic is Σ U²/var U over the bins, where var U is any estimate that does not depend on the
-/// signs of the D_r. With the signs ε_r of the D_r, U is a sum of terms t_i
-/// times factors φ_i, which are the signs ε_r and the products ε_r ε_s. Therefore the statistic is
-/// a quadratic form of the φ, and its matrix Σ t tᵀ/var U is computed once for all signs.
+/// The statistic is Σ U²/var U over the bins, where var U is any estimate that does not depend on
+/// the signs of the D_r. With the signs ε_r of the D_r, U is a sum of terms t_i times factors φ_i,
+/// which are the signs ε_r and the products ε_r ε_s. Therefore the statistic is a quadratic form of
+/// the φ, and its matrix Σ t tᵀ/var U is computed once for all signs.
 #[derive(Clone)]
 pub(crate) struct PowerSums {
     groups: usize,
