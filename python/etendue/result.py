@@ -233,11 +233,12 @@ def _row(report: Mapping[str, Any]) -> str:
     def p(value: float | None) -> str:
         return "–" if value is None else f"{value:.5f}"
 
+    radial: Mapping[str, Any] | None = report["radial"]
     cells = [
         report["name"],
         report["class"],
         p(report["p_value"]),
-        p((report["radial"] or {}).get("p_value")),
+        p(radial and radial["p_value"]),
         share(report["relative_error"]),
         share(report["noise_limit"]),
         report["verdict"],
