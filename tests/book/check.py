@@ -27,6 +27,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 from blocks import Block, blocks, indented
@@ -34,6 +35,17 @@ from links import broken_links
 from workflow import go_through
 
 TOP = Path.cwd()
+# Kinds of evidence for statements of the paper.
+KINDS = [
+    "photons",
+    "rays",
+    "quadrature",
+    "picture",
+    "formula",
+    "definition",
+    "future work",
+    "not shown",
+]
 FEW = "2^16"
 # Its blocks need the Python package: python/tests/test_docs.py runs them.
 ELSEWHERE = ["package.md"]
@@ -191,13 +203,22 @@ def check_commands(page: Path, program: Path) -> list[str]:
 
 
 def check_statements(page: Path) -> list[str]:
-    """The page on the paper states how many of its rows are of each kind."""
+    """Each row of the page on the paper names its kind of evidence; the head counts the kinds."""
     text = page.read_text()
     rows = re.findall(r"^\| (?!statement).+$", text, flags=re.MULTILINE)
-    computed, future = [sum(f"*{kind}*" in row for row in rows) for kind in ("computed", "future work")]
-    stated = re.findall(r"Of (\d+) statements, (\d+) .*\n(\d+) .*? (\d+) are marked", text)
-    found = [str(n) for n in (len(rows), len(rows) - computed - future, computed, future)]
-    return [] if stated == [tuple(found)] else [f"{page}: states {stated}, but has {found}"]
+    wrong, found = [], Counter()
+    for row in rows:
+        cells = row.split(" |")
+        kind = cells[2].partition(":")[0].strip() if len(cells) == 4 else ""
+        found[kind] += 1
+        if kind not in KINDS:
+            wrong.append(f"{page}: a row without kind of evidence: {row}")
+    head = text.partition("\n## ")[0]
+    total = re.findall(r"Of (\d+) statements", head)
+    stated = {kind: int(n) for n, kind in re.findall(r"(\d+)(?: [a-z]+)* \*([a-z ]+)\*", head)}
+    if total != [str(len(rows))] or stated != found:
+        wrong.append(f"{page}: states {total} {stated}, but has {len(rows)} {dict(found)}")
+    return wrong
 
 
 def check_schema(folder: Path, program: Path) -> list[str]:
