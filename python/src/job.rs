@@ -1,7 +1,7 @@
 //! Scenes, with their measurements and predictions.
 
 use crate::live::alive;
-use crate::outcome::Outcome;
+use crate::outcome::{Measurement, Outcome, Prediction};
 use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
 use crate::scene::SceneArgument;
@@ -18,14 +18,6 @@ use std::sync::Arc;
 /// A scene with its measurement settings.
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Job(pub(crate) Arc<etendue_pipeline::Job>);
-
-/// The measurement of some or all batches of a scene.
-#[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Measurement(pub(crate) etendue_spectrum::Measurement);
-
-/// The prediction that a measurement is compared with.
-#[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Prediction(pub(crate) Vec<etendue_compare::Prediction>);
 
 #[pymethods]
 impl Job {

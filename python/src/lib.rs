@@ -32,9 +32,9 @@ mod _etendue {
     #[pymodule_export]
     use crate::import::import_scene;
     #[pymodule_export]
-    use crate::job::{Job, Measurement, Prediction};
+    use crate::job::Job;
     #[pymodule_export]
-    use crate::outcome::Outcome;
+    use crate::outcome::{Measurement, Outcome, Prediction};
     #[pymodule_export]
     use crate::probe::probe;
     #[pymodule_export]

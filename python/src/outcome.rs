@@ -1,7 +1,6 @@
 //! Provides the result of a comparison to Python.
 
 use crate::arrays::Arrays;
-use crate::job::{Measurement, Prediction};
 use crate::raised::raised;
 use etendue_compare::PlaneComparison;
 use etendue_field::ProjectionGrid;
@@ -12,6 +11,14 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
+
+/// The measurement of some or all batches of a scene.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Measurement(pub(crate) etendue_spectrum::Measurement);
+
+/// The prediction that a measurement is compared with.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Prediction(pub(crate) Vec<etendue_compare::Prediction>);
 
 /// A scene with its planes measured, predicted and compared.
 #[pyclass(frozen, module = "etendue._etendue")]

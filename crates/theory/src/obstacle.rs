@@ -1,9 +1,17 @@
 //! Occluders other than the masks of the first leg.
 
 use crate::barrier::Barrier;
-use crate::rays::LegRay;
 use etendue_field::{Frame, Mask, Patch};
 use glam::DVec3;
+
+/// A straight leg of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LegRay {
+    /// The point at which the leg starts.
+    pub(crate) point: DVec3,
+    /// The direction of the leg, a unit vector.
+    pub(crate) direction: DVec3,
+}
 
 /// An occluder, in the frame at the light; it stops every ray that meets it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! The modules of a crate and the dependencies between them, read from the source text.
 
+use super::source::{code, test_modules};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -10,18 +11,26 @@ pub(crate) type Module = Vec<String>;
 /// The modules of a crate, each with its source text.
 pub(crate) type Modules = BTreeMap<Module, String>;
 
-/// The names that a module imports, each with the path in its `use`.
-type Imports = BTreeMap<String, Vec<String>>;
-
 /// Maximum length of a chain of re-exports; a longer chain is a cycle.
 const MAX_REEXPORTS: usize = 8;
 
 /// Returns the modules below a source folder, each without comments and code compiled only for
 /// tests.
 pub(crate) fn modules(src: &Path) -> Modules {
-    let mut found = Modules::new();
-    collect(src, &Module::new(), &mut found);
-    found
+    let mut texts = Modules::new();
+    collect(src, &Module::new(), &mut texts);
+    let tests: Vec<Module> = texts
+        .iter()
+        .flat_map(|(module, text)| {
+            let names = test_modules(text).into_iter();
+            names.map(|name| [module.as_slice(), &[name]].concat())
+        })
+        .collect();
+    texts.retain(|module, _| !tests.iter().any(|test| module.starts_with(test)));
+    texts
+        .iter()
+        .map(|(module, text)| (module.clone(), code(text)))
+        .collect()
 }
 
 fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
@@ -40,19 +49,9 @@ fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
             if name != "lib" && name != "mod" {
                 module.push(name);
             }
-            found.insert(module, code(&fs::read_to_string(&path).unwrap()));
+            found.insert(module, fs::read_to_string(&path).unwrap());
         }
     }
-}
-
-/// Returns a text without tests, comments and string contents.
-pub(crate) fn code(text: &str) -> String {
-    let end = text.find("\n#[cfg(test)]\n").unwrap_or(text.len());
-    let lines = text[..end].lines();
-    let lines = lines.map(|line| line.split("//").next().unwrap_or_default());
-    let all = lines.collect::<Vec<_>>().join("\n");
-    let outside = all.split('"').step_by(2);
-    outside.collect::<Vec<_>>().join("\"\"")
 }
 
 /// Returns the cycles of modules that use each other, each sorted by name.
@@ -110,7 +109,7 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     let mut paths: Vec<Vec<String>> = own.map(|(_, path)| path.clone()).collect();
     paths.extend(paths_of(&body));
     let resolved = paths.iter().filter_map(|path| {
-        let path = absolute(modules, module, path)?;
+        let path = absolute(modules, module, path, 0)?;
         resolve(modules, &path, 0)
     });
     resolved.filter(|found| found != module).collect()
@@ -195,7 +194,7 @@ fn paths_of(body: &str) -> Vec<Vec<String>> {
 
 /// Returns a path relative to the root of the crate, or `None` if the path leads to another
 /// crate.
-fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Module> {
+fn absolute(modules: &Modules, module: &Module, path: &[String], depth: usize) -> Option<Module> {
     let mut base = module.clone();
     let mut path = path;
     match path.first()?.as_str() {
@@ -210,7 +209,8 @@ fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Modul
         first => {
             base.push(first.to_owned());
             if !modules.contains_key(&base) {
-                return None;
+                base.pop();
+                return imported(modules, &base, path, depth).flatten();
             }
             base.pop();
         }
@@ -226,20 +226,26 @@ fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
         .map(|n| path[..n].to_vec())
         .find(|part| modules.contains_key(part))?;
     let rest = &path[known.len()..];
-    let Some(name) = rest.first().filter(|_| depth < MAX_REEXPORTS) else {
-        return Some(known);
-    };
-    let (imports, _) = split(&modules[&known]);
-    let imports: Imports = imports
-        .into_iter()
-        .filter_map(|(_, path)| Some((path.last()?.clone(), path)))
-        .collect();
-    match imports.get(name) {
+    match imported(modules, &known, rest, depth) {
         None => Some(known),
-        Some(import) => {
-            let mut whole = absolute(modules, &known, import)?;
-            whole.extend(rest[1..].iter().cloned());
-            resolve(modules, &whole, depth + 1)
-        }
+        Some(whole) => resolve(modules, &whole?, depth + 1),
     }
+}
+
+/// Returns a path whose first name a module imports, relative to the root of the crate. Returns
+/// `None` if the module does not import it, and `Some(None)` if it comes from another crate.
+fn imported(
+    modules: &Modules,
+    module: &Module,
+    path: &[String],
+    depth: usize,
+) -> Option<Option<Module>> {
+    let (name, rest) = path.split_first()?;
+    let (imports, _) = split(&modules[module]);
+    let mut imports = imports.into_iter().map(|(_, path)| path);
+    // An import of the name itself, such as `use rand;`, leads out of the crate.
+    let import = imports.find(|import| import.last() == Some(name) && import.len() > 1);
+    let import = import.filter(|_| depth < MAX_REEXPORTS)?;
+    let whole = absolute(modules, module, &import, depth + 1);
+    Some(whole.map(|whole| [whole.as_slice(), rest].concat()))
 }

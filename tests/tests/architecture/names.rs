@@ -1,7 +1,7 @@
 //! Checks that each type name has one meaning, unless a reason for two meanings is stated.
 
 use super::files;
-use super::modules::code;
+use super::source::code;
 use std::collections::BTreeMap;
 
 /// Names that more than one type may have, each with the reason.
@@ -79,7 +79,7 @@ fn shared<'a>(
 
 #[test]
 fn types_have_names_of_their_own() {
-    let files = files();
+    let files = files(&["src"]);
     let found = shared(&files);
     let listed = |name: &str| SHARED_NAMES.iter().any(|(known, _)| *known == name);
     let unknown: BTreeMap<_, _> = found.iter().filter(|(name, _)| !listed(name)).collect();
@@ -106,6 +106,9 @@ fn a_planted_name_is_found() {
         ]
         .map(|(name, text)| (name.to_owned(), text.to_owned())),
     );
-    let expected = BTreeMap::from([("Place".to_owned(), vec!["a.rs", "b.rs"])]);
+    let expected = BTreeMap::from([
+        ("Other".to_owned(), vec!["b.rs", "c.rs"]),
+        ("Place".to_owned(), vec!["a.rs", "b.rs"]),
+    ]);
     assert_eq!(shared(&files), expected);
 }

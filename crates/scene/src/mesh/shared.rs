@@ -122,3 +122,14 @@ pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }
+
+/// Checks that numbers are within the range of coordinates.
+pub(super) fn check_coordinates<const N: usize>(
+    values: [f64; N],
+    place: impl Fn(usize) -> String,
+) -> Result<[f64; N], Fault> {
+    for (i, value) in values.into_iter().enumerate() {
+        check_coordinate(value, || place(i))?;
+    }
+    Ok(values)
+}

@@ -200,6 +200,18 @@ impl<const N: usize> AffineMap<N> {
     }
 }
 
+impl<const N: usize> SpectrumMap<N> {
+    /// Returns the effect on rays, z' = A z + t, where A is the transpose of the matrix and t is
+    /// the phase.
+    #[must_use]
+    pub fn rays(&self) -> AffineMap<N> {
+        AffineMap {
+            matrix: transpose(&self.matrix),
+            offset: self.phase,
+        }
+    }
+}
+
 impl AffineMap<2> {
     /// Returns the distance of the focus behind the map's end, −A₀₀/A₁₀ metres. Rays that were
     /// parallel before the map meet at the focus. The distance is negative for a virtual focus.

@@ -1,13 +1,12 @@
 //! The effect of an affine step on spectra.
 
-use super::AffineMap;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
 /// The effect of a step on spectra, which is L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// Every [`AffineMap`] has a spectrum map with the factor |det A|, the matrix Aᵀ and the phase t.
+/// Every [`AffineMap`](super::AffineMap) has a spectrum map with the factor |det A|, the matrix Aᵀ and the phase t.
 /// The spectrum map is a separate type because a misprinted step may not correspond to any map of
 /// rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,16 +27,6 @@ impl<const N: usize> SpectrumMap<N> {
             factor: self.factor * next.factor,
             matrix: product(&self.matrix, &next.matrix),
             phase: plus(&next.phase, &times(&transpose(&next.matrix), &self.phase)),
-        }
-    }
-
-    /// Returns the effect on rays, z' = A z + t, where A is the transpose of the matrix and t is
-    /// the phase.
-    #[must_use]
-    pub fn rays(&self) -> AffineMap<N> {
-        AffineMap {
-            matrix: transpose(&self.matrix),
-            offset: self.phase,
         }
     }
 

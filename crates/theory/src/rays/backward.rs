@@ -1,7 +1,7 @@
 //! Follows rays at a plane back to the light through the exact geometry.
 
-use super::trace::LegRay;
 use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
+use crate::obstacle::LegRay;
 use etendue_field::Specular;
 use glam::DVec3;
 

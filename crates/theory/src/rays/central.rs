@@ -1,8 +1,8 @@
 //! The central ray and its intersections with the surfaces.
 
-use super::trace::LegRay;
 use super::{SpecularSurface, SpecularSystem};
 use crate::geometry::{Matrix, Media};
+use crate::obstacle::LegRay;
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Conversion between rays and the coordinates of a plane.
 
 use super::Plane;
-use super::trace::LegRay;
+use crate::obstacle::LegRay;
 use crate::obstacle::ROUNDING;
 use etendue_field::{Frame, Orientation, Patch, Quantity, Side, TwoPlane};
 use glam::DVec3;

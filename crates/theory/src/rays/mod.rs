@@ -84,7 +84,7 @@ pub(crate) use central::Incidence;
 pub(crate) use emission::{emitted, point_of};
 pub(crate) use model::shrunk_light;
 pub(crate) use predict::{predict, with_rays};
-pub(crate) use trace::{LegRay, bent};
+pub(crate) use trace::bent;
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};

@@ -3,11 +3,12 @@
 use super::draw::{RaySampler, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use super::{LegRay, Plane, SpecularSystem};
+use super::{Plane, SpecularSystem};
 use crate::geometry::{AffineMap, SpectrumMap};
 use crate::mask::Masks;
 use crate::model::{Observed, Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
+use crate::obstacle::LegRay;
 use crate::obstacle::PreparedObstacles;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};

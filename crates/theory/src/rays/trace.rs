@@ -1,18 +1,9 @@
 //! Tracing of a single ray through a specular system.
 
 use super::{SpecularSurface, SpecularSystem};
-use crate::obstacle::PreparedObstacles;
+use crate::obstacle::{LegRay, PreparedObstacles};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
-
-/// A straight leg of a ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LegRay {
-    /// The point at which the leg starts.
-    pub(crate) point: DVec3,
-    /// The direction of the leg, a unit vector.
-    pub(crate) direction: DVec3,
-}
 
 impl LegRay {
     /// Returns the ray with position (x, y) and slopes (u, v) at the light's plane.

@@ -126,7 +126,7 @@ impl DirectionCoordinates {
         let (frame, t) = match self {
             Self::Angles => return None,
             Self::Patch { patch, .. } => {
-                let ray = crate::rays::LegRay { point, direction };
+                let ray = crate::obstacle::LegRay { point, direction };
                 (&patch.frame, ray.met(patch)?.0)
             }
             Self::Plane(frame) => {

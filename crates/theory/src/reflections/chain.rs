@@ -4,7 +4,8 @@
 use super::{Interaction, PathSurface, ReflectionSystem};
 use crate::geometry::{AffineMap, Matrix};
 use crate::model::Observed;
-use crate::rays::{Incidence, LegRay};
+use crate::obstacle::LegRay;
+use crate::rays::Incidence;
 use crate::scattering::{local, reflection};
 use crate::words::{self, degrees};
 use etendue_field::{Frame, Specular};

@@ -11,8 +11,7 @@ use super::aim::DirectionCoordinates;
 use super::chain::ScatteringSurface;
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use crate::geometry::AffineMap;
-use crate::obstacle::ROUNDING;
-use crate::rays::LegRay;
+use crate::obstacle::{LegRay, ROUNDING};
 use crate::scattering::local;
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
 //! One surface of the path: intersection and reflection.
 
 use super::{Interaction, PathSurface};
-use crate::obstacle::on_patch;
-use crate::rays::{LegRay, bent};
+use crate::obstacle::{LegRay, on_patch};
+use crate::rays::bent;
 use crate::scattering::{brdf, kernel, narrowest};
 use etendue_field::{Brdf, Fresnel, Lobe};
 use glam::DVec3;

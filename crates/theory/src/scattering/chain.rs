@@ -4,7 +4,8 @@
 use super::ScatteringSystem;
 use crate::geometry::{AffineMap, Matrix};
 use crate::model::Observed;
-use crate::rays::{Incidence, LegRay, Plane};
+use crate::obstacle::LegRay;
+use crate::rays::{Incidence, Plane};
 use crate::words::{self, degrees, number};
 use etendue_field::{
     AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance, Term, Weight,

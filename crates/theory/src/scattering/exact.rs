@@ -4,7 +4,8 @@ use super::ScatteringSystem;
 use super::brdf;
 use super::incoming::{IncomingLight, LightPart, secant};
 use crate::mask::Masks;
-use crate::rays::{LegRay, Plane};
+use crate::obstacle::LegRay;
+use crate::rays::Plane;
 use etendue_field::Orientation;
 use glam::DVec3;
 

@@ -1,7 +1,8 @@
 //! The light that is incident on a point of a surface from one part of a light.
 
 use crate::mask::Masks;
-use crate::rays::{LegRay, emitted};
+use crate::obstacle::LegRay;
+use crate::rays::emitted;
 use etendue_field::Light;
 use glam::DVec3;
 

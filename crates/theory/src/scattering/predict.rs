@@ -8,8 +8,9 @@ use super::{ScatteringChain, ScatteringSystem};
 use crate::mask::Masks;
 use crate::model::{Observed, Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
+use crate::obstacle::LegRay;
 use crate::predicted::Predicted;
-use crate::rays::{LegRay, Plane};
+use crate::rays::Plane;
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! Reads OBJ files with their normals and texture coordinates.
 
-use super::super::detailed::{DetailedMesh, check};
+use super::super::detailed::DetailedMesh;
+use super::super::shared::check_coordinates;
 use super::super::text::{LineWords, number, quoted};
 use super::{CornerFault, corner, place, statements, triangles, vertices, without_mark};
 use etendue_scenefile::{Fault, fault};
@@ -66,7 +67,7 @@ fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Faul
                 None => return Err(fault(what(i), "missing", "a number")),
             };
         }
-        rows.push(check(values, what)?);
+        rows.push(check_coordinates(values, what)?);
     }
     Ok(rows)
 }

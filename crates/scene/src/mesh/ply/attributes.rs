@@ -7,7 +7,7 @@
 //! `rgba`, `0123` or `1234`. After `rgba`, the name ends in `_color`.
 
 use super::super::attribute::MeshAttribute;
-use super::super::detailed::check;
+use super::super::shared::check_coordinates;
 use super::body::PlyRow;
 use super::columns;
 use super::header::PlyElement;
@@ -77,7 +77,9 @@ impl AttributeReader {
             let first = attribute.values.len();
             for column in columns {
                 let place = |_| row.place(&attribute.name);
-                attribute.values.extend(check([values[*column][0]], place)?);
+                attribute
+                    .values
+                    .extend(check_coordinates([values[*column][0]], place)?);
             }
             let last = attribute.values.len();
             for _ in 1..times {

@@ -1,7 +1,7 @@
 //! Reads PLY files with the normals and texture coordinates of their vertices.
 
-use super::super::detailed::{DetailedMesh, check};
-use super::super::shared::fan;
+use super::super::detailed::DetailedMesh;
+use super::super::shared::{check_coordinates, fan};
 use super::attributes::AttributeReader;
 use super::body::Body;
 use super::header::PlyHeader;
@@ -48,12 +48,12 @@ pub(in super::super) fn read(
                     if let Some((normals, columns)) = mesh.normals.as_mut().zip(normal) {
                         let found = columns.map(|column| values[column][0]);
                         let place = |i: usize| row.place(["nx", "ny", "nz"][i]);
-                        normals.push(DVec3::from(check(found, place)?));
+                        normals.push(DVec3::from(check_coordinates(found, place)?));
                     }
                     if let Some((uvs, columns)) = mesh.uvs.as_mut().zip(uv) {
                         let found = columns.map(|column| values[column][0]);
                         let place = |i: usize| row.place(["u", "v"][i]);
-                        uvs.push(DVec2::from(check(found, place)?));
+                        uvs.push(DVec2::from(check_coordinates(found, place)?));
                     }
                     of_vertices.push(row, values, 1)?;
                 }

@@ -1,7 +1,7 @@
 //! Sets of slopes: intersections of a rectangle and discs.
 
-use super::SlopeProjection;
 use super::density::ReceiverDensity;
+use super::slopes::SlopeProjection;
 use crate::barrier::{Barrier, Bounds};
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -1,0 +1,153 @@
+//! Counts the lines of each crate, so that a crate grows only for a stated reason.
+
+use super::files;
+use super::source::{code, test_modules};
+use std::collections::BTreeMap;
+
+/// Each crate, with its number of lines when this table was made, the number that it may have now,
+/// and the reason if that is more. Comments and empty lines count; tests do not.
+///
+/// The second number may be lowered freely. Where a crate becomes smaller, it must be lowered.
+const LINES: &[(&str, usize, usize, &str)] = &[
+    ("adaptive", 2675, 2675, ""),
+    ("bvh", 1261, 1261, ""),
+    ("cli", 4109, 4109, ""),
+    ("compare", 7463, 7463, ""),
+    ("explorer", 1059, 1059, ""),
+    ("export", 1413, 1413, ""),
+    ("field", 3031, 3031, ""),
+    ("figures", 4650, 4650, ""),
+    ("fuzz", 125, 125, ""),
+    ("import", 11996, 11996, ""),
+    ("mpi", 77, 77, ""),
+    ("paper", 3243, 3243, ""),
+    ("paths", 5060, 5060, ""),
+    ("pipeline", 5436, 5436, ""),
+    ("python", 1650, 1650, ""),
+    ("rays", 2394, 2394, ""),
+    ("report", 2599, 2599, ""),
+    ("sampling", 495, 495, ""),
+    ("scatter", 1291, 1291, ""),
+    ("scene", 6458, 6458, ""),
+    ("scenefile", 3036, 3036, ""),
+    ("scenes", 52, 52, ""),
+    ("spectrum", 3218, 3218, ""),
+    ("store", 3185, 3185, ""),
+    ("sweep", 1238, 1238, ""),
+    ("theory", 16875, 16875, ""),
+    ("trace", 6797, 6797, ""),
+    ("transform", 1685, 1685, ""),
+    ("variance", 2023, 2023, ""),
+    ("view", 2762, 2762, ""),
+    ("world", 796, 796, ""),
+    ("tests of all kinds", 69_520, 69_520, ""),
+];
+
+/// The share of its lines by which a crate may be smaller than its row says: so that not every
+/// change needs another row.
+const SLACK: f64 = 0.02;
+
+/// Returns the number of lines of each crate outside its tests, and the lines of all tests.
+fn counted(files: &BTreeMap<String, String>) -> BTreeMap<String, usize> {
+    let mut tests: Vec<String> = Vec::new();
+    for (name, text) in files {
+        let folder = name.strip_suffix("mod.rs").or(name.strip_suffix("lib.rs"));
+        let folder = folder.unwrap_or(name.strip_suffix(".rs").unwrap_or(name));
+        let folder = folder.trim_end_matches('/');
+        let modules = test_modules(text).into_iter();
+        tests.extend(modules.map(|module| format!("{folder}/{module}")));
+    }
+    let is_test = |name: &str| {
+        let of_module = |test: &String| {
+            let rest = name.strip_prefix(test.as_str());
+            rest.is_some_and(|rest| rest.starts_with(['.', '/']))
+        };
+        let folders = ["/tests/", "/benches/", "/examples/"];
+        name.starts_with("tests/")
+            || folders.iter().any(|folder| name.contains(folder))
+            || tests.iter().any(of_module)
+    };
+    let mut counted = BTreeMap::new();
+    for (name, text) in files {
+        let all = text.lines().count();
+        let source = if is_test(name) {
+            0
+        } else {
+            code(text).lines().count()
+        };
+        let place = name.strip_prefix("crates/").unwrap_or(name);
+        let place = place.split('/').next().unwrap_or_default().to_owned();
+        if source > 0 {
+            *counted.entry(place).or_default() += source;
+        }
+        *counted.entry("tests of all kinds".to_owned()).or_default() += all - source;
+    }
+    counted
+}
+
+/// Returns what is wrong with the rows of a table.
+fn wrong(table: &[(&str, usize, usize, &str)], counted: &BTreeMap<String, usize>) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (name, lines) in counted {
+        let Some((_, before, most, reason)) = table.iter().find(|(known, ..)| known == name) else {
+            wrong.push(format!("{name} has no row; it has {lines} lines"));
+            continue;
+        };
+        let least = (*most as f64 * (1.0 - SLACK)) as usize;
+        if lines > most {
+            wrong.push(format!("{name} has {lines} lines, more than {most}: make it smaller, or state a reason in its row"));
+        } else if *lines < least {
+            wrong.push(format!(
+                "{name} has only {lines} lines: lower the {most} of its row"
+            ));
+        }
+        if most > before && reason.is_empty() {
+            wrong.push(format!(
+                "the row of {name} rose from {before} to {most} without a reason"
+            ));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn crates_grow_only_for_a_reason() {
+    let wrong = wrong(LINES, &counted(&files(&[""])));
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn planted_lines_are_found() {
+    let files = BTreeMap::from(
+        [
+            (
+                "crates/a/src/lib.rs",
+                "mod b;\n#[cfg(test)]\nmod c;\nstruct A;\n",
+            ),
+            ("crates/a/src/b.rs", "struct B;\n"),
+            ("crates/a/src/c.rs", "struct C;\n"),
+            ("crates/a/tests/d.rs", "struct D;\nstruct E;\n"),
+        ]
+        .map(|(name, text)| (name.to_owned(), text.to_owned())),
+    );
+    let counted = counted(&files);
+    assert_eq!(counted["a"], 3);
+    assert_eq!(counted["tests of all kinds"], 5);
+    let of = |a: (usize, usize, &'static str)| {
+        wrong(
+            &[("a", a.0, a.1, a.2), ("tests of all kinds", 5, 5, "")],
+            &counted,
+        )
+        .len()
+    };
+    assert_eq!(
+        [
+            of((3, 3, "")),
+            of((2, 2, "")),
+            of((9, 9, "")),
+            of((2, 3, "")),
+            of((2, 3, "a reason"))
+        ],
+        [0, 1, 1, 1, 0]
+    );
+}
