@@ -64,7 +64,7 @@ pub fn picture(bytes: &[u8]) {
 
 /// A ray file in TM-25, MCPL or NPY.
 pub fn rays(bytes: &[u8]) {
-    if let Ok(file) = etendue_rays::RayFile::read(bytes) {
+    if let Ok(file) = etendue_rayfile::RayFile::read(bytes) {
         let _ = file.rays();
     }
 }

@@ -7,6 +7,7 @@ mod run;
 mod shared;
 mod sweep;
 mod variance;
+#[cfg(feature = "worlds")]
 mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
@@ -19,7 +20,8 @@ pub(crate) use run::{
 pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
 pub(crate) use variance::{VarianceArgs, files, samplers};
-pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
+#[cfg(feature = "worlds")]
+pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs, WorldCommand};
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -84,12 +86,9 @@ pub(crate) enum Command {
     Variance(VarianceArgs),
     /// Measure how fast first-order maps approach the real geometry.
     Converge(ConvergeArgs),
-    /// Show what a scene file of another program contains.
-    Import(ImportArgs),
-    /// Render a scene of another program, and estimate the errors.
-    Render(RenderArgs),
-    /// Measure the light field behind one pixel of a rendered scene.
-    Probe(ProbeArgs),
+    #[cfg(feature = "worlds")]
+    #[command(flatten)]
+    World(WorldCommand),
     /// Write a scene for Mitsuba 3.
     Export(ExportArgs),
     /// Inspect a ray file or convert it to another format.
@@ -134,10 +133,14 @@ fn grouped(command: &clap::Command) -> String {
     for (heading, names) in GROUPS {
         let _ = writeln!(list, "\n{heading}:");
         for name in names {
+            // A program without the feature `worlds` lacks some of them.
+            let Some(command) = command.find_subcommand(name) else {
+                continue;
+            };
             let about = command
-                .find_subcommand(name)
-                .and_then(clap::Command::get_about);
-            let about = about.map(ToString::to_string).unwrap_or_default();
+                .get_about()
+                .map(ToString::to_string)
+                .unwrap_or_default();
             let _ = writeln!(list, "  {name:<11}  {about}");
         }
     }

@@ -15,17 +15,14 @@ mod exit;
 mod export;
 mod figure;
 mod finish;
-mod import;
 mod interrupt;
 mod manual;
 mod measure;
 mod new;
 mod predict;
 mod print;
-mod probe;
 mod progress;
 mod rays;
-mod render;
 mod report;
 mod run;
 mod schema;
@@ -35,6 +32,8 @@ mod threads;
 mod variance;
 mod warnings;
 mod workers;
+#[cfg(feature = "worlds")]
+mod worlds;
 
 use args::{Cli, Command};
 use etendue_store::COMMIT;
@@ -75,9 +74,8 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Covariance(args) => covariance::covariance(&args),
         Command::Variance(args) => variance::variance(&args),
         Command::Export(args) => export::export(&args),
-        Command::Import(args) => import::import(&args),
-        Command::Render(args) => render::render(&args),
-        Command::Probe(args) => probe::probe(&args),
+        #[cfg(feature = "worlds")]
+        Command::World(command) => worlds::run(&command),
         Command::Rays(args) => rays::rays(&args),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => manual::completions(&args),

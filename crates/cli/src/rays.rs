@@ -3,7 +3,7 @@
 use crate::args::RaysArgs;
 use crate::print::{deliver, say};
 use etendue_pipeline::ray_file;
-use etendue_rays::{Format, MEMORY, MEMORY_FREE, RayFile, convert, gz};
+use etendue_rayfile::{Format, MEMORY, MEMORY_FREE, RayFile, convert, gz};
 use etendue_scene::read_file;
 use etendue_store::Failure;
 use etendue_store::machine;

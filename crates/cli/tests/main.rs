@@ -28,4 +28,5 @@ mod sweep;
 mod variance;
 mod vocabulary;
 mod workers;
+#[cfg(feature = "worlds")]
 mod worlds;

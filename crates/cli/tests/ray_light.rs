@@ -6,7 +6,7 @@
 use crate::common::{etendue, scene};
 use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
 use etendue_field::Light;
-use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
+use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use etendue_scene::{Scene, SceneError, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;

@@ -4,7 +4,7 @@
 
 use crate::common;
 use crate::common::{SCENE, call};
-use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
+use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;

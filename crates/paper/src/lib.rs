@@ -10,6 +10,7 @@
 )]
 
 mod caustic;
+#[cfg(feature = "worlds")]
 mod creatures;
 mod criteria;
 mod data;

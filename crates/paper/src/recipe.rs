@@ -1,6 +1,9 @@
 //! The content of each figure of the paper.
 
 use crate::caustic::caustic;
+#[cfg(feature = "worlds")]
+use crate::creatures;
+use crate::kernels;
 use crate::parameterisations::parameterisations;
 use crate::plates::{blockers, lights, occluders, steps};
 use crate::scene_run::resolved;
@@ -8,7 +11,6 @@ use crate::shading::{adaptive, environment};
 use crate::spaces::{coordinates, directions};
 use crate::subject::{FigureData, Subject, Text};
 use crate::table1::operators;
-use crate::{creatures, kernels};
 use etendue_figures::Figure;
 use etendue_store::Failure;
 use std::path::Path;
@@ -186,6 +188,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         full_radial: false,
         draw: adaptive,
     },
+    #[cfg(feature = "worlds")]
     Recipe {
         name: "16",
         about: "the criteria of Fig. 17, and the shading samples they place",
@@ -194,6 +197,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         full_radial: false,
         draw: creatures::criteria,
     },
+    #[cfg(feature = "worlds")]
     Recipe {
         name: "17",
         about: "a picture from few shading samples: placed uniformly, by the paper, by the corrected criteria, and a reference",

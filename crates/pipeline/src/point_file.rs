@@ -1,6 +1,6 @@
 //! Reads sets of points from NPY files, for studies of variance.
 
-use etendue_rays::NpyHeader;
+use etendue_rayfile::NpyHeader;
 use etendue_scene::read_file;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_variance::{MAX_POINTS, PointFile, WindowPoint};

@@ -1,9 +1,9 @@
 //! Describes the content of a ray file in words.
 
 use etendue_field::tidy;
-use etendue_rays::mcpl::{McplFile, PHOTON};
-use etendue_rays::tm25::{Tm25File, Tm25Header};
-use etendue_rays::{RayFile, RaySet, Wavelengths};
+use etendue_rayfile::mcpl::{McplFile, PHOTON};
+use etendue_rayfile::tm25::{Tm25File, Tm25Header};
+use etendue_rayfile::{RayFile, RaySet, Wavelengths};
 use etendue_scene::shown;
 
 /// The maximum number of characters that are shown of each text, and the maximum number of texts

@@ -3,7 +3,7 @@
 
 use crate::Failure;
 use etendue_field::{Complex, SliceGrid};
-use etendue_rays::NpyHeader;
+use etendue_rayfile::NpyHeader;
 use ndarray::{Array, Array1, ArrayBase, Data, Dimension, IntoDimension, ShapeBuilder};
 use std::fmt::{self, Display};
 use std::io::{self, Cursor, Read, Write};

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 ///
 /// The second number may be lowered freely. Where a crate becomes smaller, it must be lowered.
 const LINES: &[(&str, usize, usize, &str)] = &[
-    ("adaptive", 2675, 2675, ""),
     ("bvh", 1261, 1261, ""),
     ("cli", 4109, 4109, ""),
     ("compare", 7463, 7463, ""),
@@ -18,13 +17,11 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("field", 3031, 3031, ""),
     ("figures", 4650, 4650, ""),
     ("fuzz", 125, 125, ""),
-    ("import", 11996, 11996, ""),
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3243, ""),
-    ("paths", 5060, 5060, ""),
     ("pipeline", 5436, 5436, ""),
     ("python", 1650, 1650, ""),
-    ("rays", 2394, 2394, ""),
+    ("rayfile", 2394, 2394, ""),
     ("report", 2599, 2599, ""),
     ("sampling", 495, 495, ""),
     ("scatter", 1291, 1291, ""),
@@ -38,9 +35,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("trace", 6797, 6797, ""),
     ("transform", 1685, 1685, ""),
     ("variance", 2023, 2023, ""),
-    ("view", 2762, 2762, ""),
-    ("world", 796, 796, ""),
-    ("tests of all kinds", 69_520, 69_520, ""),
+    ("worlds", 23_289, 23_289, ""),
+    ("tests of all kinds", 69_550, 69_550, ""),
 ];
 
 /// The share of its lines by which a crate may be smaller than its row says: so that not every

@@ -21,7 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("scenes", &[]),
     ("transform", &["field"]),
     ("bvh", &[]),
-    ("rays", &[]),
+    ("rayfile", &[]),
     ("theory", &["field", "transform"]),
     ("spectrum", &["field", "transform"]),
     ("figures", &["field"]),
@@ -30,7 +30,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("scatter", &["field", "sampling"]),
     ("explorer", &["field", "theory", "transform"]),
     ("scenefile", &["field"]),
-    ("scene", &["bvh", "field", "rays", "scenefile", "transform"]),
+    (
+        "scene",
+        &["bvh", "field", "rayfile", "scenefile", "transform"],
+    ),
     (
         "trace",
         &["bvh", "field", "sampling", "scatter", "scene", "transform"],
@@ -61,11 +64,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("store", &["compare", "field", "rays", "scene", "spectrum"]),
+    (
+        "store",
+        &["compare", "field", "rayfile", "scene", "spectrum"],
+    ),
     (
         "pipeline",
         &[
-            "compare", "field", "rays", "scene", "spectrum", "store", "trace", "variance",
+            "compare", "field", "rayfile", "scene", "spectrum", "store", "trace", "variance",
         ],
     ),
     (
@@ -112,7 +118,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cli",
         &[
             "adaptive", "compare", "export", "field", "figures", "import", "paper", "pipeline",
-            "rays", "report", "scene", "scenes", "spectrum", "store", "sweep", "theory",
+            "rayfile", "report", "scene", "scenes", "spectrum", "store", "sweep", "theory",
             "variance", "view",
         ],
     ),
@@ -140,13 +146,24 @@ fn root() -> PathBuf {
         .to_owned()
 }
 
+/// Returns the folders of all crates that the tool consists of, relative to the root.
 fn crates() -> Vec<String> {
-    let entries = fs::read_dir(root().join("crates")).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
+    let folders = ["crates", "crates/worlds"].map(|folder| {
+        let entries = fs::read_dir(root().join(folder)).unwrap();
+        let places = entries.map(move |entry| {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            format!("{folder}/{name}")
+        });
+        places.filter(|place| root().join(place).join("Cargo.toml").exists())
+    });
+    let mut crates: Vec<String> = folders.into_iter().flatten().collect();
+    crates.sort();
+    crates
+}
+
+/// Returns the name of the crate in a folder.
+fn name_of(place: &str) -> &str {
+    place.rsplit('/').next().unwrap_or(place)
 }
 
 /// Returns the workspace crates among the dependencies of a manifest; dependencies of tests are
@@ -176,15 +193,27 @@ fn forbidden(name: &str, found: &BTreeSet<String>) -> Vec<String> {
 
 #[test]
 fn crates_use_those_below_them() {
-    for name in crates() {
+    for place in crates() {
+        let name = name_of(&place);
         assert!(
             MAY_USE.iter().any(|(known, _)| *known == name),
             "{name} has no row in MAY_USE"
         );
-        let manifest = fs::read_to_string(root().join("crates").join(&name).join("Cargo.toml"));
+        let manifest = fs::read_to_string(root().join(&place).join("Cargo.toml"));
         let found = uses(&manifest.unwrap());
-        let forbidden = forbidden(&name, &found);
+        let forbidden = forbidden(name, &found);
         assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
+    }
+    // The instrument stands without the worlds: the command and the figures that are rendered use
+    // them, behind a feature.
+    let crates = crates();
+    let is_world = |name: &str| crates.contains(&format!("crates/worlds/{name}"));
+    for (name, uses) in MAY_USE {
+        let may = is_world(name) || ["cli", "paper"].contains(name);
+        assert!(
+            may || !uses.iter().any(|other| is_world(other)),
+            "{name} may not use worlds"
+        );
     }
     // In this table, the row of a crate must come after the rows of the crates that it uses.
     for (i, (name, uses)) in MAY_USE.iter().enumerate() {
@@ -203,7 +232,8 @@ fn crates_use_those_below_them() {
 #[test]
 fn architecture_names_every_crate() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
-    for name in crates() {
+    for place in crates() {
+        let name = name_of(&place);
         assert!(
             text.contains(&format!("| `{name}` |")),
             "ARCHITECTURE.md has no row for {name}"
@@ -214,8 +244,10 @@ fn architecture_names_every_crate() {
 #[test]
 fn modules_have_no_circles() {
     let mut all = Vec::new();
-    let crates = crates().into_iter().map(|name| format!("crates/{name}"));
-    for name in crates.chain(["mpi", "python"].map(str::to_owned)) {
+    for name in crates()
+        .into_iter()
+        .chain(["mpi", "python"].map(str::to_owned))
+    {
         let found = modules::modules(&root().join(&name).join("src"));
         let circles = circles(&found).into_iter();
         all.extend(circles.map(|circle| (name.clone(), circle)));
@@ -318,8 +350,8 @@ fn files(folders: &[&str]) -> BTreeMap<String, String> {
         }
     }
     let mut found = BTreeMap::new();
-    let crates = crates().into_iter().map(|name| format!("crates/{name}"));
-    for place in crates.chain(["fuzz", "mpi", "python", "scenes", "tests"].map(str::to_owned)) {
+    let others = ["fuzz", "mpi", "python", "scenes", "tests"].map(str::to_owned);
+    for place in crates().into_iter().chain(others) {
         for folder in folders {
             collect(&root().join(&place).join(folder), &mut found);
         }

@@ -2,7 +2,7 @@
 
 use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number, within};
 use super::variance::{SAMPLERS, SamplerArg, sampler, samplers};
-use clap::Args;
+use clap::{Args, Subcommand};
 use etendue_adaptive::SampleMethod;
 use etendue_import::{Color, Options};
 use etendue_pipeline::variance::VarianceOptions;
@@ -11,6 +11,16 @@ use etendue_view::ranges::{self, MAX_ANGLE, MAX_COORDINATE, SIDE};
 use etendue_view::{CameraChoice, PictureRequest, ProbeRequest, Viewpoint, WorldSource};
 use glam::DVec3;
 use std::path::PathBuf;
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum WorldCommand {
+    /// Show what a scene file of another program contains.
+    Import(ImportArgs),
+    /// Render a scene of another program, and estimate the errors.
+    Render(RenderArgs),
+    /// Measure the light field behind one pixel of a rendered scene.
+    Probe(ProbeArgs),
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct WorldArgs {

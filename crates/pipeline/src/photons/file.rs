@@ -2,8 +2,8 @@
 
 use crate::case::MeasuredScene;
 use etendue_field::{Crossing, VirtualPlane};
-use etendue_rays::mcpl::{self, PHOTON, Particle, WATTS, stat_sum_comment};
-use etendue_rays::{NpyHeader, tm25};
+use etendue_rayfile::mcpl::{self, PHOTON, Particle, WATTS, stat_sum_comment};
+use etendue_rayfile::{NpyHeader, tm25};
 use etendue_trace::PlaneInWorld;
 use std::io;
 

@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::faults::{show, vector};
 use etendue_field::{FluxRay, Frame, Light, RayLight, TwoPlane};
-use etendue_rays::{PowerUnit, RayFile, RaySet};
+use etendue_rayfile::{PowerUnit, RayFile, RaySet};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -39,13 +39,6 @@ impl Criterion {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Returns the bandwidth by Eq. 20 at any distance, for an environment with the cutoff Ω_e. The
-    /// lower of Ω_ρ and Ω_e replaces Ω_ρ.
-    #[must_use]
-    pub fn limited_environment(&self) -> f64 {
-        self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
-    }
-
     /// Returns the bandwidth of an edge before a uniform environment, which is Ω_ρ |1 + d (cos
     /// θ₀/d' + 2k)/cos θ₁|. This formula is Eq. 21 extended to any distance and angle.
     #[must_use]

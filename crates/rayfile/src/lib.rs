@@ -12,10 +12,10 @@
 //! NaN, infinite numbers and zero directions are refused, and each [`Fault`] gives the position
 //! of the byte or the number of the ray.
 //!
-//! The crate `etendue-rays` does not access the disk and does not depend on light fields.
+//! The crate `etendue-rayfile` does not access the disk and does not depend on light fields.
 //!
 //! ```
-//! use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
+//! use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 //!
 //! let set = RaySet {
 //!     positions: vec![[0.0, 0.0, 0.001]],
@@ -27,7 +27,7 @@
 //! let converted = convert(&RayFile::Npy(set), Format::Tm25)?;
 //! let again = RayFile::read(&converted.bytes)?.rays();
 //! assert_eq!(again.powers, [0.5]);
-//! # Ok::<(), etendue_rays::Fault>(())
+//! # Ok::<(), etendue_rayfile::Fault>(())
 //! ```
 
 mod convert;

@@ -8,7 +8,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_rays::{Format, RayFile, convert, gz};
+use etendue_rayfile::{Format, RayFile, convert, gz};
 use std::fs;
 use std::path::PathBuf;
 

@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_rays::mcpl::{McplFile, McplHeader, PHOTON, Particle, stat_sum_comment};
-use etendue_rays::tm25::{self, Flags, SpectrumType, Tm25File};
-use etendue_rays::{
+use etendue_rayfile::mcpl::{McplFile, McplHeader, PHOTON, Particle, stat_sum_comment};
+use etendue_rayfile::tm25::{self, Flags, SpectrumType, Tm25File};
+use etendue_rayfile::{
     Fault, Format, PHOTON_ENERGY_LENGTH, PowerUnit, RayFile, RaySet, Wavelengths, convert, gz,
 };
 

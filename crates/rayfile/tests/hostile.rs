@@ -6,7 +6,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_rays::{Format, MEMORY, MEMORY_FREE, PowerUnit, RayFile, RaySet, Wavelengths, convert};
+use etendue_rayfile::{
+    Format, MEMORY, MEMORY_FREE, PowerUnit, RayFile, RaySet, Wavelengths, convert,
+};
 use std::fs;
 
 /// Random numbers from a seeded linear congruential generator (Knuth, MMIX).
