@@ -133,9 +133,8 @@ fn grouped(command: &clap::Command) -> String {
     for (heading, names) in GROUPS {
         let _ = writeln!(list, "\n{heading}:");
         for name in names {
-            // A program without the feature `worlds` lacks some of them.
             let Some(command) = command.find_subcommand(name) else {
-                continue;
+                continue; // as it is without the feature `worlds`
             };
             let about = command
                 .get_about()
