@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The second number may be lowered freely. Where a crate becomes smaller, it must be lowered.
 const LINES: &[(&str, usize, usize, &str)] = &[
     ("bvh", 1261, 1261, ""),
-    ("cli", 4109, 4109, ""),
+    ("cli", 4109, 4111, "the feature `worlds`"),
     ("compare", 7463, 7463, ""),
     ("explorer", 1059, 1059, ""),
     ("export", 1413, 1413, ""),
