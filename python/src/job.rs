@@ -6,7 +6,7 @@ use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
 use crate::scene::SceneArgument;
 use etendue_field::Crossing;
-use etendue_pipeline::Options;
+use etendue_pipeline::Silent;
 use etendue_spectrum::{Batch, Watch};
 use etendue_store::{Failure, Method, predictions};
 use ndarray::Array2;
@@ -32,49 +32,48 @@ impl Job {
         backward: bool,
     ) -> PyResult<Self> {
         let source = scene.source(&set)?;
-        let options = Options {
-            photons,
-            seed,
-            method: if backward {
-                Method::Backward
-            } else {
-                Method::Photons
-            },
+        let method = if backward {
+            Method::Backward
+        } else {
+            Method::Photons
         };
-        let job = etendue_pipeline::Job::read(&source, &options);
+        let job = etendue_pipeline::Job::read(&source, method, |run| {
+            run.photons = photons.unwrap_or(run.photons);
+            run.seed = seed.unwrap_or(run.seed);
+        });
         let job = job.map_err(|failure| raised(py, failure))?;
         Ok(Self(Arc::new(job)))
     }
 
     #[getter]
     fn name(&self) -> &str {
-        &self.0.scene().name
+        &self.0.scene.name
     }
 
     /// Returns the scene file in JSON, including defaults and overrides.
     fn json(&self) -> String {
-        serde_json::to_string(&self.0.scene().file).unwrap_or_default()
+        serde_json::to_string(&self.0.scene.file).unwrap_or_default()
     }
 
     #[getter]
     fn photons(&self) -> u64 {
-        self.0.scene().run.photons
+        self.0.scene.run.photons
     }
 
     #[getter]
     fn batches(&self) -> u32 {
-        self.0.scene().run.batches
+        self.0.scene.run.batches
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.0.scene().warnings()
+        self.0.scene.warnings()
     }
 
     /// Describes each plane: returns its name, its class, the steps of its chain, and the parts of
     /// the scene that no theory describes.
     fn planes(&self) -> Vec<(String, String, Vec<String>, Vec<String>)> {
-        let scene = self.0.scene();
-        let planes = scene.planes.iter().zip(self.0.theories());
+        let scene = &self.0.scene;
+        let planes = scene.planes.iter().zip(&self.0.theories);
         let planes = planes.map(|(plane, theory)| {
             let class = theory.class().to_string();
             let steps = theory.steps(scene, plane);
@@ -93,7 +92,7 @@ impl Job {
         let job = Arc::clone(&self.0);
         let found = alive(py, threads, progress.as_ref(), move |live| {
             job.check_limits()?;
-            let run = &job.scene().run;
+            let run = &job.scene.run;
             let photons = run.photons * batches.len() as u64 / u64::from(run.batches);
             job.measure(&batches, &live.trace(photons, "photons"))
         });
@@ -104,7 +103,7 @@ impl Job {
         let job = Arc::clone(&self.0);
         let found = alive(py, threads, None, move |_| {
             job.check_limits()?;
-            job.predict()
+            job.predictions(None, &Silent)
         });
         found.map(Prediction)
     }
@@ -171,7 +170,7 @@ impl Job {
         let rays = Rays::new(&columns, &batch, batches)?;
         let job = Arc::clone(&self.0);
         let found = alive(py, threads, progress.as_ref(), move |live| {
-            spectrum(&rays, &job.scene().planes[0], live)
+            spectrum(&rays, &job.scene.planes[0], live)
         })?;
         found.arrays(py)
     }
@@ -196,7 +195,7 @@ impl Job {
         batches: Vec<(u32, Bound<'_, PyBytes>)>,
     ) -> PyResult<Measurement> {
         let source = self.0.source().map_err(|failure| raised(py, failure))?;
-        let mut all = etendue_spectrum::Measurement::new(self.0.scene().planes.clone());
+        let mut all = etendue_spectrum::Measurement::new(self.0.scene.planes.clone());
         for (number, bytes) in batches {
             let batch: Result<Batch, Failure> = self.0.unpacked(&*source, number, bytes.as_bytes());
             let batch = batch.map_err(|failure| raised(py, failure))?;
@@ -211,7 +210,7 @@ impl Job {
         py: Python<'py>,
         prediction: &Prediction,
     ) -> PyResult<Vec<Bound<'py, PyBytes>>> {
-        let planes = self.0.scene().planes.iter();
+        let planes = self.0.scene.planes.iter();
         let packed = planes.zip(&prediction.0).map(|(plane, prediction)| {
             let bytes = predictions::packed(plane, prediction);
             Ok(PyBytes::new(py, &bytes.map_err(|f| raised(py, f))?))
@@ -224,7 +223,7 @@ impl Job {
         py: Python<'_>,
         planes: Vec<Bound<'_, PyBytes>>,
     ) -> PyResult<Prediction> {
-        let pairs = self.0.scene().planes.iter().zip(&planes);
+        let pairs = self.0.scene.planes.iter().zip(&planes);
         let unpacked = pairs.map(|(plane, bytes)| {
             predictions::unpacked(plane, bytes.as_bytes()).map_err(|f| raised(py, f))
         });

@@ -32,11 +32,10 @@ pub(crate) fn variance(
     let mut plane = None;
     arguments.text("plane", &mut plane)?;
     alive(py, threads, progress.as_ref(), move |live| {
-        let study =
-            VarianceStudy::of_scene(job.scene(), (plane.as_deref(), job.method()), options)?;
+        let study = VarianceStudy::of_scene(&job.scene, (plane.as_deref(), job.method), options)?;
         study.check_memory()?;
         let found = study.run(live)?.ok_or_else(|| study.constant())?;
-        let index = serde_json::to_string(&study.index((job.scene(), job.method()), &found));
+        let index = serde_json::to_string(&study.index((&job.scene, job.method), &found));
         let index = index.map_err(Failure::cannot_run)?;
         Ok((index, variance_table::text(&found, study.options())))
     })

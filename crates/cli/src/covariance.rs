@@ -9,7 +9,7 @@ use crate::print::deliver;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::covariance::CovarianceStudy;
-use etendue_pipeline::{load, planes};
+use etendue_pipeline::{Job, load, planes};
 use etendue_report::covariance::drawn;
 use etendue_report::pictures::PictureFiles;
 use etendue_scene::Scene;
@@ -22,14 +22,16 @@ const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;
-    let study = CovarianceStudy::new(&scene, args.photons.method)?;
+    let inputs = load::inputs(&args.scene.source(), &scene);
+    let job = Job::of(scene.clone(), args.photons.method, inputs.clone())?;
+    let study = CovarianceStudy::new(job)?;
     let folder = args.out.or_named(format!("{}-covariance", scene.name));
     let planes = scene.planes.iter();
     let files = planes.flat_map(|plane| NAMES.map(|file| format!("{}/{file}", plane.name)));
     let plan = Plan {
         index: COVARIANCE,
         files: files.collect(),
-        inputs: load::inputs(&args.scene.source(), &scene),
+        inputs,
         force: args.work.force.force,
         arguments: ArgumentStyle::Command,
     };

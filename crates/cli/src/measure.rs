@@ -5,10 +5,9 @@ use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_compare::Applicability;
+use etendue_pipeline::load;
 use etendue_pipeline::measured;
 use etendue_pipeline::table::grouped;
-use etendue_pipeline::{limits, load, method};
 use etendue_store::Failure;
 use etendue_store::MEASUREMENT;
 use etendue_store::batches::{self, Held};
@@ -16,9 +15,8 @@ use etendue_store::stored::Index;
 
 /// Runs `etendue measure`; returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
-    let theories = Applicability::of_planes(&scene);
-    method::check(&scene, args.photons.method)?;
+    let job = args.photons.job(&args.scene)?;
+    let scene = &job.scene;
     let all = 0..scene.run.batches;
     let batches = args.batches.clone().unwrap_or(all.clone());
     if batches.end > all.end {
@@ -27,35 +25,34 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             batches.start, batches.end, all.end
         )));
     }
-    let method = args.photons.method;
     let (results, held) = on_threads(&args.work.threads, || {
-        warnings::tell(&scene, args.work.quiet);
-        limits::check_memory(&scene, &theories, rayon::current_num_threads())?;
+        warnings::tell(scene, args.work.quiet);
+        job.check_memory()?;
         let files = batches::names(&scene.planes);
         let mut results = load::stage(
             &args.out.folder,
             MEASUREMENT,
             files,
-            &scene,
+            scene,
             &args.scene.source(),
             args.work.force.force,
         )?;
         let measurement = measured(
-            &scene,
-            method,
+            scene,
+            job.method,
             batches.clone(),
             &Terminal::new(args.work.quiet),
         )?;
         batches::write(&mut results, &measurement)?;
         let held = Held {
             seed: scene.run.seed,
-            method,
+            method: job.method,
             photons: measurement.emitted(),
             batches,
         };
         Ok((results, held))
     })?;
-    let index = Index::new(&scene, held.clone());
+    let index = Index::new(scene, held.clone());
     let finished = index.finish(results)?;
     say_replaced(&finished, args.work.quiet);
     if !args.work.quiet {

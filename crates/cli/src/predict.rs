@@ -5,10 +5,8 @@ use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_compare::Applicability;
 use etendue_pipeline::Leader;
-use etendue_pipeline::predicted;
-use etendue_pipeline::{limits, load, method};
+use etendue_pipeline::load;
 use etendue_store::Failure;
 use etendue_store::PREDICTION;
 use etendue_store::predictions;
@@ -24,33 +22,25 @@ pub(crate) fn predict_with(
     args: &PredictArgs,
     workers: Option<&Leader<'_>>,
 ) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
-    let theories = Applicability::of_planes(&scene);
-    method::check(&scene, args.photons.method)?;
+    let job = args.photons.job(&args.scene)?;
+    let scene = &job.scene;
     let (results, content) = on_threads(&args.work.threads, || {
-        warnings::tell(&scene, args.work.quiet);
-        limits::check(&scene, &theories, rayon::current_num_threads())?;
+        warnings::tell(scene, args.work.quiet);
+        job.check_limits()?;
         let files = predictions::names(&scene.planes);
         let mut results = load::stage(
             &args.out.folder,
             PREDICTION,
             files,
-            &scene,
+            scene,
             &args.scene.source(),
             args.work.force.force,
         )?;
-        let method = args.photons.method;
-        let predictions = predicted(
-            &scene,
-            &theories,
-            method,
-            workers,
-            &Terminal::new(args.work.quiet),
-        )?;
-        let content = predictions::write(&mut results, &scene, method, &predictions)?;
+        let predictions = job.predictions(workers, &Terminal::new(args.work.quiet))?;
+        let content = predictions::write(&mut results, scene, job.method, &predictions)?;
         Ok((results, content))
     })?;
-    let finished = Index::new(&scene, content).finish(results)?;
+    let finished = Index::new(scene, content).finish(results)?;
     say_replaced(&finished, args.work.quiet);
     if !args.work.quiet {
         let planes = scene.planes.len();

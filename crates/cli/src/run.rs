@@ -7,15 +7,12 @@ use crate::progress::Terminal;
 use crate::report;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_compare::{Applicability, Verdict};
-use etendue_pipeline::Leader;
-use etendue_pipeline::MeasuredScene;
-use etendue_pipeline::Stopwatch;
+use etendue_compare::Verdict;
 use etendue_pipeline::checkpoint::{self, Checkpointing};
 use etendue_pipeline::photons::Save;
-use etendue_pipeline::predicted;
 use etendue_pipeline::table::word;
-use etendue_pipeline::{field, limits, load, method, photons, target};
+use etendue_pipeline::{Job, Leader, Stopwatch};
+use etendue_pipeline::{field, photons, target};
 use etendue_report::page::NAME;
 use etendue_report::{OutputOptions, plan};
 use etendue_scene::{Color, Scene};
@@ -76,28 +73,26 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
 
 fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
-    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
-    let theories = Applicability::of_planes(&scene);
-    method::check(&scene, args.photons.method)?;
+    let job = args.photons.job(&args.scene)?;
+    let scene = &job.scene;
     let folder = args.out.or_named(&scene.name);
-    let inputs = load::inputs(&args.scene.source(), &scene);
     let plan = plan(
-        &scene,
+        scene,
         &args.save,
-        inputs,
+        job.inputs.clone(),
         args.work.force.force,
         ArgumentStyle::Command,
     );
     on_threads(&args.work.threads, || {
-        warnings::tell(&scene, args.work.quiet);
-        limits::check(&scene, &theories, rayon::current_num_threads())?;
+        warnings::tell(scene, args.work.quiet);
+        job.check_limits()?;
         if args.save.contains(&Save::Field) {
-            field::check_memory(&scene)?;
+            field::check_memory(scene)?;
         }
         check_earlier(
             &folder,
             SUMMARY,
-            &scene,
+            scene,
             args.work.force.force,
             ArgumentStyle::Command,
         )?;
@@ -110,24 +105,20 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         };
         let mut results = Some(begin(plan.clone())?);
         if args.resume {
-            if let Some(code) = finished(&folder, &scene, args) {
+            if let Some(code) = finished(&folder, scene, args) {
                 return Ok(code);
             }
             // Several processes share the folder, so no process claims the result until the
             // measurement is complete.
             results = None;
         }
-        stages(
-            args,
-            scene,
-            theories,
-            ResultPlace {
-                folder: &folder,
-                plan,
-                results,
-                workers,
-            },
-        )
+        let place = ResultPlace {
+            folder: &folder,
+            plan,
+            results,
+            workers,
+        };
+        stages(args, job.clone(), place)
     })
 }
 
@@ -175,22 +166,17 @@ fn gone(folder: &Path) -> Failure {
     ))
 }
 
-fn stages(
-    args: &RunArgs,
-    mut scene: Scene,
-    theories: Vec<Applicability>,
-    place: ResultPlace<'_>,
-) -> Result<u8, Failure> {
+fn stages(args: &RunArgs, mut job: Job, place: ResultPlace<'_>) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     if !args.is_quiet() {
         let kept = args.save.iter();
-        for announcement in kept.filter_map(|save| photons::announcement(&scene, *save)) {
+        for announcement in kept.filter_map(|save| photons::announcement(&job.scene, *save)) {
             say(&announcement);
         }
     }
     let terminal = Terminal::new(args.work.quiet);
-    let method = args.photons.method;
-    let kept = CheckpointStore::of(place.folder, &scene, method);
+    let method = job.method;
+    let kept = CheckpointStore::of(place.folder, &job.scene, method);
     let checkpointing = Checkpointing {
         resume: args.resume,
         until: args.time.and_then(|time| Instant::now().checked_add(time)),
@@ -198,27 +184,27 @@ fn stages(
     };
     let measurement = match args.target_error {
         None => {
-            let is_done = || summary_of(place.folder, &scene, method).is_some();
-            checkpoint::measured(&scene, method, (&kept, &is_done), checkpointing, &terminal)?
+            let is_done = || summary_of(place.folder, &job.scene, method).is_some();
+            checkpoint::measured(
+                &job.scene,
+                method,
+                (&kept, &is_done),
+                checkpointing,
+                &terminal,
+            )?
         }
         Some(target) => {
             let target = (target, args.photons.photons);
-            Some(target::reached(&mut scene, method, target, &terminal)?)
+            Some(target::reached(&mut job.scene, method, target, &terminal)?)
         }
     };
     let Some(measurement) = measurement else {
-        return finished(place.folder, &scene, args).ok_or_else(|| gone(place.folder));
+        return finished(place.folder, &job.scene, args).ok_or_else(|| gone(place.folder));
     };
     watch.lap("trace");
-    let predictions = predicted(&scene, &theories, method, place.workers, &terminal)?;
+    let predictions = job.predictions(place.workers, &terminal)?;
     watch.lap("predict");
-    let case = MeasuredScene {
-        scene,
-        theories,
-        method,
-        measurement,
-        predictions,
-    };
+    let case = job.with(measurement, predictions);
     let results = match place.results {
         Some(results) => results,
         None => {

@@ -4,9 +4,7 @@ use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
 use crate::exit::{ended, not_parsed};
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
-use etendue_pipeline::{
-    Job, Leader, Options, Silent, Workers, follow_job, follow_points, report_failure,
-};
+use etendue_pipeline::{Leader, Silent, Workers, follow_job, follow_points, report_failure};
 use etendue_store::Failure;
 use etendue_sweep::SweepPoints;
 use std::ffi::OsString;
@@ -80,12 +78,5 @@ fn with_job(
     threads: &ThreadArgs,
     workers: &dyn Workers,
 ) -> Result<(), Failure> {
-    let options = Options {
-        photons: photons.photons,
-        seed: photons.seed,
-        method: photons.method,
-    };
-    on_threads(threads, || {
-        follow_job(workers, &Job::read(&scene.source(), &options)?)
-    })
+    on_threads(threads, || follow_job(workers, &photons.job(scene)?))
 }

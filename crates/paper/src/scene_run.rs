@@ -3,9 +3,7 @@
 use crate::quality::Quality;
 use etendue_compare::{Applicability, PlaneComparison, TESTS, Test};
 use etendue_field::FrequencyAxis;
-use etendue_pipeline::MeasuredScene;
-use etendue_pipeline::{Reporter, judged};
-use etendue_pipeline::{field, limits};
+use etendue_pipeline::{Job, Reporter, field, judged};
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -40,9 +38,9 @@ impl Shot {
                 };
             }
         }
-        let theories = Applicability::of_planes(&scene);
-        limits::check(&scene, &theories, rayon::current_num_threads())?;
-        let case = MeasuredScene::of(scene, theories, Method::Photons, reporter)?;
+        let job = Job::of(scene, Method::Photons, Vec::new())?;
+        job.check_limits()?;
+        let case = job.run(reporter)?;
         let tests = if full_radial { field::TESTS } else { TESTS };
         let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
         if full_radial {

@@ -2,21 +2,16 @@
 
 use crate::moments::{check_memory, fitting};
 use crate::reporter::{Reporter, Work};
-use crate::{limits, measured, method, predicted};
+use crate::{Job, MeasuredScene, limits, method};
 use etendue_compare::{AXES, Applicability, CovarianceReport, Prediction};
 use etendue_field::PhotonSource;
-use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::field::measure_field;
-use etendue_store::{Failure, Method, VERSION};
+use etendue_store::{Failure, VERSION};
 
 /// A request for the covariances at all planes of a scene.
 #[derive(Debug)]
-pub struct CovarianceStudy<'a> {
-    scene: &'a Scene,
-    theories: Vec<Applicability>,
-    method: Method,
-}
+pub struct CovarianceStudy(Job);
 
 /// The covariances at all planes, and the measurement to which they belong.
 #[derive(Debug)]
@@ -27,34 +22,29 @@ pub struct SceneCovariances {
     pub reports: Vec<CovarianceReport>,
 }
 
-impl<'a> CovarianceStudy<'a> {
-    /// Checks that the method can measure the scene.
-    pub fn new(scene: &'a Scene, method: Method) -> Result<Self, Failure> {
-        limits::check_one_light(scene, "covariance tracing")?;
-        method::check(scene, method)?;
-        Ok(Self {
-            scene,
-            theories: Applicability::of_planes(scene),
-            method,
-        })
+impl CovarianceStudy {
+    /// Checks that the scene has one light.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        limits::check_one_light(&job.scene, "covariance tracing")?;
+        Ok(Self(job))
     }
 
     /// Checks that the work and its memory are within the limits.
     pub fn check_limits(&self) -> Result<(), Failure> {
-        limits::check(self.scene, &self.theories, rayon::current_num_threads())?;
-        check_memory(&self.scene.planes)
+        self.0.check_limits()?;
+        check_memory(&self.0.scene.planes)
     }
 
     /// Measures and predicts all planes, and compares their covariances.
     pub fn run(&self, reporter: &dyn Reporter) -> Result<SceneCovariances, Failure> {
-        let Self {
+        let MeasuredScene {
             scene,
             theories,
             method,
-        } = self;
-        let measurement = measured(scene, *method, 0..scene.run.batches, reporter)?;
-        let predictions = predicted(scene, theories, *method, None, reporter)?;
-        let source = method::source(&(*scene).clone().on_grids(), *method)?;
+            measurement,
+            predictions,
+        } = self.0.clone().run(reporter)?;
+        let source = method::source(&scene.clone().on_grids(), method)?;
         let bar = reporter.begin(Work::Steps {
             verb: "transforming",
             total: scene.planes.len(),
@@ -80,14 +70,14 @@ impl<'a> CovarianceStudy<'a> {
     /// Returns the content of the index, without its list of files.
     #[must_use]
     pub fn index(&self, found: &SceneCovariances) -> serde_json::Value {
-        let scene = self.scene;
+        let Job { scene, method, .. } = &self.0;
         serde_json::json!({
             "scene": scene.name,
             "scene_hash": scene.hash(),
             "scene_file": scene.file,
             "version": VERSION,
             "seed": scene.run.seed,
-            "method": self.method,
+            "method": method,
             "photons": scene.run.photons,
             "axes": AXES,
             "planes": found.reports,

@@ -28,7 +28,7 @@ pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
                 .map_or(Ok(Vec::new()), |source| measured(job, source, order, bytes))
         }
     };
-    obey(workers, &key([job.scene()]), &mut done)
+    obey(workers, &key([&job.scene]), &mut done)
 }
 
 /// Computes points of a sweep when the leading process requests them. `scenes` has the scene of
@@ -74,7 +74,7 @@ fn measured(
     let batches = batches.map(|(piece, own)| job.packing().unpacked_partial(source, piece, own));
     let batches: Vec<PartialBatch> = batches.collect::<Result<_, _>>()?;
     let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
-    let planes = &job.scene().planes;
+    let planes = &job.scene.planes;
     let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
     let done = found.batches();
     let done = done.map(|batch| Ok(whole(batch.index, job.packed(batch)?)));

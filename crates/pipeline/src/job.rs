@@ -3,14 +3,15 @@
 use crate::case::MeasuredScene;
 use crate::judged::Judged;
 use crate::load::SceneSource;
+use crate::measure::measured;
 use crate::method::{self, source};
 use crate::predict::predicted;
-use crate::reporter::Silent;
-use crate::workers::Packing;
+use crate::reporter::{Reporter, Silent};
+use crate::workers::{Leader, Packing};
 use crate::{limits, load};
 use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
 use etendue_field::PhotonSource;
-use etendue_scene::Scene;
+use etendue_scene::{RunFile, Scene};
 use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -18,39 +19,33 @@ use etendue_store::predictions;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Settings of a measurement that override the settings of the scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Number of photons, which replaces the number of photons in the scene.
-    pub photons: Option<u64>,
-    /// Seed of the photons, which replaces the seed in the scene.
-    pub seed: Option<u64>,
-    /// The method of measurement.
-    pub method: Method,
-}
-
-/// A scene with the settings of its measurement.
+/// A scene, and how to measure it.
 #[derive(Clone, Debug)]
 pub struct Job {
-    scene: Scene,
-    theories: Vec<Applicability>,
-    method: Method,
-    inputs: Vec<PathBuf>,
+    /// The scene.
+    pub scene: Scene,
+    /// The theory that applies to each plane.
+    pub theories: Vec<Applicability>,
+    /// The method of measurement.
+    pub method: Method,
+    /// The files from which the scene was read.
+    pub inputs: Vec<PathBuf>,
 }
 
 impl Job {
-    /// Reads the scene from a file, or from a text that replaces the file.
+    /// Reads a scene; `options` applies the settings that have their own arguments.
     ///
     /// # Errors
     /// When the scene cannot be read or is not valid; the error lists all faults with their line
     /// numbers.
-    pub fn read(source: &SceneSource, options: &Options) -> Result<Self, Failure> {
-        let scene = load::scene(source, |run| {
-            run.photons = options.photons.unwrap_or(run.photons);
-            run.seed = options.seed.unwrap_or(run.seed);
-        })?;
+    pub fn read(
+        source: &SceneSource,
+        method: Method,
+        options: impl FnOnce(&mut RunFile),
+    ) -> Result<Self, Failure> {
+        let scene = load::scene(source, options)?;
         let inputs = load::inputs(source, &scene);
-        Self::of(scene, options.method, inputs)
+        Self::of(scene, method, inputs)
     }
 
     /// Returns the job of a resolved scene; `inputs` are the files from which the scene was read.
@@ -64,22 +59,27 @@ impl Job {
         })
     }
 
-    /// Returns the scene.
+    /// Returns the scene with its measurement and predictions.
     #[must_use]
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+    pub fn with(self, measurement: Measurement, predictions: Vec<Prediction>) -> MeasuredScene {
+        MeasuredScene {
+            scene: self.scene,
+            theories: self.theories,
+            method: self.method,
+            measurement,
+            predictions,
+        }
     }
 
-    /// Returns the method of measurement.
-    #[must_use]
-    pub fn method(&self) -> Method {
-        self.method
-    }
-
-    /// Returns which theory applies to each plane.
-    #[must_use]
-    pub fn theories(&self) -> &[Applicability] {
-        &self.theories
+    /// Measures and predicts the scene.
+    ///
+    /// # Errors
+    /// When the method of measurement finds no light.
+    pub fn run(self, reporter: &dyn Reporter) -> Result<MeasuredScene, Failure> {
+        let all = 0..self.scene.run.batches;
+        let measurement = measured(&self.scene, self.method, all, reporter)?;
+        let predictions = self.predictions(None, reporter)?;
+        Ok(self.with(measurement, predictions))
     }
 
     /// Returns the source of the photons of the scene.
@@ -137,6 +137,14 @@ impl Job {
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())
     }
 
+    /// Fails if the measurement would not fit into the memory of this machine.
+    ///
+    /// # Errors
+    /// When the measurement would not fit into the memory of this machine.
+    pub fn check_memory(&self) -> Result<(), Failure> {
+        limits::check_memory(&self.scene, &self.theories, rayon::current_num_threads())
+    }
+
     /// Measures some batches, on the threads of the current pool.
     ///
     /// # Errors
@@ -147,12 +155,17 @@ impl Job {
         Ok(measure_watched(&*source, &self.scene.planes, &mut batches, watch).0)
     }
 
-    /// Predicts all planes, on the threads of the current pool.
+    /// Predicts all planes, on the threads of the current pool and by other processes, if there
+    /// are any.
     ///
     /// # Errors
     /// When another method of measurement replaces theory at a plane, and finds no light.
-    pub fn predict(&self) -> Result<Vec<Prediction>, Failure> {
-        predicted(&self.scene, &self.theories, self.method, None, &Silent)
+    pub fn predictions(
+        &self,
+        workers: Option<&Leader<'_>>,
+        reporter: &dyn Reporter,
+    ) -> Result<Vec<Prediction>, Failure> {
+        predicted(&self.scene, &self.theories, self.method, workers, reporter)
     }
 
     /// Compares the measurement with the predictions.
@@ -164,13 +177,7 @@ impl Job {
         measurement: Measurement,
         predictions: Vec<Prediction>,
     ) -> Result<Outcome, Failure> {
-        let case = MeasuredScene {
-            scene: self.scene.clone(),
-            theories: self.theories.clone(),
-            method: self.method,
-            measurement,
-            predictions,
-        };
+        let case = self.clone().with(measurement, predictions);
         let judged = Judged::of(&case, None, &Silent)?;
         Ok(Outcome {
             case,

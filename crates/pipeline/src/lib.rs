@@ -42,10 +42,9 @@ mod workers;
 
 pub use case::MeasuredScene;
 pub use follower::{follow_job, follow_points, report_failure};
-pub use job::{Job, Options, Outcome};
+pub use job::{Job, Outcome};
 pub use judged::{Judged, judged};
 pub use measure::measured;
-pub use predict::predicted;
 pub use read_case::read_case;
 pub use reporter::{Progress, Reporter, Silent, Work};
 pub use summary::{Inquiry, Stopwatch, Summary};

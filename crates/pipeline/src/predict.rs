@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// Predicts all planes of a scene for a measurement by `method`. If no theory applies to a plane,
 /// a measurement by another method replaces the prediction.
-pub fn predicted(
+pub(crate) fn predicted(
     scene: &Scene,
     theories: &[Applicability],
     method: Method,

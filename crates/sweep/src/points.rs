@@ -2,9 +2,9 @@
 
 use crate::request::SweepRequest;
 use crate::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
-use etendue_compare::{Applicability, Test};
+use etendue_compare::Test;
 use etendue_pipeline::load::{self, SceneSource};
-use etendue_pipeline::{MeasuredScene, Reporter, Summary, judged};
+use etendue_pipeline::{Job, Reporter, Summary, judged};
 use etendue_scene::{RunFile, Scene};
 use etendue_store::{ArgumentStyle, Failure, Method};
 use std::collections::BTreeMap;
@@ -92,8 +92,7 @@ impl SweepPoints {
     pub fn summary(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
-        let theories = Applicability::of_planes(scene);
-        let case = MeasuredScene::of(scene.clone(), theories, self.method, reporter)?;
+        let case = Job::of(scene.clone(), self.method, Vec::new())?.run(reporter)?;
         let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }

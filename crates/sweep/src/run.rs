@@ -6,9 +6,8 @@ use crate::quiet_reporter::Unshown;
 use crate::request::SweepRequest;
 use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::values::{Sweep, SweepPoint, short, shown};
-use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, tidy, uncertain};
-use etendue_pipeline::{Leader, Reporter, Work, limits, load, method};
+use etendue_pipeline::{Job, Leader, Reporter, Work, load};
 use etendue_report::pictures::PictureFiles;
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::VERSION;
@@ -47,11 +46,8 @@ pub fn run(
     workers: Option<&Leader<'_>>,
     reporter: &dyn Reporter,
 ) -> Result<FinishedSweep, Failure> {
-    let checked = |scene| {
-        let theories = Applicability::of_planes(scene);
-        method::check(scene, request.method)?;
-        limits::check(scene, &theories, rayon::current_num_threads())
-    };
+    let checked =
+        |scene: &Scene| Job::of(scene.clone(), request.method, Vec::new())?.check_limits();
     all.scenes.iter().try_for_each(checked)?;
     let SweepPoints { base, sweeps, .. } = all;
     let arguments = request.scene.arguments;

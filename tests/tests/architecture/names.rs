@@ -31,7 +31,6 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "an integral of a light field, and how a camera sees",
     ),
     ("Fault", "of a scene file, and of a file of rays"),
-    ("Options", "of a job, and of an import"),
     (
         "Picture",
         "a bitmap of a scene, of a camera, and of a figure",

@@ -3,9 +3,10 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use etendue_field::tidy;
+use etendue_pipeline::Job;
 use etendue_pipeline::load::SceneSource;
 use etendue_scene::{Color, RunFile};
-use etendue_store::Method;
+use etendue_store::{Failure, Method};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -64,6 +65,11 @@ impl PhotonArgs {
     pub(crate) fn set(&self, run: &mut RunFile) {
         run.photons = self.photons.unwrap_or(run.photons);
         run.seed = self.seed.unwrap_or(run.seed);
+    }
+
+    /// Reads a scene that is measured with these options.
+    pub(crate) fn job(&self, scene: &SceneArgs) -> Result<Job, Failure> {
+        Job::read(&scene.source(), self.method, |run| self.set(run))
     }
 }
 
