@@ -238,7 +238,7 @@ def _row(report: Mapping[str, Any]) -> str:
         report["name"],
         report["class"],
         p(report["p_value"]),
-        p(radial and radial["p_value"]),
+        p(radial["p_value"] if radial else None),
         share(report["relative_error"]),
         share(report["noise_limit"]),
         report["verdict"],
