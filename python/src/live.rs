@@ -168,7 +168,7 @@ impl Watch for Tracing<'_> {
         self.bar.advance(photons);
     }
 
-    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+    fn should_continue(&self, _batch: u32, _part: u32) -> bool {
         !self.live.is_stopped.load(Ordering::Relaxed)
     }
 }

@@ -12,7 +12,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_trace::{ABREAST, Emitter, Tracer};
+use etendue_trace::{Emitter, PHOTONS_PER_GROUP, Tracer};
 use etendue_transform::Net;
 use etendue_transform::RealFft4;
 use etendue_transform::SliceTransform;
@@ -42,8 +42,8 @@ fn emission(criterion: &mut Criterion) {
     let points = 0..u32::try_from(PHOTONS).unwrap();
     group.bench_function("points", |bencher| {
         bencher.iter(|| {
-            let groups = points.clone().step_by(ABREAST);
-            let words = groups.map(|first| net.columns::<ABREAST>(first, 0)[0]);
+            let groups = points.clone().step_by(PHOTONS_PER_GROUP);
+            let words = groups.map(|first| net.columns::<PHOTONS_PER_GROUP>(first, 0)[0]);
             words.fold(0, |all, words| all ^ words[0])
         });
     });
@@ -51,7 +51,7 @@ fn emission(criterion: &mut Criterion) {
         let emitter = Emitter::new(&scene(name));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
-                let groups = points.clone().step_by(ABREAST).map(|first| {
+                let groups = points.clone().step_by(PHOTONS_PER_GROUP).map(|first| {
                     let photons = emitter.emit(|block| net.columns(first, block));
                     photons.weights[0]
                 });

@@ -38,7 +38,7 @@ pub(crate) fn scattered(
 ) -> [Slices; 2] {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
-    let found = scattering::beside(view, chain, over, BUDGET);
+    let found = scattering::compare_chain(view, chain, over, BUDGET);
     let mut linear = found.slices.clone();
     if let Some(difference) = found.to_first_order {
         linear.half += &difference.half;

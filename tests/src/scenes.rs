@@ -110,9 +110,9 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
 /// Measures a scene with photons that are not aimed.
 pub(crate) fn traced_evenly(scene: &Scene) -> Measurement {
     if scene.other_lights.is_empty() {
-        measured(scene, &Tracer::evenly(scene))
+        measured(scene, &Tracer::with_uniform_emission(scene))
     } else {
-        measured(scene, &AllLights::evenly(scene))
+        measured(scene, &AllLights::with_uniform_emission(scene))
     }
 }
 

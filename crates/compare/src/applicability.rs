@@ -2,9 +2,9 @@
 
 use crate::chain::chain;
 use crate::class::Class;
-use crate::parallel::obstacles_to_theory;
-use crate::system::{in_the_way, print, reflected, system, too_fine};
+use crate::off_parallel::obstacles_to_theory;
 use crate::theories::{Theory, is_same};
+use crate::theory_input::{in_the_way, print, reflected, system, too_fine};
 use crate::unlit;
 use crate::validity::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, Side, VirtualPlane, Window};

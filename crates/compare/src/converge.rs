@@ -2,8 +2,8 @@
 //! central ray shrinks.
 
 use crate::applicability::Applicability;
-use crate::system::{print, reflected};
 use crate::theories::Theory;
+use crate::theory_input::{print, reflected};
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, reflections};

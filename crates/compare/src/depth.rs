@@ -1,8 +1,8 @@
 //! Computes the distances between a plane and the occluders of its light.
 
 use crate::chain::stands_before;
-use crate::parallel::passes;
-use crate::system::unvisited;
+use crate::off_parallel::passes;
+use crate::theory_input::unvisited;
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Adds the paper's linearised chain to the exact ray-space prediction.
 
 use crate::residuals::Residuals;
-use crate::system::print;
+use crate::theory_input::print;
 use crate::verdict::Verdict;
 use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;

@@ -156,7 +156,7 @@ struct Judgement {
     first_order: Option<FirstOrderReport>,
     verdict: Verdict,
     photons_needed: Option<f64>,
-    open: Option<String>,
+    undecided_reason: Option<String>,
 }
 
 impl ComparedSides<'_> {
@@ -178,8 +178,8 @@ impl ComparedSides<'_> {
                 || self.is_excused(test)
         };
         let photons_needed = self.photons_needed(&agreement, agrees, test);
-        let open = self.open_question(&agreement, agrees, photons_needed, test);
-        let verdict = match (&open, agrees) {
+        let undecided_reason = self.undecided_reason(&agreement, agrees, photons_needed, test);
+        let verdict = match (&undecided_reason, agrees) {
             (Some(_), _) => Verdict::Undecided,
             (None, true) => Verdict::Pass,
             (None, false) => Verdict::Fail,
@@ -193,8 +193,8 @@ impl ComparedSides<'_> {
             agreement,
             tests,
             first_order,
-            photons_needed: photons_needed.filter(|_| open.is_some()),
-            open,
+            photons_needed: photons_needed.filter(|_| undecided_reason.is_some()),
+            undecided_reason,
             verdict: if has_wrong_map {
                 Verdict::Fail
             } else {
@@ -204,7 +204,7 @@ impl ComparedSides<'_> {
     }
 
     /// Returns why the comparison is undecided, in words; `None` where it is decided.
-    fn open_question(
+    fn undecided_reason(
         &self,
         agreement: &Agreement,
         agrees: bool,
@@ -399,7 +399,7 @@ impl ComparedSides<'_> {
             wedge_share: self.wedge_shares(plane),
             high_frequency_share: self.high_frequency_shares(grid),
             photons_needed: judged.photons_needed,
-            undecided: judged.open.clone(),
+            undecided: judged.undecided_reason.clone(),
             verdict: judged.verdict,
             first_order: judged.first_order.clone(),
             warnings: warnings(

@@ -108,7 +108,7 @@ impl Residuals {
     /// prediction. At each frequency, this spectrum differs from F by at most `error`|F| plus the
     /// error of the fast transform, which is relative to the largest F.
     #[must_use]
-    pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
+    pub fn within_error(&self, prediction: &Slices, error: f64) -> Self {
         self.without(&self.forgiven(prediction, error))
     }
 

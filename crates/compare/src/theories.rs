@@ -1,7 +1,7 @@
 //! The theories that predict a windowed light field.
 
 use crate::chain::chain;
-use crate::system::{scattered, system};
+use crate::theory_input::{scattered, system};
 use etendue_field::{Mask, Orientation, VirtualPlane};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{

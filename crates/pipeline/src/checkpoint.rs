@@ -216,7 +216,7 @@ impl Watch for Keeper<'_> {
         self.bar.advance(photons);
     }
 
-    fn goes_on(&self, batch: u32, part: u32) -> bool {
+    fn should_continue(&self, batch: u32, part: u32) -> bool {
         let until = self.checkpointing.until;
         if until.is_some_and(|until| Instant::now() >= until) {
             self.is_late.store(true, Ordering::Relaxed);

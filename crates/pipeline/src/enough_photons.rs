@@ -183,7 +183,7 @@ fn reached_by_light(
     let scene = &case.scene;
     Ok(match method {
         Method::Photons => of_each(&AllLights::photons(scene), scene, plane),
-        Method::Even => of_each(&AllLights::evenly(scene), scene, plane),
+        Method::Even => of_each(&AllLights::with_uniform_emission(scene), scene, plane),
         Method::Backward => {
             let lights = AllLights::backward(scene).map_err(Failure::bad_input)?;
             of_each(&lights, scene, plane)

@@ -28,7 +28,7 @@ pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
                 .map_or(Ok(Vec::new()), |source| measured(job, source, order, bytes))
         }
     };
-    obey(workers, &key([&job.scene]), &mut done)
+    serve(workers, &key([&job.scene]), &mut done)
 }
 
 /// Computes points of a sweep when the leading process requests them. `scenes` has the scene of
@@ -42,7 +42,7 @@ pub fn follow_points(
         let run = |piece: &Piece| Ok(whole(piece.number, run(piece.number)?));
         order.pieces.iter().map(run).collect()
     };
-    obey(workers, &key(scenes), &mut done)
+    serve(workers, &key(scenes), &mut done)
 }
 
 /// Tells the leading process why this process cannot continue; the leading process reports the
@@ -90,7 +90,7 @@ struct Until(Instant);
 impl Watch for Until {
     fn traced(&self, _photons: u64) {}
 
-    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+    fn should_continue(&self, _batch: u32, _part: u32) -> bool {
         Instant::now() < self.0
     }
 }
@@ -99,7 +99,7 @@ impl Watch for Until {
 type Done = Result<Vec<Packed>, Failure>;
 
 /// Carries out each order by calling `done`, until an empty order arrives.
-fn obey(
+fn serve(
     workers: &dyn Workers,
     key: &str,
     done: &mut dyn FnMut(&Order, &[u8]) -> Done,

@@ -11,13 +11,13 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
         return Ok(match method {
             Method::Photons => Box::new(AllLights::photons(scene)),
             Method::Backward => Box::new(AllLights::backward(scene).map_err(Failure::bad_input)?),
-            Method::Even => Box::new(AllLights::evenly(scene)),
+            Method::Even => Box::new(AllLights::with_uniform_emission(scene)),
         });
     }
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
-        Method::Even => Box::new(Tracer::evenly(scene)),
+        Method::Even => Box::new(Tracer::with_uniform_emission(scene)),
     })
 }
 

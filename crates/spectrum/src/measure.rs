@@ -37,7 +37,7 @@ pub trait Watch: Sync {
     /// Returns whether a part of a batch should be measured. This function is called just before
     /// the part is measured. If it returns false, this part and the later parts of the batch are
     /// not measured.
-    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+    fn should_continue(&self, _batch: u32, _part: u32) -> bool {
         true
     }
 
@@ -131,7 +131,7 @@ impl Iterator for BatchParts<'_> {
         loop {
             if let Some(sum) = self.all.last()
                 && self.next < sum.parts
-                && self.watch.goes_on(sum.index, self.next)
+                && self.watch.should_continue(sum.index, self.next)
             {
                 self.next += 1;
                 return Some((Arc::clone(sum), self.next - 1));

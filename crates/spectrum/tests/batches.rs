@@ -122,7 +122,7 @@ struct Stop {
 impl Watch for Stop {
     fn traced(&self, _: u64) {}
 
-    fn goes_on(&self, batch: u32, part: u32) -> bool {
+    fn should_continue(&self, batch: u32, part: u32) -> bool {
         batch > 0 || part < self.parts
     }
 

@@ -55,7 +55,7 @@ const LOCK: &str = ".etendue.lock";
 pub(crate) const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// The time for which another process may hold a folder before a message is given.
-const PATIENCE: Duration = Duration::from_secs(3);
+const MAX_WAIT: Duration = Duration::from_secs(3);
 
 /// The files that a command will write, and the files that it reads.
 #[derive(Clone, Debug)]
@@ -164,7 +164,7 @@ impl Results {
             match Self::claim(folder, plan.clone()) {
                 Err(failure) if failure.message.ends_with(lock::BUSY) => {
                     // Processes that share a run briefly wait for each other without a message.
-                    if begun.take_if(|begun| begun.elapsed() > PATIENCE).is_some() {
+                    if begun.take_if(|begun| begun.elapsed() > MAX_WAIT).is_some() {
                         warn(&format!(
                             "{}: waiting for that process to end",
                             failure.message

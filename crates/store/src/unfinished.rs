@@ -15,7 +15,7 @@ static KEPT: Mutex<Option<&str>> = Mutex::new(None);
 
 /// The time for which a signal waits until files are made, moved or released. On a disk that does
 /// not answer, these steps may never end.
-const PATIENCE: Duration = Duration::from_secs(5);
+const MAX_WAIT: Duration = Duration::from_secs(5);
 
 /// Sets the message of a command that is interrupted from now on.
 pub fn keeps(message: &'static str) {
@@ -49,10 +49,10 @@ pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Locks the list, unless another thread holds it for longer than [`PATIENCE`].
+/// Locks the list, unless another thread holds it for longer than [`MAX_WAIT`].
 fn unfinished_soon() -> Option<MutexGuard<'static, Vec<PathBuf>>> {
     let begun = Instant::now();
-    while begun.elapsed() < PATIENCE {
+    while begun.elapsed() < MAX_WAIT {
         match UNFINISHED.try_lock() {
             Ok(unfinished) => return Some(unfinished),
             Err(TryLockError::Poisoned(error)) => return Some(error.into_inner()),
@@ -102,7 +102,7 @@ mod tests {
         let (told, wait) = channel();
         std::thread::spawn(move || abandon(|message| told.send(message).unwrap()));
         // The margin is for a busy machine.
-        let message = wait.recv_timeout(PATIENCE + Duration::from_secs(20));
+        let message = wait.recv_timeout(MAX_WAIT + Duration::from_secs(20));
         assert_eq!(message, Ok("interrupted"));
         end.send(()).unwrap();
         stuck.join().unwrap();

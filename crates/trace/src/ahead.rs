@@ -6,7 +6,7 @@ use crate::emit::Emitter;
 use crate::flat_leg::FlatLeg;
 use crate::mesh_order::OrderMemory;
 use crate::numbers::Numbers;
-use crate::photon_group::{ABREAST, Hits, PhotonGroup};
+use crate::photon_group::{Hits, PHOTONS_PER_GROUP, PhotonGroup};
 use fearless_simd::{Level, dispatch};
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -50,7 +50,7 @@ impl Ahead {
     /// `None` if they were not emitted.
     #[inline]
     pub(crate) fn of(&self, first: u64) -> Option<(&PhotonGroup, &Hits)> {
-        let i = usize::try_from(first.checked_sub(self.first)?).ok()? / ABREAST;
+        let i = usize::try_from(first.checked_sub(self.first)?).ok()? / PHOTONS_PER_GROUP;
         self.groups.get(i).zip(self.hits.get(i))
     }
 
@@ -72,7 +72,7 @@ impl Ahead {
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let numbers = numbers(start);
-            let firsts = (start..end).step_by(ABREAST);
+            let firsts = (start..end).step_by(PHOTONS_PER_GROUP);
             let group = |first| emit_group(emitter, level, first..end, &numbers);
             self.groups.extend(firsts.map(group));
         }

@@ -6,7 +6,7 @@ use crate::aim::{FromSky, looks_across};
 use crate::arrival::radiance_per_flux;
 use crate::lanes::lanes;
 use crate::lattice::{LatticeGroup, Lattices};
-use crate::photon_group::{ABREAST, PhotonColumn, PhotonGroup, ray};
+use crate::photon_group::{PHOTONS_PER_GROUP, PhotonColumn, PhotonGroup, ray};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::proposal::{DrawOrder, ProfileDensity, Proposal};
 use crate::radiance::radiances;
@@ -99,7 +99,7 @@ impl Emitter {
     /// If the light has extent or the surface reaches back to the light, the result is the
     /// emitter of [`Self::new`].
     #[must_use]
-    pub fn evenly(scene: &Scene) -> Self {
+    pub fn with_uniform_emission(scene: &Scene) -> Self {
         let plain = Self::new(scene);
         match even(scene) {
             even if even.is_empty() => plain,
@@ -139,7 +139,7 @@ impl Emitter {
     /// has.
     pub(crate) fn emit_aimed(&self, group: LatticeGroup, shares: &[f64]) -> PhotonGroup {
         let EmissionStrategy::Aimed { proposals, .. } = &self.strategy else {
-            return self.weighted([[0.0; ABREAST]; 4], [0.0; ABREAST]);
+            return self.weighted([[0.0; PHOTONS_PER_GROUP]; 4], [0.0; PHOTONS_PER_GROUP]);
         };
         dispatch!(self.level, _simd => {
             let (rays, densities) = aimed(proposals, group.words, group.proposals, shares);
@@ -150,11 +150,12 @@ impl Emitter {
     /// Emits several photons together. `words` returns a block of four random words of each photon,
     /// as columns.
     #[must_use]
-    pub fn emit(&self, words: impl Fn(u32) -> [[u32; ABREAST]; 4]) -> PhotonGroup {
+    pub fn emit(&self, words: impl Fn(u32) -> [[u32; PHOTONS_PER_GROUP]; 4]) -> PhotonGroup {
         let one_by_one = |drawn: &dyn Fn([[u32; 4]; 2]) -> Option<(TwoPlane, f64)>| {
-            let (mut rays, mut densities) = ([[0.0; ABREAST]; 4], [0.0; ABREAST]);
+            let (mut rays, mut densities) =
+                ([[0.0; PHOTONS_PER_GROUP]; 4], [0.0; PHOTONS_PER_GROUP]);
             let blocks = [words(0), words(1)];
-            for i in 0..ABREAST {
+            for i in 0..PHOTONS_PER_GROUP {
                 let words = blocks.map(|block| block.map(|column| column[i]));
                 if let Some((TwoPlane { x, y, u, v }, density)) = drawn(words) {
                     [rays[0][i], rays[1][i], rays[2][i], rays[3][i]] = [x, y, u, v];
@@ -176,8 +177,8 @@ impl Emitter {
             EmissionStrategy::Aimed { proposals, equal } => {
                 let numbers = words(0);
                 let count = proposals.len();
-                let chosen: [usize; ABREAST] = match count {
-                    1 => [0; ABREAST],
+                let chosen: [usize; PHOTONS_PER_GROUP] = match count {
+                    1 => [0; PHOTONS_PER_GROUP],
                     _ => words(1)[3].map(|word| random::index(word, count)),
                 };
                 dispatch!(self.level, _simd => {
@@ -298,8 +299,8 @@ fn window_proposal(
 #[inline(always)]
 fn aimed(
     proposals: &[[Proposal; 2]],
-    words: [[u32; ABREAST]; 4],
-    chosen: [usize; ABREAST],
+    words: [[u32; PHOTONS_PER_GROUP]; 4],
+    chosen: [usize; PHOTONS_PER_GROUP],
     shares: &[f64],
 ) -> ([PhotonColumn; 4], PhotonColumn) {
     let [a, b, c, d] = words.map(|words| lanes(|i| random::unit(words[i])));
@@ -308,7 +309,7 @@ fn aimed(
         let ([y, v], in_y) = along_y.samples_and_densities([c, d]);
         return ([x, y, u, v], lanes(|i| in_x[i] * in_y[i]));
     }
-    let mut rays = [[0.0; ABREAST]; 4];
+    let mut rays = [[0.0; PHOTONS_PER_GROUP]; 4];
     for (number, [along_x, along_y]) in proposals.iter().enumerate() {
         if !chosen.contains(&number) {
             continue;
@@ -336,7 +337,7 @@ fn densities(
     shares: &[f64],
     [x, y, u, v]: &[PhotonColumn; 4],
 ) -> PhotonColumn {
-    let mut sums = [0.0; ABREAST];
+    let mut sums = [0.0; PHOTONS_PER_GROUP];
     for ([along_x, along_y], share) in proposals.iter().zip(shares) {
         let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));
         for (i, sum) in sums.iter_mut().enumerate() {

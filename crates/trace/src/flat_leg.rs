@@ -5,7 +5,7 @@ use crate::grid::Grid;
 use crate::lanes::{inside, inside_polygon, lanes};
 use crate::mesh::BlockerMesh;
 use crate::mesh_order::{OrderMemory, meet_mesh};
-use crate::photon_group::{ABREAST, Hits, PhotonGroup};
+use crate::photon_group::{Hits, PHOTONS_PER_GROUP, PhotonGroup};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::unbounded::Unbounded;
 use etendue_field::{Crossing, Hole, Ledger, Shape, Side, TwoPlane};
@@ -241,7 +241,7 @@ impl FlatPlane {
     fn record(&self, photons: &PhotonGroup, hits: &Hits, crossings: &mut Vec<Crossing>) {
         let [x, y] = photons.positions(self.distance);
         let [_, _, u, v] = &photons.rays;
-        for i in 0..ABREAST {
+        for i in 0..PHOTONS_PER_GROUP {
             let count = crossings.len();
             let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
             crossings.push(Crossing {

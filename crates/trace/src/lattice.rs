@@ -9,7 +9,7 @@
 //! frequencies and zero.
 
 use crate::lanes::lanes;
-use crate::photon_group::ABREAST;
+use crate::photon_group::PHOTONS_PER_GROUP;
 use crate::proposal::Proposal;
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
@@ -40,9 +40,9 @@ pub(crate) struct LatticePoints {
 
 /// Random numbers of a group of photons.
 pub(crate) struct LatticeGroup {
-    pub(crate) words: [[u32; ABREAST]; 4],
+    pub(crate) words: [[u32; PHOTONS_PER_GROUP]; 4],
     /// The proposal of each photon.
-    pub(crate) proposals: [usize; ABREAST],
+    pub(crate) proposals: [usize; PHOTONS_PER_GROUP],
 }
 
 /// The least and largest number of lattices that are tried for each proposal.
@@ -110,7 +110,7 @@ impl PlaneFrequencies {
             let beyond = (along.abs() - self.largest[axis]).max(0.0);
             (across * across + beyond * beyond) / (self.widths[axis] * self.widths[axis])
         };
-        let mut sum = [0.0; ABREAST];
+        let mut sum = [0.0; PHOTONS_PER_GROUP];
         for &(sin, cos) in &self.azimuths {
             let turned = |axis: usize, [x, y]: &[VectorLanes; 2], i: usize| {
                 squared(axis, x[i] * cos + y[i] * sin, y[i] * cos - x[i] * sin)
@@ -219,7 +219,11 @@ impl LatticePoints {
     /// Returns the random numbers of a group of photons that begins with `photon`. `net` returns the
     /// group's numbers from a net.
     #[inline(always)]
-    pub(crate) fn group(&self, photon: u64, net: impl Fn() -> [[u32; ABREAST]; 4]) -> LatticeGroup {
+    pub(crate) fn group(
+        &self,
+        photon: u64,
+        net: impl Fn() -> [[u32; PHOTONS_PER_GROUP]; 4],
+    ) -> LatticeGroup {
         let number = self.lattices.len() as u64;
         let first = photon - self.first;
         let proposal = |i: usize| {
@@ -230,7 +234,7 @@ impl LatticePoints {
             let start = first.wrapping_mul(steps[k]).wrapping_add(shift[k]);
             (start.wrapping_add((i as u64).wrapping_mul(steps[k])) >> 32) as u32
         };
-        let (begin, end) = (proposal(0), proposal(ABREAST - 1));
+        let (begin, end) = (proposal(0), proposal(PHOTONS_PER_GROUP - 1));
         if begin == end {
             return LatticeGroup {
                 words: match &self.lattices[begin] {
@@ -240,7 +244,7 @@ impl LatticePoints {
                     }
                     None => net(),
                 },
-                proposals: [begin; ABREAST],
+                proposals: [begin; PHOTONS_PER_GROUP],
             };
         }
         let proposals = lanes(proposal);
@@ -318,7 +322,7 @@ fn replicas(scene: &Scene) -> Vec<Replica> {
 type Frequencies = [[[f64; 2]; 2]; 2];
 
 /// One value for each of several vectors of a dual lattice.
-type VectorLanes = [f64; ABREAST];
+type VectorLanes = [f64; PHOTONS_PER_GROUP];
 
 /// Returns the coefficients of all sums of basis vectors, except that opposite sums are the same.
 fn coefficients() -> Vec<[f64; 4]> {
@@ -342,7 +346,7 @@ fn badness(
 ) -> f64 {
     let basis = dual_basis(points, g).map(|vector| vector.map(|h| h as f64));
     let mut sum = 0.0;
-    for group in coefficients.chunks(ABREAST) {
+    for group in coefficients.chunks(PHOTONS_PER_GROUP) {
         let factors = |i: usize, k: usize| group.get(i).map_or(0.0, |factors| factors[k]);
         let h: [VectorLanes; 4] = [0, 1, 2, 3]
             .map(|axis| lanes(|i| (0..4).map(|k| factors(i, k) * basis[k][axis]).sum()));
@@ -350,7 +354,7 @@ fn badness(
             .map(|i| frequencies[i].map(|[a, b]| lanes(|k| a * h[2 * i][k] + b * h[2 * i + 1][k])));
         for replica in replicas {
             let from = [0, 1].map(|i| [0, 1].map(|k| along[i][k].map(|f| f + replica.along[i][k])));
-            let mut near = [0.0; ABREAST];
+            let mut near = [0.0; PHOTONS_PER_GROUP];
             for target in targets {
                 let target = target.nearness(&from);
                 near = lanes(|i| near[i] + target[i]);
@@ -439,9 +443,9 @@ mod tests {
         let points = lattices.of(1, Stream::Lattice, 3, &range);
         assert_eq!(points.shares(), [1.0 / 3.0; 3]);
         let mut counts = [0; 3];
-        for first in range.clone().step_by(ABREAST) {
-            let group = points.group(first, || [[9; ABREAST]; 4]);
-            for (i, photon) in (0..ABREAST).zip(first..range.end) {
+        for first in range.clone().step_by(PHOTONS_PER_GROUP) {
+            let group = points.group(first, || [[9; PHOTONS_PER_GROUP]; 4]);
+            for (i, photon) in (0..PHOTONS_PER_GROUP).zip(first..range.end) {
                 let index = photon - range.start;
                 let proposal = group.proposals[i];
                 counts[proposal] += 1;

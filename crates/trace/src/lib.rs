@@ -48,6 +48,6 @@ mod world;
 pub use backward::{Backward, LightNotFound, finds};
 pub use emit::Emitter;
 pub use lights::AllLights;
-pub use photon_group::{ABREAST, PhotonGroup};
+pub use photon_group::{PHOTONS_PER_GROUP, PhotonGroup};
 pub use tracer::Tracer;
 pub use world::PlaneInWorld;

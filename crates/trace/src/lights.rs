@@ -3,7 +3,7 @@
 use crate::ahead::emit_group;
 use crate::emit::Emitter;
 use crate::numbers::Numbers;
-use crate::photon_group::ABREAST;
+use crate::photon_group::PHOTONS_PER_GROUP;
 use crate::tracer::MAX_REDUCED_PHOTONS;
 use crate::{Backward, LightNotFound, Tracer};
 use etendue_field::{Crossing, Ledger, PhotonSource};
@@ -46,10 +46,14 @@ impl AllLights<Tracer> {
         Self::of_power(scene, Emitter::new, Tracer::new)
     }
 
-    /// Builds the tracers that check them ([`Tracer::evenly`]).
+    /// Builds the tracers that check them ([`Tracer::with_uniform_emission`]).
     #[must_use]
-    pub fn evenly(scene: &Scene) -> Self {
-        Self::of_power(scene, Emitter::evenly, Tracer::evenly)
+    pub fn with_uniform_emission(scene: &Scene) -> Self {
+        Self::of_power(
+            scene,
+            Emitter::with_uniform_emission,
+            Tracer::with_uniform_emission,
+        )
     }
 
     fn of_power(
@@ -122,7 +126,7 @@ fn seed(seed: u64, light: u64) -> u64 {
 fn power(emitter: &Emitter, seed: u64) -> f64 {
     let stream = Stream::Power;
     let numbers = Numbers::Random { seed, stream };
-    let firsts = (0..TRIED).step_by(ABREAST);
+    let firsts = (0..TRIED).step_by(PHOTONS_PER_GROUP);
     let groups = firsts.map(|at| emit_group(emitter, Level::new(), at..TRIED, &numbers));
     let fluxes = groups.map(|group| group.fluxes.iter().sum::<f64>());
     fluxes.sum::<f64>() / TRIED as f64

@@ -6,25 +6,25 @@ use etendue_field::TwoPlane;
 use glam::DVec3;
 
 /// The number of photons of a group.
-pub const ABREAST: usize = 16;
+pub const PHOTONS_PER_GROUP: usize = 16;
 
 /// A number for each photon of a group.
-pub(crate) type PhotonColumn = [f64; ABREAST];
+pub(crate) type PhotonColumn = [f64; PHOTONS_PER_GROUP];
 
 /// For each photon, the number of the obstacle that the photon meets, from 1 on in the order of a
 /// flat leg. The number 0 stands for no obstacle, and the number after the last for a photon that
 /// carries no light.
-pub(crate) type Hits = [usize; ABREAST];
+pub(crate) type Hits = [usize; PHOTONS_PER_GROUP];
 
 /// Photons that leave the light together.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonGroup {
     /// Columns of x, y, u and v in the plane of the light.
-    pub rays: [[f64; ABREAST]; 4],
+    pub rays: [[f64; PHOTONS_PER_GROUP]; 4],
     /// The contributions to radiance space; zero for a photon that carries no light.
-    pub weights: [f64; ABREAST],
+    pub weights: [f64; PHOTONS_PER_GROUP],
     /// The fluxes, W times the number of emitted photons.
-    pub fluxes: [f64; ABREAST],
+    pub fluxes: [f64; PHOTONS_PER_GROUP],
 }
 
 impl PhotonGroup {
@@ -52,7 +52,7 @@ impl PhotonGroup {
 
     /// Makes all photons except the first `count` carry no light.
     pub(crate) fn end_at(&mut self, count: u64) {
-        for i in (0..ABREAST).filter(|i| *i as u64 >= count) {
+        for i in (0..PHOTONS_PER_GROUP).filter(|i| *i as u64 >= count) {
             (self.weights[i], self.fluxes[i]) = (0.0, 0.0);
         }
     }

@@ -11,7 +11,7 @@ use crate::heading::Heading;
 use crate::lattice::Lattices;
 use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
-use crate::photon_group::{ABREAST, PhotonGroup};
+use crate::photon_group::{PHOTONS_PER_GROUP, PhotonGroup};
 use crate::plane_on_leg::{PlaneOnLeg, bends};
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
@@ -160,9 +160,9 @@ impl Tracer {
     /// of virtual planes before this surface. Photons are traced and scattered light is aimed in
     /// the same way as by the tracer of [`Self::new`].
     #[must_use]
-    pub fn evenly(scene: &Scene) -> Self {
+    pub fn with_uniform_emission(scene: &Scene) -> Self {
         let streams = [Stream::Even, Stream::EvenNet, Stream::EvenLattice];
-        Self::with(scene, Emitter::evenly(scene), streams)
+        Self::with(scene, Emitter::with_uniform_emission(scene), streams)
     }
 
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the
@@ -177,7 +177,7 @@ impl Tracer {
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) {
-        for first in range.clone().step_by(ABREAST) {
+        for first in range.clone().step_by(PHOTONS_PER_GROUP) {
             let emitted;
             let (group, hits) = match ahead.of(first) {
                 Some((group, hits)) => (group, Some(*hits)),
@@ -192,7 +192,7 @@ impl Tracer {
             let Some(flat) = &self.flat else {
                 // If a point is drawn inside the bounding square of a disc but outside the disc, it
                 // counts as a photon that carries no light.
-                let lit = (0..ABREAST).filter(|i| group.weights[*i] > 0.0);
+                let lit = (0..PHOTONS_PER_GROUP).filter(|i| group.weights[*i] > 0.0);
                 photons.extend(lit.map(|i| Photon::emitted(group, i, first)));
                 continue;
             };
@@ -200,7 +200,8 @@ impl Tracer {
             let arrivals = flat.trace(group, &hits, crossings, ledger);
             if let Some(next) = self.legs.get(1) {
                 let block = self.emitter.bounces_from();
-                let words: [[u32; ABREAST]; 4] = numbers.columns(self.level, first, block);
+                let words: [[u32; PHOTONS_PER_GROUP]; 4] =
+                    numbers.columns(self.level, first, block);
                 let course = &self.legs[0].courses.along;
                 photons.extend(arrivals.filter_map(|(i, distance)| {
                     let arrival = group.arrival(i, distance);

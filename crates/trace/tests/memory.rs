@@ -43,7 +43,7 @@ fn all_legs_and_tracers_share_what_a_mesh_takes() {
     let peak = each(bytes("VmHWM") - before);
     assert!(peak <= 150.0, "{peak} bytes a triangle while they are made");
     let held = bytes("VmRSS");
-    let tracers = [Tracer::new(&scene), Tracer::evenly(&scene)];
+    let tracers = [Tracer::new(&scene), Tracer::with_uniform_emission(&scene)];
     let backward = Backward::new(&scene).unwrap();
     let more = each(bytes("VmRSS") - held);
     // The index of a triangle takes 4 bytes.

@@ -6,7 +6,7 @@
 use crate::common::estimates;
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_trace::{ABREAST, Backward, Emitter, Tracer, finds};
+use etendue_trace::{Backward, Emitter, PHOTONS_PER_GROUP, Tracer, finds};
 use etendue_transform::random::{Stream, words};
 
 const LIGHTS: [&str; 3] = [
@@ -115,7 +115,7 @@ fn what_a_mirror_turns_first_is_sent_evenly() {
         let scene = scene(light, &surfaces, r#""s", "floor""#, &planes);
         assert!(!scene.planes.iter().any(|plane| finds(&scene, plane)));
         assert!(Backward::new(&scene).is_err());
-        agree(&scene, &Tracer::evenly(&scene), light);
+        agree(&scene, &Tracer::with_uniform_emission(&scene), light);
     }
 }
 
@@ -129,7 +129,7 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
         let planes = ["at: Emission", r#"at: After("s")"#];
         let scene = scene(light, &small, r#""s""#, &planes);
         assert!(!scene.planes.iter().any(|plane| finds(&scene, plane)));
-        agree(&scene, &Tracer::evenly(&scene), light);
+        agree(&scene, &Tracer::with_uniform_emission(&scene), light);
     }
 }
 
@@ -141,7 +141,7 @@ fn what_is_sent_evenly_has_one_density() {
     let scene = scene(LIGHTS[0], &mirror, r#""s""#, &[r#"at: After("s")"#]);
     let spread = |emitter: &Emitter| {
         let photons = emitter.emit(|block| {
-            let blocks: [_; ABREAST] =
+            let blocks: [_; PHOTONS_PER_GROUP] =
                 std::array::from_fn(|i| words(1, Stream::Photon, i as u64, block));
             [0, 1, 2, 3].map(|k| blocks.map(|block| block[k]))
         });
@@ -153,6 +153,6 @@ fn what_is_sent_evenly_has_one_density() {
         });
         high / low - 1.0
     };
-    assert!(spread(&Emitter::evenly(&scene)) < 1e-14); // rounding
+    assert!(spread(&Emitter::with_uniform_emission(&scene)) < 1e-14); // rounding
     assert!(spread(&Emitter::new(&scene)) > 0.01);
 }

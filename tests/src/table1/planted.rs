@@ -218,7 +218,7 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
                 let said = predicted::traced(&view, &place.window, &place.grid).slices;
                 let error = outcome.planes[i].report.quadrature_error.unwrap_or(0.0);
                 let residuals =
-                    Residuals::new(&outcome.measurement, i, &said).forgiving(&said, error);
+                    Residuals::new(&outcome.measurement, i, &said).within_error(&said, error);
                 Some((residuals.p_value(outcome.scene.run.seed)?, i))
             };
             let found: Vec<(f64, usize)> = (0..outcome.planes.len()).filter_map(p_value).collect();

@@ -97,7 +97,11 @@ fn meshes_unlike_their_patches_are_decided() {
         let theory = Applicability::new(&scene, &scene.planes[0]);
         assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
         let measured = photons(&scene);
-        let reference = by_reference(&scene, 0, &self::measured(&scene, &Tracer::evenly(&scene)));
+        let reference = by_reference(
+            &scene,
+            0,
+            &self::measured(&scene, &Tracer::with_uniform_emission(&scene)),
+        );
         let judged = report(&scene, &measured, 0, &reference);
         assert_eq!(judged.verdict, Verdict::Pass, "{name}");
         let regardless = by_specular(&scene, 0, reference);

@@ -101,7 +101,7 @@ impl<'a> Leader<'a> {
             if piece.parts.is_some() {
                 let partial = packing.unpacked_partial(source, piece, bytes)?;
                 watch.begun(&partial);
-                let goes_on = watch.goes_on(partial.index, partial.parts);
+                let goes_on = watch.should_continue(partial.index, partial.parts);
                 held(&begun).insert(piece.number, partial);
                 if goes_on {
                     left.put_back(piece.number);

@@ -22,7 +22,7 @@ pub(super) struct FieldPaths<'a> {
     window: &'a Window,
     obstacles: PreparedObstacles<'a>,
     chain: ReflectionChain,
-    start: Start<'a>,
+    start: LightSampler<'a>,
     /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
     guides: Vec<Conditional>,
     /// The coordinates by which rays are aimed, for the leg from the light and for the leg from
@@ -32,7 +32,7 @@ pub(super) struct FieldPaths<'a> {
 
 /// The sampling of the light's rays.
 #[derive(Debug)]
-enum Start<'a> {
+enum LightSampler<'a> {
     /// Positions in a beam are drawn. The Gaussian describes the rays that reach the window.
     Beam(Conditional),
     /// Directions from points of the light are drawn. The Gaussian describes the rays that reach
@@ -41,7 +41,7 @@ enum Start<'a> {
     Sky(Box<SkyRays<'a>>),
 }
 
-impl<'a> Start<'a> {
+impl<'a> LightSampler<'a> {
     /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
     /// window. `aim` contains the coordinates of the leg from the light.
     fn new(
@@ -75,7 +75,7 @@ pub(super) struct DrawnPath {
 }
 
 /// A path under construction.
-struct Going {
+struct PathState {
     ray: LegRay,
     /// Flux divided by the sampling density.
     flux: f64,
@@ -104,7 +104,7 @@ impl<'a> FieldPaths<'a> {
         let legs = 0..chain.maps.len();
         let aims = legs.map(|leg| DirectionCoordinates::new(&view.system, &chain.scatterers, leg));
         let aims: Vec<DirectionCoordinates> = aims.collect();
-        let start = Start::new(view, &chain, &guide, aims[0])?;
+        let start = LightSampler::new(view, &chain, &guide, aims[0])?;
         Some(Self {
             view,
             window,
@@ -158,7 +158,7 @@ impl<'a> FieldPaths<'a> {
     }
 
     /// Samples a ray of the light.
-    fn begin(&self, [a, b, c, d]: [f64; 4]) -> Option<Going> {
+    fn begin(&self, [a, b, c, d]: [f64; 4]) -> Option<PathState> {
         let light = &self.view.system.light;
         let (outer, per_area) = match light.shape() {
             Some(shape) => (point_of(shape, [c, d]), shape.area()),
@@ -168,17 +168,17 @@ impl<'a> FieldPaths<'a> {
         let aim = &self.aims[0];
         let mut target = None;
         let (ray, density) = match &self.start {
-            Start::Sky(rays) => {
+            LightSampler::Sky(rays) => {
                 let (ray, density, aimed) = rays.draw([a, b, c, d])?;
                 target = aimed;
                 (ray, density)
             }
-            Start::Beam(guide) => {
+            LightSampler::Beam(guide) => {
                 let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
                 let [x, y] = rays.draw([a, b]);
                 ([x, y, 0.0, 0.0], rays.density([x, y]))
             }
-            Start::Points(guide) => {
+            LightSampler::Points(guide) => {
                 let [x, y] = outer;
                 let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
                 let at = targets.draw([a, b]);
@@ -196,7 +196,7 @@ impl<'a> FieldPaths<'a> {
         };
         let flux = emitted(light, ray) * per_area / density;
         let [.., u, v] = ray;
-        (flux > 0.0 && flux.is_finite()).then(|| Going {
+        (flux > 0.0 && flux.is_finite()).then(|| PathState {
             ray: LegRay::new(ray),
             flux,
             radiance: flux * (1.0 + u * u + v * v).powi(2) * map.det().abs(),
@@ -207,8 +207,8 @@ impl<'a> FieldPaths<'a> {
 
     /// Returns the point where light meets the surface at the end of a leg. Returns `None` if the
     /// light misses this surface.
-    fn arrive(&self, leg: usize, going: &mut Going) -> Option<DVec3> {
-        let Going { ray, .. } = going;
+    fn arrive(&self, leg: usize, going: &mut PathState) -> Option<DVec3> {
+        let PathState { ray, .. } = going;
         let surfaces = &self.view.system.surfaces;
         let start = ROUNDING * ray.point.length();
         let end = surfaces[leg].first(ray, start)?;
@@ -237,7 +237,13 @@ impl<'a> FieldPaths<'a> {
     }
 
     /// Samples a direction away from a scatterer, and updates the weight.
-    fn scatter(&self, number: usize, point: DVec3, r: [f64; 2], going: &mut Going) -> Option<()> {
+    fn scatter(
+        &self,
+        number: usize,
+        point: DVec3,
+        r: [f64; 2],
+        going: &mut PathState,
+    ) -> Option<()> {
         let scatterer = &self.chain.scatterers[number];
         let surface = &self.view.system.surfaces[scatterer.number];
         let normal = surface.lit_side(point, going.ray.direction)?;
@@ -286,8 +292,8 @@ impl<'a> FieldPaths<'a> {
     }
 
     /// Follows the last leg, to the plane.
-    fn end(&self, going: &Going) -> Option<DrawnPath> {
-        let Going {
+    fn end(&self, going: &PathState) -> Option<DrawnPath> {
+        let PathState {
             ray,
             flux,
             radiance,

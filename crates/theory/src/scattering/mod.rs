@@ -32,7 +32,7 @@ mod tests;
 
 pub use chain::{ScatteringChain, chain, defect};
 pub use operator::semi_convolution;
-pub use predict::beside;
+pub use predict::compare_chain;
 
 pub(crate) use brdf::narrowest;
 pub(crate) use chain::{local, reflection};

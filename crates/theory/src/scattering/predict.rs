@@ -87,7 +87,7 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
 /// Returns the exact prediction, and the difference between a given chain and this prediction. The
 /// chain may differ from the result of [`chain`](super::chain()).
 #[must_use]
-pub fn beside(
+pub fn compare_chain(
     view: &Observed<ScatteringSystem>,
     chain: &ScatteringChain,
     over: Over<'_>,

@@ -87,7 +87,7 @@ fn group(seed: u64, number: u64) -> PhotonGroup {
     let mut group = PhotonGroup {
         rays: [column(0), column(1), column(2), column(3)],
         weights,
-        fluxes: [0.0; ABREAST],
+        fluxes: [0.0; PHOTONS_PER_GROUP],
     };
     group.fluxes = lanes(|i| weights[i] / radiance_per_flux(&group.ray(i)));
     group
@@ -141,7 +141,7 @@ fn photons_that_touch_edges_end_at_the_same_obstacles() {
             let hits = hits[0];
             let arrivals = flat.trace(&group, &hits, &mut together.0, &mut together.1);
             let arrivals: Vec<_> = arrivals.map(|(i, _)| i).collect();
-            for i in (0..ABREAST).filter(|i| group.weights[*i] > 0.0) {
+            for i in (0..PHOTONS_PER_GROUP).filter(|i| group.weights[*i] > 0.0) {
                 let (leg, ray) = (&tracer.legs[0], group.ray(i));
                 let met = leg.courses.along.obstacles.closest_hit(&ray, 0.0);
                 let arrives = met.is_some_and(|(_, target)| target.tag.is(leg.ends));

@@ -71,9 +71,9 @@ impl Form {
 
     /// Checks whether a ray hits the geometry at a distance strictly within bounds.
     #[inline]
-    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+    pub(super) fn is_occluded(&self, ray: &Ray, within: [f64; 2]) -> bool {
         match self {
-            Self::Mesh(mesh) => mesh.is_met(ray, within),
+            Self::Mesh(mesh) => mesh.is_occluded(ray, within),
             other => other.first(ray, within).is_some(),
         }
     }

@@ -143,7 +143,7 @@ impl PieceGroups {
 
     /// Checks whether a ray hits anything at a distance strictly within bounds.
     #[inline]
-    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+    pub(super) fn is_occluded(&self, ray: &Ray, within: [f64; 2]) -> bool {
         let sight = TriangleRay::new(ray.from, ray.along);
         dispatch!(self.level, simd => self.any(simd, ray, &sight, within))
     }

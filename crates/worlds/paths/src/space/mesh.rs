@@ -86,12 +86,12 @@ impl WorldMesh {
     }
 
     /// Checks whether a ray hits the mesh at a distance strictly within bounds.
-    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+    pub(super) fn is_occluded(&self, ray: &Ray, within: [f64; 2]) -> bool {
         let (ray, scale) = scaled(ray);
         let within = within.map(|at| at * scale);
         self.tree
             .get()
-            .is_some_and(|tree| tree.is_met(&ray, within, |_| false))
+            .is_some_and(|tree| tree.is_occluded(&ray, within, |_| false))
     }
 
     /// Returns the point of a triangle, given by its index in the mesh, whose barycentric

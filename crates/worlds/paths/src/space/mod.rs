@@ -134,6 +134,6 @@ impl SceneGeometry {
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let within = [self.nearest, distance - self.nearest];
-        !self.search.is_met(&self.placed, ray, within)
+        !self.search.is_occluded(&self.placed, ray, within)
     }
 }

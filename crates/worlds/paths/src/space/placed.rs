@@ -92,8 +92,8 @@ impl Placed {
     }
 
     #[inline]
-    pub(super) fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
-        self.form.is_met(&self.seen(ray), within)
+    pub(super) fn is_occluded(&self, ray: &Ray, within: [f64; 2]) -> bool {
+        self.form.is_occluded(&self.seen(ray), within)
     }
 
     /// Returns a ray in local coordinates. Its direction has another length, so distances are

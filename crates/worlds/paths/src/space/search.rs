@@ -99,10 +99,12 @@ impl SurfaceSearch {
 
     /// Checks whether a ray hits anything at a distance strictly within bounds.
     #[inline]
-    pub(super) fn is_met(&self, placed: &[Placed], ray: &Ray, within: [f64; 2]) -> bool {
+    pub(super) fn is_occluded(&self, placed: &[Placed], ray: &Ray, within: [f64; 2]) -> bool {
         match self {
-            Self::Groups(groups) => groups.is_met(ray, within),
-            Self::Tree(tree) => tree.is_met(ray, within, |shape| placed[shape].is_met(ray, within)),
+            Self::Groups(groups) => groups.is_occluded(ray, within),
+            Self::Tree(tree) => {
+                tree.is_occluded(ray, within, |shape| placed[shape].is_occluded(ray, within))
+            }
         }
     }
 }
@@ -212,7 +214,11 @@ mod tests {
                 met += 1;
             }
             for search in [&small, &large] {
-                assert_eq!(search.is_met(&placed, &ray, within), a.is_some(), "{index}");
+                assert_eq!(
+                    search.is_occluded(&placed, &ray, within),
+                    a.is_some(),
+                    "{index}"
+                );
             }
             for shape in [4, 9] {
                 let spots = [&small, &large].map(|search| search.first_of(shape, &ray, within));

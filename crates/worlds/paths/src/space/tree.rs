@@ -100,7 +100,7 @@ impl PieceTree {
     /// Checks whether a ray hits anything at a distance strictly within bounds. The direction of
     /// the ray has a length of at least 1. `whole` tests a whole surface.
     #[inline]
-    pub(super) fn is_met(
+    pub(super) fn is_occluded(
         &self,
         ray: &Ray,
         within: [f64; 2],
