@@ -34,7 +34,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     })?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "this command needs a plane behind a mirror, an interface, a lens or a scattering surface, and a Lambertian surface must be the only surface; this scene has no such plane",
+            "this command needs a plane behind a mirror, an interface, a lens or a scattering surface, and a Lambertian surface must be the only surface, without an environment; this scene has no such plane",
         ));
     }
     say(&format!(

@@ -53,9 +53,9 @@ const PEAK: f64 = 1e-3;
 const FITTED: usize = 3;
 
 /// Shrinks the light and the window of a plane behind specular surfaces. Where surfaces scatter
-/// light, shrinks their textures too, and their lobes if the central ray is at their peaks. Widens the frequencies by the same factor. Returns
-/// `None` for any other plane, and if a Lambertian surface is one of several surfaces. No photons
-/// are traced.
+/// light, shrinks their textures too, and their lobes if the central ray is at the peaks of these
+/// lobes. Widens the frequencies by the same factor. Returns `None` for any other plane, and if a
+/// Lambertian surface is one of several surfaces or is lit by an environment. No photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,

@@ -17,25 +17,26 @@ impl ReflectionSystem {
 
     /// Returns the system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
     /// wide. A Lambertian lobe has no width and stays as it is. Returns `None` if a lobe stays as it
-    /// is and light also meets another surface, because the light between these surfaces does not
-    /// become narrower.
+    /// is and the light that it receives does not become narrower, which is so for an environment
+    /// and between several surfaces.
     ///
     /// If windows become narrower and frequencies higher by the same factor, the error of
     /// first-order maps falls with the factor.
     #[must_use]
     pub fn shrunk(&self, factor: f64, keeps_lobes: bool) -> Option<Self> {
-        let is_only = self.visited == 1;
+        let is_environment = matches!(self.light, Light::Environment { .. });
+        let is_lit_narrowly = self.visited == 1 && !is_environment;
         let mut system = self.clone();
         system.light = shrunk_light(&self.light, factor);
         for surface in &mut system.surfaces[..self.visited] {
             match &mut surface.interaction {
                 Interaction::Specular(_) => {}
-                Interaction::Diffuse { .. } if is_only => {}
+                Interaction::Diffuse { .. } if is_lit_narrowly => {}
                 Interaction::Diffuse { .. } => return None,
                 Interaction::Reflects(reflectance) => {
                     let lobes = if keeps_lobes { 1.0 } else { factor };
                     let have_width = shrink(reflectance, factor, lobes);
-                    if (keeps_lobes || !have_width) && !is_only {
+                    if (keeps_lobes || !have_width) && !is_lit_narrowly {
                         return None;
                     }
                 }
