@@ -3,13 +3,13 @@
 //! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
 //! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper, and
 //! `shading` checks the reflection of light at surfaces. `claims` checks the statements in the
-//! paper's text, `orders` checks how fast first-order chains converge, and `main` checks all results
-//! of the main scene. Each of `table1`, `shading`, `claims`, `orders` and `main` writes one part of `results/validation.md`. `rows` runs `table1` and
-//! `shading`, and sums them up for every row of the paper's Table 1. `all` runs all of these.
-//! `second` compares the code shared by theory and tracers with a second implementation. `hostile`
-//! and `kills` attack the program `etendue` from outside. `wild` and `worlds` search for scenes on
-//! which the program is wrong. `assumptions` disables the checks of a scene that precede a
-//! prediction.
+//! paper's text, `orders` checks how fast first-order chains converge, and `main` checks all
+//! results of the main scene. Each of `table1`, `shading`, `claims`, `orders` and `main` writes one
+//! part of `results/validation.md`. `rows` runs `table1` and `shading`, and sums them up for every
+//! row of the paper's Table 1. `all` runs all of these. `second` compares the code shared by theory
+//! and tracers with a second implementation. `hostile` and `kills` attack the program `etendue`
+//! from outside. `wild` and `worlds` search for scenes on which the program is wrong. `assumptions`
+//! disables the checks of a scene that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 

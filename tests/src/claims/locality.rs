@@ -21,8 +21,8 @@ fn tails(run: ClaimRun) -> Claim {
     // of two boxes of width 1/√2.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     let [square, bar] = ["(0.2, 0.2)", "(0.2, 0.002)"];
-    // Each case has the size of the light, a plane, the half-width of the window, an azimuth, the width of the
-    // boxes whose convolution is the shadow, and the number of frequencies.
+    // Each case has the size of the light, a plane, the half-width of the window, an azimuth, the
+    // width of the boxes whose convolution is the shadow, and the number of frequencies.
     let cases = [
         (square, "After(\"blockers\")", 0.08, 0, 0.1, 4),
         (square, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),

@@ -36,8 +36,8 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             unless the stated error of the prediction may explain the whole difference; this \
             level is α = 0.01 over all {planes} planes (scenes with the same light are lit by the \
             same photons, so that their p-values are alike, and the level is on the safe side). \
-            The bound is at most 1.1 errors or 1 %. *p first order* is below {level:.6} wherever the error \
-            is above twice the resolvable excess."
+            The bound is at most 1.1 errors or 1 %. *p first order* is below {level:.6} \
+            wherever the error is above twice the resolvable excess."
         ),
         header: vec![
             "scene",
