@@ -3,13 +3,13 @@
 //! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
 //! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper, and
 //! `shading` checks the reflection of light at surfaces. `claims` checks the statements in the
-//! paper's text, and `main` checks all results of the main scene. Each of `table1`, `shading`,
-//! `claims` and `main` writes one part of `results/validation.md`. `rows` runs `table1` and
-//! `shading`, and sums them up for every row of the paper's Table 1. `all` runs all of these.
-//! `second` compares the code shared by theory and tracers with a second implementation. `hostile`
-//! and `kills` attack the program `etendue` from outside. `wild` and `worlds` search for scenes on
-//! which the program is wrong. `assumptions` disables the checks of a scene that precede a
-//! prediction.
+//! paper's text, `orders` checks how fast first-order chains converge, and `main` checks all
+//! results of the main scene. Each of `table1`, `shading`, `claims`, `orders` and `main` writes one
+//! part of `results/validation.md`. `rows` runs `table1` and `shading`, and sums them up for every
+//! row of the paper's Table 1. `all` runs all of these. `second` compares the code shared by theory
+//! and tracers with a second implementation. `hostile` and `kills` attack the program `etendue`
+//! from outside. `wild` and `worlds` search for scenes on which the program is wrong. `assumptions`
+//! disables the checks of a scene that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -23,6 +23,7 @@ mod hostile;
 mod kills;
 mod nets;
 mod noise;
+mod orders;
 mod predicted;
 mod progress;
 mod pulls;
@@ -53,6 +54,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes results/validation.md
   cargo run --release -p etendue-validation -- shading      writes results/validation.md
   cargo run --release -p etendue-validation -- claims       two minutes; writes results/validation.md
+  cargo run --release -p etendue-validation -- orders       five minutes; writes results/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes results/bandwidth.md, .svg and .csv
   cargo run --release -p etendue-validation -- full-radial  minutes; writes results/validation.md
   cargo run --release -p etendue-validation -- nets         three minutes; writes results/nets.md
@@ -121,11 +123,10 @@ enum ValidationCommand {
         photons: Option<u64>,
     },
     /// Check statements in the paper's text with photons; write results/validation.md.
-    Claims {
-        /// Photons per scene, instead of a million or more.
-        #[arg(long)]
-        photons: Option<u64>,
-    },
+    Claims(claims::ClaimRun),
+    /// Compute the orders of convergence of the paper's operators on every scene of Table 1, without
+    /// photons; write results/validation.md.
+    Orders,
     /// Compare the sampling criteria with photons; write results/bandwidth.md and its picture.
     Bandwidth {
         /// Photons per point; if given, nothing is written.
@@ -180,7 +181,7 @@ enum ValidationCommand {
     Main,
     /// Run `table1` and `shading`, and write a summary for every row of the paper's Table 1 to results/validation.md.
     Rows,
-    /// Write the whole of results/validation.md: `main`, `rows` and `claims`.
+    /// Write the whole of results/validation.md: `main`, `rows`, `claims` and `orders`.
     All,
 }
 
@@ -191,7 +192,10 @@ const SEED: u64 = 1;
 /// The parts of `rows` and `all`, with the photons in the files of their scenes.
 const TABLE1: ValidationCommand = ValidationCommand::Table1 { photons: None };
 const SHADING: ValidationCommand = ValidationCommand::Shading { photons: None };
-const CLAIMS: ValidationCommand = ValidationCommand::Claims { photons: None };
+const CLAIMS: ValidationCommand = ValidationCommand::Claims(claims::ClaimRun {
+    photons: None,
+    seed: SEED,
+});
 
 #[expect(
     clippy::print_stdout,
@@ -241,7 +245,13 @@ fn main() -> ExitCode {
     }
     let parts = match command {
         ValidationCommand::Rows => &[TABLE1, SHADING][..],
-        ValidationCommand::All => &[TABLE1, SHADING, CLAIMS, ValidationCommand::Main],
+        ValidationCommand::All => &[
+            TABLE1,
+            SHADING,
+            CLAIMS,
+            ValidationCommand::Orders,
+            ValidationCommand::Main,
+        ],
         ref other => std::slice::from_ref(other),
     };
     let report = |command: &ValidationCommand, sections: Vec<ReportSection>| {
@@ -323,11 +333,20 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
             "shading",
             "Sections that name no scene are in 2D and trace no photons",
         ],
-        ValidationCommand::Claims { photons: None } => [
+        ValidationCommand::Claims(claims::ClaimRun {
+            photons: None,
+            seed: SEED,
+        }) => [
             "results/validation.md",
             "Words",
             "claims",
-            "The scenes are made for each statement",
+            "The scenes are those in `scenes/words/`, with the photons of their files",
+        ],
+        ValidationCommand::Orders => [
+            "results/validation.md",
+            "Orders",
+            "orders",
+            "The scenes are all scenes in `scenes/table1/`",
         ],
         ValidationCommand::FullRadial {
             seeds: 200,
@@ -388,7 +407,8 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
         }
         ValidationCommand::Table1 { photons } => table1::table1(photons),
         ValidationCommand::Shading { photons } => shading::shading(photons),
-        ValidationCommand::Claims { photons } => vec![claims::claims(photons)],
+        ValidationCommand::Claims(run) => vec![claims::claims(run)],
+        ValidationCommand::Orders => vec![orders::orders()],
         ValidationCommand::FullRadial { seeds, photons } => {
             full_radial::full_radial(seeds, photons)
         }

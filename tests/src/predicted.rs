@@ -41,7 +41,7 @@ pub(crate) fn scattered(
     let found = scattering::compare_chain(view, chain, over, BUDGET);
     let mut linear = found.slices.clone();
     if let Some(difference) = found.to_first_order {
-        linear.half += &difference.half;
+        linear.half += &difference.slices.half;
     }
     [found.slices, linear]
 }

@@ -54,7 +54,30 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
     let mut file = SceneFile::parse(text).expect("a scene of the suite is a scene file");
     emit(&mut file.run, photons);
     file.run.seed = seed.unwrap_or(file.run.seed);
-    resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the suite is sound")
+    sound(name, file)
+}
+
+/// Reads `scenes/NAME.ron`, and sets fields of the file, as `--set` does.
+///
+/// # Panics
+/// Panics if there is no such scene file, or if it has no such field.
+pub(crate) fn read(name: &str, fields: &[(&str, String)]) -> SceneFile {
+    let path = format!("{}/../scenes/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("a file of the repository");
+    let fields = fields
+        .iter()
+        .map(|(path, value)| ((*path).to_owned(), value.clone()));
+    let fields: Vec<_> = fields.collect();
+    let file = SceneFile::parse(&text).expect("a scene file");
+    file.with_all(&fields).expect("fields of the scene")
+}
+
+/// Resolves a scene that needs no other files.
+///
+/// # Panics
+/// Panics if the scene is invalid.
+pub(crate) fn sound(name: &str, file: SceneFile) -> Scene {
+    resolve(name, file, ".".as_ref(), u64::MAX).expect("a sound scene")
 }
 
 /// Returns the scene `fig9b` with the given number of photons and seed.

@@ -188,7 +188,7 @@ fn scene_files() -> Vec<Scene> {
         scenes.sort();
         scenes
     };
-    let paths = ["", "/table1", "/wild"].map(|sub| read(&format!("{folder}{sub}")));
+    let paths = ["", "/table1", "/wild", "/words"].map(|sub| read(&format!("{folder}{sub}")));
     let resolved = paths.concat().into_iter().filter_map(|path| {
         let text = std::fs::read_to_string(&path).expect("a scene file");
         let mut file = SceneFile::parse(&text).expect("a scene file");

@@ -34,7 +34,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     })?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "this command needs a plane behind a mirror, an interface, a lens or a surface with a lobe, and no Lambertian surface before the plane; this scene has no such plane",
+            "this command needs a plane behind a mirror, an interface, a lens or a scattering surface, and a Lambertian surface must be the only surface, without an environment; this scene has no such plane",
         ));
     }
     say(&format!(
@@ -58,13 +58,15 @@ fn shrunk(scene: &Scene, theories: &[Applicability]) -> Vec<Convergence> {
 }
 
 fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
-    let shares = planes[0].steps.iter().map(|[e, _]| format!("e = {e}"));
+    let shares = planes[0].steps.iter();
+    let shares = shares.map(|step| format!("e = {}", step.share));
     let mut header = vec!["plane".to_owned()];
     header.extend(shares);
     header.push("order".to_owned());
     let row = |plane: &Convergence| {
         let mut row = vec![plane.plane.clone()];
-        row.extend(plane.steps.iter().map(|[_, error]| format!("{error:.2e}")));
+        let errors = plane.steps.iter().map(|step| step.error);
+        row.extend(errors.map(|error| format!("{error:.2e}")));
         row.push(plane.order.map_or("–".to_owned(), |n| format!("{n:.2}")));
         row
     };

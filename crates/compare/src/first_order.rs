@@ -153,7 +153,7 @@ impl FirstOrder {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
         let near = |slices: &Slices| Slices {
-            half: &slices.half + &difference.half,
+            half: &slices.half + &difference.slices.half,
             ..*slices
         };
         let slices = near(&exact.slices);

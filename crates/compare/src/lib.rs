@@ -47,7 +47,7 @@ pub use applicability::Applicability;
 pub use bandwidth::{criterion, exact_bandwidth, lobe_cutoff, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
-pub use converge::{Convergence, converge};
+pub use converge::{Convergence, ConvergenceStep, converge, converge_to};
 pub use covariance::{AXES, CovarianceReport, SliceMoment, TracedPlane};
 pub use field::PredictedField;
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};

@@ -72,7 +72,7 @@ fn squares(count: u32, pitch: f64) -> String {
 #[test]
 fn scenes_of_the_repository_end() {
     let mut found = 0;
-    for sub in ["", "table1"] {
+    for sub in ["", "table1", "words"] {
         let folder = folder().join(sub);
         for entry in fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();

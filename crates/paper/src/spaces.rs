@@ -4,7 +4,7 @@
 use crate::rows::{Seen, compared, feet, letter_panels, lettered, row};
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
-use etendue_compare::{Applicability, Convergence, converge};
+use etendue_compare::{Applicability, Convergence, ConvergenceStep, converge};
 use etendue_field::percent;
 use etendue_figures::{
     AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Scale, stacked,
@@ -124,8 +124,12 @@ fn orders(
     (order, first): (i32, char),
 ) -> Result<Figure, Failure> {
     let panel = |plane: &Convergence| {
-        let [widest, error] = plane.steps[0];
-        let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
+        let widest = plane.steps[0];
+        let line = |step: &ConvergenceStep| {
+            let share = step.share / widest.share;
+            [step.share, widest.error * share.powi(order), 0.0]
+        };
+        let measured = |step: &ConvergenceStep| [step.share, step.error, 0.0];
         CurvePanel {
             title: etendue_pipeline::table::spaced(&plane.plane),
             x: AxisQuantity::new("*e*", ""),
@@ -138,11 +142,7 @@ fn orders(
                 Curve::new(
                     CurveKind::Measured,
                     "against rays through the real geometry",
-                    plane
-                        .steps
-                        .iter()
-                        .map(|[e, error]| [*e, *error, 0.0])
-                        .collect(),
+                    plane.steps.iter().map(measured).collect(),
                 ),
             ],
             is_log: [true; 2],

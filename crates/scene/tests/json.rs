@@ -9,10 +9,9 @@ use std::path::{Path, PathBuf};
 /// Returns the scenes of this repository.
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];
-    let files = folders
-        .iter()
-        .flat_map(|folder| fs::read_dir(folder).unwrap());
+    let below = ["table1", "wild", "words"].map(|name| folder.join(name));
+    let folders = below.iter().chain([&folder]);
+    let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
     let paths = files.map(|entry| entry.unwrap().path());
     paths
         .filter(|path| path.extension().is_some_and(|e| e == "ron"))

@@ -114,10 +114,9 @@ mod tests {
     /// Returns the texts of the scenes in this repository.
     fn scenes() -> Vec<String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-        let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];
-        let files = folders
-            .iter()
-            .flat_map(|folder| fs::read_dir(folder).unwrap());
+        let below = ["table1", "wild", "words"].map(|name| folder.join(name));
+        let folders = below.iter().chain([&folder]);
+        let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
         let mut paths: Vec<_> = files.map(|entry| entry.unwrap().path()).collect();
         paths.retain(|path| path.extension().is_some_and(|e| e == "ron"));
         paths.sort();

@@ -84,6 +84,6 @@ pub use parallel::{
     projection, quadrature_error, slices,
 };
 pub use parameter::Parameter;
-pub use predicted::Predicted;
+pub use predicted::{NetMean, Predicted};
 pub use shading::{g_hat, g_hat_3d};
 pub use work::PredictionWork;

@@ -3,6 +3,15 @@
 use crate::geometry::Matrix;
 use etendue_field::{Projection, Slices};
 
+/// The mean of sums over independent nets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetMean {
+    /// The mean.
+    pub slices: Slices,
+    /// ‖σ‖/‖F‖ with the standard error σ of the mean F.
+    pub error: f64,
+}
+
 /// The prediction of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
@@ -29,8 +38,27 @@ pub struct Predicted {
     pub derivatives: Vec<Slices>,
     /// The prediction of the first-order chain of a reflection minus `slices`, computed with the
     /// same rays.
-    pub to_first_order: Option<Slices>,
+    pub to_first_order: Option<NetMean>,
     /// The number of rays that were followed for the slices, or for the picture if the slices are
     /// not a sum over nets; zero for closed forms.
     pub nodes: f64,
+}
+
+impl Predicted {
+    /// Returns this prediction minus another one from the same nets, as a mean over the nets.
+    /// Returns `None` if a prediction is no sum over nets.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Option<NetMean> {
+        let both = [self, other].map(|one| &one.replicates);
+        if both.iter().any(|replicates| replicates.is_empty()) {
+            return None;
+        }
+        let pairs = both[0].iter().zip(both[1]);
+        let apart = pairs.map(|(a, b)| Slices {
+            half: &a.half - &b.half,
+            ..*a
+        });
+        let apart: Vec<Slices> = apart.collect();
+        Some(NetMean::new(apart.iter()))
+    }
 }

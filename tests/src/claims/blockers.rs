@@ -1,46 +1,41 @@
 //! Statements about blockers: finite arrays, replicas, jitter, averages, combinations, soft shadows.
 
 use super::number::{ClaimNumber, at, line, power};
-use super::scene::{ClaimBench, LIGHT, SeenScene, number, plane, squares};
+use super::scene::{ClaimRun, number};
 use super::{CHANCE, Claim, PULL, decreasing};
+use crate::orders::slope;
 use crate::report::Bound::{AtLeast, AtMost, Below};
 use crate::report::Check;
 use crate::shading::strips::{Strips, coefficients, in_common, strips};
-use crate::table1::slope;
 use etendue_field::{Complex, Slices};
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::PI;
 
-pub(super) fn claims(photons: u64) -> Vec<Claim> {
+pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
     vec![
-        finite(photons),
-        replicas(photons),
-        jitter(photons),
-        average(photons),
-        before_average(photons),
-        combined(photons),
-        soft_shadows(photons),
+        finite(run),
+        replicas(run),
+        jitter(run),
+        average(run),
+        before_average(run),
+        combined(run),
+        soft_shadows(run),
     ]
 }
 
-/// Measures the light directly behind blockers, in a wide window.
-fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> SeenScene {
-    let window = format!("x: Hann({half}), u: Box(2)");
-    let frequencies = format!("rho: (max: {rho}, spacing: {spacing}), nu: (max: 1)");
-    let bench = ClaimBench {
-        light: LIGHT,
-        blockers,
-        floor: 2.0,
-        planes: &plane("After(\"blockers\")", &window, &frequencies),
-    };
-    bench.seen(photons)
+/// Returns the fields of an array of squares.
+fn array(count: u32, pitch: f64) -> [(&'static str, String); 2] {
+    [
+        ("blockers.0.count", format!("({count}, {count})")),
+        ("blockers.0.pitch", pitch.to_string()),
+    ]
 }
 
-fn finite(photons: u64) -> Claim {
+fn finite(run: ClaimRun) -> Claim {
     let pitch = 0.2;
     let counts = [4, 8, 16];
     let widths = counts.map(|count| {
-        let blockers = squares([count, 60], pitch, "fill: 0.5");
-        let seen = behind(&blockers, 3.0, [8.0, 0.05], photons);
+        let count = format!("({count}, 60)");
+        let seen = run.seen("finite_array", &[("blockers.0.count", count)]);
         seen.number(0, |slices| {
             let replica = |rho: f64| (rho - 5.0).abs() < 2.5;
             let along = line(slices, 0).into_iter();
@@ -77,11 +72,10 @@ fn finite(photons: u64) -> Claim {
     }
 }
 
-fn replicas(photons: u64) -> Claim {
+fn replicas(run: ClaimRun) -> Claim {
     let pitches = [0.4, 0.2, 0.1];
     let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
-        let blockers = squares([count; 2], pitch, "fill: 0.5");
-        let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
+        let seen = run.seen("replicas", &array(count, pitch));
         // The number is the pitch times the frequency of the spectral peak. The peak is located at
         // the vertex of a parabola through the highest values.
         seen.number(0, |slices| {
@@ -118,21 +112,13 @@ fn replicas(photons: u64) -> Claim {
     }
 }
 
-fn jitter(photons: u64) -> Claim {
+fn jitter(run: ClaimRun) -> Claim {
     let share = |[jitter, seed]: [f64; 2]| {
-        let rest = format!("fill: 0.6, jitter: {jitter}, seed: {seed}");
-        let window = "x: Hann(1.5), y: Hann(0.1), u: Box(2), v: Box(2)";
-        let bench = ClaimBench {
-            light: LIGHT,
-            blockers: &squares([40, 40], 0.2, &rest),
-            floor: 2.0,
-            planes: &plane(
-                "After(\"blockers\")",
-                window,
-                "rho: (max: 18, spacing: 0.1), nu: (max: 1)",
-            ),
-        };
-        bench.seen(photons).number(0, |slices| {
+        let fields = [
+            ("blockers.0.jitter", jitter.to_string()),
+            ("blockers.0.seed", seed.to_string()),
+        ];
+        run.seen("jitter", &fields).number(0, |slices| {
             let band = |rho: f64| (7.5..17.5).contains(&rho);
             let off = |rho: f64| (rho / 5.0 - (rho / 5.0).round()).abs();
             power(slices, |rho| band(rho) && off(rho) < 0.14) / power(slices, band)
@@ -171,23 +157,12 @@ fn jitter(photons: u64) -> Claim {
 /// these pitches the light's image covers an odd number of half periods, and ripples are largest.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
-fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
-    let planes = plane(at, "x: Hann(0.5), u: Hann(0.5)", frequencies);
-    let seen = |blockers: &str| {
-        let bench = ClaimBench {
-            light: LIGHT,
-            blockers,
-            floor: 2.0,
-            planes: &planes,
-        };
-        bench.seen(photons)
-    };
-    let average = seen(
-        "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 1, modulation: 0)",
-    );
+fn ripples(name: &str, run: ClaimRun) -> [ClaimNumber; 3] {
+    let average =
+        "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 1, modulation: 0)";
+    let average = run.seen(name, &[("blockers.0", average.to_owned())]);
     PITCHES.map(|(pitch, count)| {
-        let blockers = squares([count; 2], pitch, &format!("fill: {FRAC_1_SQRT_2}"));
-        let squares = seen(&blockers);
+        let squares = run.seen(name, &array(count, pitch));
         number(&[(&squares, 0), (&average, 0)], &|slices| {
             let pairs = slices[0].half.iter().zip(&slices[1].half);
             let apart: f64 = pairs.map(|(a, b)| (a - b).norm_sqr()).sum();
@@ -205,12 +180,8 @@ fn exponent(numbers: &[ClaimNumber; 3]) -> f64 {
     slope(&logs)
 }
 
-fn average(photons: u64) -> Claim {
-    let numbers = ripples(
-        "After(\"floor\")",
-        "rho: (max: 16), nu: (max: 4)",
-        4 * photons,
-    );
+fn average(run: ClaimRun) -> Claim {
+    let numbers = ripples("average", run);
     let exponent = exponent(&numbers);
     Claim {
         said: "small occluders act as their average on soft shadows (3.4)",
@@ -238,12 +209,8 @@ fn average(photons: u64) -> Claim {
     }
 }
 
-fn before_average(photons: u64) -> Claim {
-    let numbers = ripples(
-        "Before(\"floor\")",
-        "rho: (max: 36), nu: (max: 36)",
-        photons,
-    );
+fn before_average(run: ClaimRun) -> Claim {
+    let numbers = ripples("average_arriving", run);
     Claim {
         said: "the same, for the light that arrives at the floor",
         shown: "the same before the floor: replicas move to angular frequencies and do not vanish"
@@ -279,8 +246,7 @@ fn opaque(open: &Strips) -> String {
         let (center, size) = (0.5 * (e[0] + e[1]), e[1] - e[0]);
         format!("Rectangle(center: ({center}, 0), size: ({size}, 8)),")
     });
-    let shapes: String = each.collect();
-    format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
+    format!("[{}]", each.collect::<String>())
 }
 
 /// Two maximum frequencies, per metre. Up to the first frequency, bounds are compared with spectra.
@@ -323,12 +289,7 @@ fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {
     ]
 }
 
-fn combined(photons: u64) -> Claim {
-    let planes = plane(
-        "After(\"blockers\")",
-        "x: Hann(0.5), u: Box(2)",
-        "rho: (max: 40), nu: (max: 1)",
-    );
+fn combined(run: ClaimRun) -> Claim {
     let (mut excess, mut ratios, mut under) = (Vec::new(), Vec::new(), 0);
     for pair in [0, 1, 2, 4, 5, 6, 7, 8] {
         let (first, second) = (centred(pair, 0.137), centred(pair, 0.414));
@@ -336,15 +297,8 @@ fn combined(photons: u64) -> Claim {
         if both.is_empty() {
             continue;
         }
-        let [one, two] = [&first, &both].map(|open| {
-            let bench = ClaimBench {
-                light: LIGHT,
-                blockers: &opaque(open),
-                floor: 2.0,
-                planes: &planes,
-            };
-            bench.seen(photons)
-        });
+        let [one, two] = [&first, &both]
+            .map(|open| run.seen("combined", &[("blockers.0.shapes", opaque(open))]));
         let other = coefficients(&second, SUMMED);
         let pair = [(&one, 0), (&two, 0)];
         let over = number(&pair, &|slices| {
@@ -379,7 +333,7 @@ fn combined(photons: u64) -> Claim {
     }
 }
 
-fn soft_shadows(photons: u64) -> Claim {
+fn soft_shadows(run: ClaimRun) -> Claim {
     let (light, frequency) = (0.2, 6.0);
     let mut off = 0.0_f64;
     let numbers = [0.2, 0.5, 1.0, 2.0].map(|after| {
@@ -387,17 +341,15 @@ fn soft_shadows(photons: u64) -> Claim {
         // The frequency of the grating's image on the floor.
         let rho = frequency / floor;
         let seen = |phase: f64| {
-            let blockers = format!(
-                "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: {frequency}, modulation: 1, phase: {phase})"
-            );
-            let frequencies = format!("rho: (max: {rho}, spacing: {}), nu: (max: 1)", rho / 5.0);
-            let bench = ClaimBench {
-                light: LIGHT,
-                blockers: &blockers,
-                floor,
-                planes: &plane("Before(\"floor\")", "x: Hann(0.5), u: Box(1)", &frequencies),
-            };
-            bench.seen(photons)
+            let fields = [
+                ("blockers.0.phase", phase.to_string()),
+                ("surfaces.0.center", format!("(0, 0, {floor})")),
+                (
+                    "frequencies.rho",
+                    format!("(max: {rho}, spacing: {})", rho / 5.0),
+                ),
+            ];
+            run.seen("soft_shadow", &fields)
         };
         let [plus, minus] = [0.0, PI].map(seen);
         // The two gratings are shifted against each other by half a period. The shadow is the light

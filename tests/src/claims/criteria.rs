@@ -1,20 +1,20 @@
 //! Statements about the sampling criteria of section 6.2.
 
-use super::scene::{SeenScene, scene};
-use super::surfaces::{bandwidth, planes, surface};
+use super::scene::ClaimRun;
+use super::surfaces::bandwidth;
 use super::{Claim, decreasing};
 use crate::report::Bound::AtMost;
 use crate::report::Check;
 use etendue_spectrum::bandwidth::{bandwidth_nu, widest};
 use etendue_theory::shading::{Criterion, PlanarLobe};
 
-pub(super) fn claims(photons: u64) -> Vec<Claim> {
-    vec![criteria(photons), larger_curvature(photons)]
+pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
+    vec![criteria(run), larger_curvature(run)]
 }
 
 /// Compares the sampling criterion, which assumes light of all frequencies, with measurements for
 /// lights of increasing size.
-fn criteria(photons: u64) -> Claim {
+fn criteria(run: ClaimRun) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {
         curvature: 0.5,
@@ -27,19 +27,7 @@ fn criteria(photons: u64) -> Claim {
     };
     let sizes = [0.003, 0.02, 0.05, 0.1];
     let shares = sizes.map(|size| {
-        let text = surface(
-            &format!("Rectangle(center: (0, 0, -0.6), size: ({size}, {size}))"),
-            [0.5; 2],
-            "form: Sphere(0.5), aperture: 0.6",
-            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
-        );
-        let planes = planes(
-            "Distance(1.1)",
-            "Orthogonal",
-            "x: Hann(0.05), u: Hann(0.25)",
-            "azimuths: 1, rho: (max: 40), nu: (max: 30)",
-        );
-        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let seen = run.seen("criterion", &[("light.size", format!("({size}, {size})"))]);
         let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
         found.per(criterion.blocker())
     });
@@ -73,7 +61,7 @@ fn criteria(photons: u64) -> Claim {
 
 /// Measures light reflected by three surfaces: a cylinder curved in the plane of incidence, a
 /// cylinder curved across this plane, and a sphere.
-fn larger_curvature(photons: u64) -> Claim {
+fn larger_curvature(run: ClaimRun) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {
         curvature: 0.8,
@@ -85,24 +73,16 @@ fn larger_curvature(photons: u64) -> Claim {
         environment_cutoff: f64::INFINITY,
     };
     let forms = [
-        "Cylinder(0.8), along: (1, 0, 0)",
-        "Cylinder(0.8), along: (0, 1, 0)",
-        "Sphere(0.8)",
+        ["Cylinder(0.8)", "(1, 0, 0)"],
+        ["Cylinder(0.8)", "(0, 1, 0)"],
+        ["Sphere(0.8)", "(1, 0, 0)"],
     ];
-    let shares = forms.map(|form| {
-        let text = surface(
-            "Beam(center: (0, 0, -1), image: (width: (0.5, 0.5)))",
-            [0.7; 2],
-            &format!("form: {form}, aperture: 0.6"),
-            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
-        );
-        let planes = planes(
-            "Distance(1.5)",
-            "Orthogonal",
-            "x: Hann(0.05), u: Hann(0.25)",
-            "azimuths: 2, rho: (max: 60), nu: (max: 30)",
-        );
-        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
+    let shares = forms.map(|[form, along]| {
+        let fields = [
+            ("surfaces.0.form", form.to_owned()),
+            ("surfaces.0.along", along.to_owned()),
+        ];
+        let seen = run.seen("larger_curvature", &fields);
         let found = seen.number(0, |slices| {
             let power = slices.half.mapv(|s| s.norm_sqr());
             widest(power.view(), &slices.grid, bandwidth_nu).map_or(f64::NAN, |most| most.value)

@@ -2,64 +2,49 @@
 //! spectra.
 
 use super::number::{at, line, power};
-use super::scene::{ClaimBench, LIGHT, SeenScene, number, plane, squares};
+use super::scene::{ClaimRun, SeenScene, number};
 use super::{Claim, decreasing};
+use crate::orders::slope;
 use crate::report::Bound::{Above, AtMost, Below};
 use crate::report::Check;
-use crate::table1::slope;
 
-pub(super) fn claims(photons: u64) -> Vec<Claim> {
-    let mut all = vec![tails(8 * photons), moved(photons), homogeneous(photons)];
-    all.extend(narrowed(photons));
+pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
+    let mut all = vec![tails(run), moved(run), homogeneous(run)];
+    all.extend(narrowed(run));
     all
-}
-
-/// Measures light with and without a small opaque square in the beam, in a window that contains
-/// the whole shadow of the square.
-fn shadow(
-    light: &str,
-    floor: f64,
-    at: &str,
-    half: f64,
-    most: [f64; 2],
-    photons: u64,
-) -> [SeenScene; 2] {
-    let [most, spacing] = most;
-    let planes = format!(
-        "(name: \"plane\", at: {at}, window: (x: Box({half}), u: Box(1)),
-        frequencies: (azimuths: 4, rho: (max: {most}, spacing: {spacing}), nu: (max: 1))),"
-    );
-    [0.1, 1e-6].map(|side| {
-        let blockers = format!(
-            "Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [Rectangle(center: (0, 0), size: ({side}, {side}))])"
-        );
-        let bench = ClaimBench {
-            light,
-            blockers: &blockers,
-            floor,
-            planes: &planes,
-        };
-        bench.seen(photons)
-    })
 }
 
 /// Measures the exponents of the tails of spectra of shadows. The profiles of these shadows have a
 /// discontinuous n-th derivative.
-fn tails(photons: u64) -> Claim {
+fn tails(run: ClaimRun) -> Claim {
     // The width is 1/√2, because the profile of a unit square along its diagonal is the convolution
     // of two boxes of width 1/√2.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
-    let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
-    // Each case has a light, a plane, the half-width of the window, an azimuth, the width of the
-    // boxes whose convolution is the shadow, and the number of frequencies.
+    let [square, bar] = ["(0.2, 0.2)", "(0.2, 0.002)"];
+    // Each case has the size of the light, a plane, the half-width of the window, an azimuth, the
+    // width of the boxes whose convolution is the shadow, and the number of frequencies.
     let cases = [
-        (LIGHT, "After(\"blockers\")", 0.08, 0, 0.1, 4),
-        (LIGHT, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),
+        (square, "After(\"blockers\")", 0.08, 0, 0.1, 4),
+        (square, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),
         (bar, "Before(\"floor\")", 0.25, 1, 0.2 * diagonal, 3),
     ];
     let numbers = cases.map(|(light, place, half, k, width, count)| {
-        let most = [f64::from(count) / width, 0.0625 / width];
-        let seen = shadow(light, 2.0, place, half, most, photons);
+        let rho = format!(
+            "(max: {}, spacing: {})",
+            f64::from(count) / width,
+            0.0625 / width
+        );
+        // The windows contain the whole shadow. The second square is too small to cast one.
+        let seen = [0.1, 1e-6].map(|side| {
+            let fields = [
+                ("light.size", light.to_owned()),
+                ("planes.0.at", place.to_owned()),
+                ("window.x", format!("Box({half})")),
+                ("frequencies.rho", rho.clone()),
+                ("blockers.0.shapes.0.size", format!("({side}, {side})")),
+            ];
+            run.seen("tails", &fields)
+        });
         number(&[(&seen[0], 0), (&seen[1], 0)], &|slices| {
             // Half-way between its zeros, the factor |sin π w Ω| equals one.
             let points: Vec<[f64; 2]> = (0..count)
@@ -96,33 +81,24 @@ fn tails(photons: u64) -> Claim {
 const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
 /// Measures light behind a grating of 5 /m in narrowing windows.
-fn through(modulation: f64, photons: u64) -> [SeenScene; 4] {
-    let grating = format!(
-        "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"
-    );
+fn through(modulation: f64, run: ClaimRun) -> [SeenScene; 4] {
     HALVES.map(|half| {
-        let bench = ClaimBench {
-            light: LIGHT,
-            blockers: &grating,
-            floor: 2.0,
-            planes: &plane(
-                "After(\"blockers\")",
-                &format!("x: Hann({half}), u: Box(2)"),
-                "rho: (max: 20, spacing: 0.125), nu: (max: 1)",
-            ),
-        };
-        bench.seen(photons)
+        let fields = [
+            ("window.x", format!("Hann({half})")),
+            ("blockers.0.modulation", modulation.to_string()),
+        ];
+        run.seen("narrow_window", &fields)
     })
 }
 
-fn narrowed(photons: u64) -> [Claim; 2] {
-    let mut valleys = through(1.0, photons).map(|seen| {
+fn narrowed(run: ClaimRun) -> [Claim; 2] {
+    let mut valleys = through(1.0, run).map(|seen| {
         seen.number(0, |slices| {
             let around = |middle: f64| power(slices, |rho| (rho - middle).abs() < 0.6);
             around(2.5) / around(5.0)
         })
     });
-    let widths = through(0.0, photons).map(|seen| {
+    let widths = through(0.0, run).map(|seen| {
         seen.number(0, |slices| {
             let along = line(slices, 0);
             let half = along[0].1.norm_sqr() / 2.0;
@@ -183,27 +159,20 @@ fn narrowed(photons: u64) -> [Claim; 2] {
 
 /// Measures the fraction of the power between 15 and 25 /m behind an array that extends 2 m to
 /// either side of its centre, which is `offset` from the central ray.
-fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
-    let blockers = squares([80, 80], 0.05, "fill: 0.5")
-        .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));
-    let bench = ClaimBench {
-        light: LIGHT,
-        blockers: &blockers,
-        floor: 2.0,
-        planes: &plane(
-            "After(\"blockers\")",
-            &format!("x: Hann({half}), u: Box(2)"),
-            "rho: (max: 25), nu: (max: 1)",
-        ),
-    };
-    bench.seen(photons).number(0, |slices| {
+fn share(offset: f64, half: f64, run: ClaimRun) -> super::number::ClaimNumber {
+    let fields = [
+        ("blockers.0.center", format!("({offset}, 0, 1)")),
+        ("window.x", format!("Hann({half})")),
+    ];
+    let seen = run.seen("edge_of_array", &fields);
+    seen.number(0, |slices| {
         power(slices, |rho| rho > 15.0) / power(slices, |_| true)
     })
 }
 
-fn moved(photons: u64) -> Claim {
+fn moved(run: ClaimRun) -> Claim {
     let offsets = [0.0, 1.9, 2.2, 2.6];
-    let shares = offsets.map(|offset| share(offset, 0.5, photons));
+    let shares = offsets.map(|offset| share(offset, 0.5, run));
     Claim {
         said: "scenes are not stationary: what blocks the light varies in space (6)",
         shown: format!(
@@ -224,9 +193,9 @@ fn moved(photons: u64) -> Claim {
     }
 }
 
-fn homogeneous(photons: u64) -> Claim {
+fn homogeneous(run: ClaimRun) -> Claim {
     let halves = [1.2, 0.6, 0.3];
-    let shares = halves.map(|half| share(2.4, half, photons));
+    let shares = halves.map(|half| share(2.4, half, run));
     Claim {
         said: "smaller neighbourhoods have more homogeneous properties (6)",
         shown: format!("the same, 0.4 m beside the array, in windows of ± {halves:?} m"),

@@ -10,9 +10,8 @@ mod surfaces;
 use crate::report::Bound::AtMost;
 use crate::report::{Check, ReportSection, Row};
 use number::ClaimNumber;
+pub(crate) use scene::ClaimRun;
 
-/// Default number of photons of a scene.
-const PHOTONS: u64 = 1 << 20;
 /// Maximum deviation of a measured number from its prediction, in standard errors.
 const PULL: f64 = 4.0;
 const CHANCE: &str = "by chance, 1 of 16,000 numbers is farther off, and there are about 60 \
@@ -31,8 +30,7 @@ struct Claim {
 }
 
 /// Returns the section.
-pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
-    let photons = photons.unwrap_or(PHOTONS);
+pub(crate) fn claims(run: ClaimRun) -> ReportSection {
     let parts = [
         blockers::claims,
         surfaces::claims,
@@ -41,16 +39,17 @@ pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
     ];
     let rows = parts
         .iter()
-        .flat_map(|claims| claims(photons).into_iter().map(row));
+        .flat_map(|claims| claims(run).into_iter().map(row));
     ReportSection {
         title: "What the paper says in words, with photons".to_owned(),
         text: format!(
-            "Each scene is traced with {photons} photons or more, seed 1. Numbers are read from \
-            measured spectra, with their jackknife errors over 64 batches. The numbers in \
-            brackets come from the prediction of the same scene, by the same estimator. The \
+            "The scenes are in `scenes/words/`, and the rows of a statement vary some of their \
+            fields. The seed is {}. Numbers are read from measured spectra, with their jackknife \
+            errors over 64 batches. The numbers in brackets come from the prediction of the same scene, by the same estimator. The \
             bounds were fixed before the run. Required: each number is within {PULL} errors of \
             its prediction, and the numbers are as the statement says, or as the column *holds* \
-            says if the statement does not hold."
+            says if the statement does not hold.",
+            run.seed
         ),
         header: vec![
             "statement",

@@ -1,71 +1,42 @@
-//! Traces and predicts small scenes that test the paper's statements.
+//! Traces and predicts the scenes of `scenes/words/`, which test the paper's statements.
 
 use super::number::{Batches, ClaimNumber, jackknife};
-use crate::scenes::{predicted, traced};
+use crate::SEED;
+use crate::scenes::{emit, predicted, read, sound, traced};
+use clap::Args;
 use etendue_compare::Prediction;
 use etendue_field::Slices;
-use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 
-/// Light, blockers and a floor, all perpendicular to the central ray.
-pub(super) struct ClaimBench<'a> {
-    pub(super) light: &'a str,
-    /// The blockers, written as in a scene file; they are 1 m from the light.
-    pub(super) blockers: &'a str,
-    /// Distance from the light to the floor, metres.
-    pub(super) floor: f64,
-    pub(super) planes: &'a str,
+/// The options of all scenes.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ClaimRun {
+    /// Photons of each scene, instead of those in its file; if given, nothing is written.
+    #[arg(long)]
+    pub(crate) photons: Option<u64>,
+    /// Seed of the photons of every scene. Blockers do not change. Nothing is written for another
+    /// seed than the default.
+    #[arg(long, default_value_t = SEED)]
+    pub(crate) seed: u64,
 }
 
-/// A square light of 0.2 m.
-pub(super) const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
-
-impl ClaimBench<'_> {
-    pub(super) fn seen(&self, photons: u64) -> SeenScene {
-        let Self {
-            light,
-            blockers,
-            floor,
-            planes,
-        } = self;
-        SeenScene::of(scene(
-            &format!(
-                "light: {light}, blockers: [{blockers}],
-                surfaces: [Rectangle(name: \"floor\", center: (0, 0, {floor}), size: (20, 20), albedo: 1)],
-                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"floor\"]), planes: [{planes}]"
-            ),
-            photons,
-        ))
+impl ClaimRun {
+    /// Reads a scene of `scenes/words/`, and sets fields of its file, as `--set` does.
+    ///
+    /// # Panics
+    /// Panics if there is no such scene, or if it is invalid.
+    pub(super) fn scene(&self, name: &str, fields: &[(&str, String)]) -> Scene {
+        let mut file = read(&format!("words/{name}"), fields);
+        emit(&mut file.run, self.photons);
+        file.run.seed = self.seed;
+        sound(name, file)
     }
-}
 
-/// Returns the scene-file text of an array of squares 1 m from the light; the squares are
-/// jittered only if `rest` specifies a jitter.
-pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
-    let [x, y] = count;
-    format!(
-        "JitteredSquares(name: \"blockers\", center: (0, 0, 1), count: ({x}, {y}), pitch: {pitch}, {rest})"
-    )
-}
-
-/// Returns the scene-file text of a plane with a window and frequencies of its own.
-pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
-    format!(
-        "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
-    )
-}
-
-/// Reads a scene from a text, to which a window and settings of the run are added.
-///
-/// # Panics
-/// Panics if the scene is invalid.
-pub(super) fn scene(text: &str, photons: u64) -> Scene {
-    let text = format!(
-        "({text}, window: (x: Hann(0.5), u: Hann(0.5)), frequencies: (azimuths: 1, rho: (max: 16), nu: (max: 4)),
-        run: (photons: {photons}, seed: 1, batches: 64))"
-    );
-    let file = SceneFile::parse(&text).expect("a scene file");
-    resolve("claim", file, ".".as_ref(), u64::MAX).expect("a sound scene")
+    /// Measures and predicts a scene of `scenes/words/`.
+    pub(super) fn seen(&self, name: &str, fields: &[(&str, String)]) -> SeenScene {
+        SeenScene::of(self.scene(name, fields))
+    }
 }
 
 /// A scene, measured and predicted.

@@ -2,7 +2,7 @@
 //! lobes, environments.
 
 use super::number::{ClaimNumber, at};
-use super::scene::{SeenScene, number, scene};
+use super::scene::{ClaimRun, SeenScene, number};
 use super::{CHANCE, Claim, PULL};
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::Check;
@@ -14,69 +14,45 @@ use etendue_trace::Tracer;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub(super) fn claims(photons: u64) -> Vec<Claim> {
-    let mut all = vec![
-        reciprocity(photons),
-        fresnel(photons),
-        mirror_sphere(photons),
-    ];
-    all.extend(curvature(photons));
-    all.extend([cosine(photons), lobe(photons)]);
-    all.extend(environment(photons));
+pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
+    let mut all = vec![reciprocity(run), fresnel(run), mirror_sphere(run)];
+    all.extend(curvature(run));
+    all.extend([cosine(run), lobe(run)]);
+    all.extend(environment(run));
     all
 }
 
-/// Returns the text of a scene with a surface at the origin. The central ray arrives at the angle
-/// `incidence` and leaves at `outgoing` on the other side of the normal, both in radians.
-pub(super) fn surface(
-    light: &str,
-    [incidence, outgoing]: [f64; 2],
-    form: &str,
-    brdf: &str,
-) -> String {
+/// Returns the field of a surface whose normal is turned from the central ray by `incidence`, in
+/// radians.
+fn facing(incidence: f64) -> (&'static str, String) {
     let (sine, cosine) = incidence.sin_cos();
-    let leaves = PI - incidence - outgoing;
-    let leaves = if brdf == "Mirror" {
-        String::new()
-    } else {
-        format!(", leaves: ({}, 0, {})", leaves.sin(), leaves.cos())
-    };
-    format!(
-        "light: {light},
-        surfaces: [Smooth(name: \"surface\", center: (0, 0, 0), facing: ({sine}, 0, {}), {form}, event: {brdf})],
-        path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"surface\"]{leaves})",
-        -cosine
-    )
+    ("surfaces.0.facing", format!("({sine}, 0, {})", -cosine))
 }
 
-pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> String {
-    format!(
-        "planes: [(name: \"plane\", at: {at}, orientation: {orientation}, window: ({window}), frequencies: ({frequencies}))]"
+/// Returns the field of a central ray that arrives at the angle `incidence` and leaves at
+/// `outgoing` on the other side of the normal, both in radians.
+fn leaves([incidence, outgoing]: [f64; 2]) -> (&'static str, String) {
+    let leaves = PI - incidence - outgoing;
+    (
+        "path.leaves",
+        format!("({}, 0, {})", leaves.sin(), leaves.cos()),
     )
 }
 
 /// Measures the light that a glossy plane reflects from one angle to another, divided by the
 /// irradiance, for two angles in both orders. The returned number is the ratio of the reflectances
 /// for the two orders.
-fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
+fn both_ways(name: &str, run: ClaimRun) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
-        let light = "Rectangle(center: (0, 0, -1), size: (0.02, 0.02))";
-        let text = surface(light, angles, "form: Plane, aperture: 0.5", brdf);
-        let planes = planes(
-            "After(\"surface\")",
-            "Orthogonal",
-            "x: Hann(0.02), u: Hann(0.02)",
-            "azimuths: 1, rho: (max: 50), nu: (max: 50)",
-        );
-        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), photons));
+        let seen = run.seen(name, &[facing(angles[0]), leaves(angles)]);
         seen.number(0, Slices::at_zero).per(angles[0].cos())
     });
     there.over(&back)
 }
 
-fn reciprocity(photons: u64) -> Claim {
-    let ratio = both_ways("Reflects(brdf: (lobe: Phong(20)))", photons);
+fn reciprocity(run: ClaimRun) -> Claim {
+    let ratio = both_ways("reciprocity", run);
     Claim {
         said: "a BRDF of the angle to the mirror direction is not reciprocal (4.1)",
         shown: "BRDF of a Phong lobe from 20° to 50° over the same BRDF from 50° to 20°".to_owned(),
@@ -92,9 +68,8 @@ fn reciprocity(photons: u64) -> Claim {
     }
 }
 
-fn fresnel(photons: u64) -> Claim {
-    let brdf = "Reflects(brdf: (lobe: Phong(20), fresnel: Dielectric(1.5)))";
-    let ratio = both_ways(brdf, photons);
+fn fresnel(run: ClaimRun) -> Claim {
+    let ratio = both_ways("reciprocity_fresnel", run);
     Claim {
         said: "the same, with a factor f(θ_i') (4.3)",
         shown: "the same ratio with the Fresnel factor of glass at the angle of incidence"
@@ -111,21 +86,9 @@ fn fresnel(photons: u64) -> Claim {
 }
 
 /// Measures a sphere of 0.5 m in a wider beam, seen from three sides.
-fn mirror_sphere(photons: u64) -> Claim {
+fn mirror_sphere(run: ClaimRun) -> Claim {
     let found = [0.0, 0.7, 1.4].map(|incidence| {
-        let text = surface(
-            "Beam(center: (0, 0, -2), image: (width: (2, 2)))",
-            [incidence; 2],
-            "form: Sphere(2), aperture: 0.4999",
-            "Mirror",
-        );
-        let planes = planes(
-            "After(\"surface\")",
-            "LocalNormals",
-            "x: Box(0.4999), u: Box(1.57)",
-            "azimuths: 1, rho: (max: 4), nu: (max: 4)",
-        );
-        let scene = scene(&format!("{text}, {planes}"), photons);
+        let scene = run.scene("mirror_sphere", &[facing(incidence)]);
         let (mut off, mut widest) = (0.0_f64, 0.0_f64);
         let mut look = |_: usize, crossings: &[Crossing]| {
             for crossing in crossings {
@@ -182,23 +145,9 @@ fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     [normal, leaves].map(|d| d.x.hypot(d.y).atan2(-d.z))
 }
 
-fn curvature(photons: u64) -> [Claim; 2] {
+fn curvature(run: ClaimRun) -> [Claim; 2] {
     let curvatures = [-0.5, 0.0, 0.8, 1.6];
-    let seen = curvatures.map(|k| {
-        let text = surface(
-            "Rectangle(center: (0, 0, -1), size: (0.1, 0.1))",
-            [0.65; 2],
-            &format!("form: {}, aperture: 0.25", form(k)),
-            "Reflects(brdf: (lobe: Phong(400)))",
-        );
-        let planes = planes(
-            "After(\"surface\")",
-            "Tangent",
-            "x: Hann(0.1), u: Hann(0.6)",
-            "azimuths: 1, rho: (max: 60), nu: (max: 12)",
-        );
-        SeenScene::of(scene(&format!("{text}, {planes}"), photons))
-    });
+    let seen = curvatures.map(|k| run.seen("curvature", &[("surfaces.0.form", form(k))]));
     let each = |of: fn(&Slices) -> f64| seen.each_ref().map(|seen| seen.number(0, of)).to_vec();
     let angular = each(|slices| bandwidth(slices, bandwidth_nu));
     let spatial = each(|slices| bandwidth(slices, bandwidth_rho));
@@ -250,20 +199,10 @@ pub(super) fn bandwidth(slices: &Slices, of: etendue_spectrum::bandwidth::SliceB
     of(power.view(), &slices.grid, 0.95).unwrap_or(f64::NAN)
 }
 
-fn cosine(photons: u64) -> Claim {
+fn cosine(run: ClaimRun) -> Claim {
     let halves = [0.5_f64, 0.25, 0.125];
     let apart = halves.map(|half| {
-        let text = surface(
-            "Rectangle(center: (0, 0, -1), size: (1.6, 1.6))",
-            [0.65; 2],
-            "form: Plane, aperture: 1",
-            "Reflects(brdf: (lobe: Phong(400)))",
-        );
-        let planes = format!(
-            "planes: [(name: \"plane\", at: Before(\"surface\"), orientation: LocalNormals, quantity: DifferentialIrradiance,
-            window: (x: Hann(0.1), u: Hann({half})), frequencies: (azimuths: 4, rho: (max: 20), nu: (max: 12)))]"
-        );
-        let scene = scene(&format!("{text}, {planes}"), photons);
+        let scene = run.scene("cosine", &[("window.u", format!("Hann({half})"))]);
         let whole = SeenScene::of(scene.clone());
         // Replaces the factor cos θ cos φ of a weight by cos θ.
         let tampered = |mut crossing: Crossing| {
@@ -289,7 +228,7 @@ fn cosine(photons: u64) -> Claim {
         })
         .collect();
     let logs = [0, 1, 2].map(|i| [halves[i].ln(), apart[i].value.ln()]);
-    let exponent = crate::table1::slope(&logs);
+    let exponent = crate::orders::slope(&logs);
     Claim {
         said: "with the equator in the plane of incidence the cosine depends on θ alone, to first order (5.2)",
         shown: format!(
@@ -306,24 +245,12 @@ fn cosine(photons: u64) -> Claim {
     }
 }
 
-fn lobe(photons: u64) -> Claim {
+fn lobe(run: ClaimRun) -> Claim {
     let aside = [0.0, 0.1, 0.2];
     let half = 0.1;
     let ratios = aside.map(|aside| {
-        let text = surface(
-            "Beam(center: (0, 0, -1), image: (width: (0.5, 0.5)))",
-            [0.6, 0.6 + aside],
-            "form: Plane, aperture: 0.5",
-            "Reflects(brdf: (lobe: Phong(200)))",
-        );
+        let seen = run.seen("lobe", &[leaves([0.6, 0.6 + aside])]);
         let nu = 0.5 / half;
-        let planes = planes(
-            "After(\"surface\")",
-            "Orthogonal",
-            &format!("x: Hann(0.02), u: Hann({half})"),
-            &format!("azimuths: 2, rho: (max: 50), nu: (max: {nu}, spacing: {nu})"),
-        );
-        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
             // The spectrum of a Hann window alone falls to half of its peak at the first
             // frequency.
@@ -359,30 +286,24 @@ fn lobe(photons: u64) -> Claim {
 
 /// Measures a diffuse sphere of curvature k, with a window and frequencies that match the size of
 /// the sphere.
-fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
-    let text = surface(
-        light,
-        [0.0; 2],
-        &format!("form: Sphere({k}), aperture: {}", 0.45 / k),
-        "Reflects(brdf: (lobe: Lambertian, albedo: 0.7))",
-    );
-    let planes = planes(
-        "After(\"surface\")",
-        "LocalNormals",
-        &format!("x: Hann({}), u: Hann(0.5)", 0.4 / k),
-        &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
-    );
-    let mut scene = scene(&format!("{text}, {planes}"), photons);
-    // With a common seed, the photons on spheres of different sizes would be equal up to scale.
-    scene.run.seed = seed;
-    SeenScene::of(scene)
+fn diffuse(name: &str, k: f64, run: ClaimRun) -> SeenScene {
+    let fields = [
+        ("surfaces.0.form", form(k)),
+        ("surfaces.0.aperture", (0.45 / k).to_string()),
+        ("window.x", format!("Hann({})", 0.4 / k)),
+        ("frequencies.rho.max", (8.0 * k).to_string()),
+    ];
+    run.seen(name, &fields)
 }
 
-fn environment(photons: u64) -> [Claim; 2] {
-    let far = "Environment(center: (0, 0, -1), map: Lobes([(from: (0.6, 0.2, -1), width: 0.3, radiance: 3), (from: (-1, 0, -0.6), width: 0.3, radiance: 2)]))";
-    let near = "Rectangle(center: (0, 0, -0.5), size: (0.5, 0.5))";
-    let apart = |light: &str| {
-        let [one, other] = [(1.0, 1), (3.0, 2)].map(|sphere| diffuse(light, sphere, photons));
+fn environment(run: ClaimRun) -> [Claim; 2] {
+    let apart = |name: &str| {
+        // With a common seed, the photons on spheres of different sizes would be equal up to scale.
+        let next = ClaimRun {
+            seed: run.seed.wrapping_add(1),
+            ..run
+        };
+        let [one, other] = [(1.0, run), (3.0, next)].map(|(k, run)| diffuse(name, k, run));
         number(&[(&one, 0), (&other, 0)], &|slices| {
             let [one, other] = [0, 1].map(|i| slices[i].half.mapv(|s| s / slices[i].at_zero()));
             let apart: f64 = (&one - &other).iter().map(|s| s.norm_sqr()).sum();
@@ -390,7 +311,7 @@ fn environment(photons: u64) -> [Claim; 2] {
             apart / all
         })
     };
-    let [far, near] = [far, near].map(apart);
+    let [far, near] = ["environment", "near_light"].map(apart);
     [
         Claim {
             said: "for light that varies only in angle, the cosine is a convolution over normals: \

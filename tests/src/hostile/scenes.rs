@@ -58,7 +58,7 @@ const FOLDERS: [&str; 5] = ["out", "a\nEND\nLINE", "a\rLINE", "a'\nLINE", "'; LI
 pub(crate) fn seeds() -> io::Result<Vec<String>> {
     let mut texts = Vec::new();
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    for folder in [scenes.clone(), scenes.join("table1")] {
+    for folder in [scenes.clone(), scenes.join("table1"), scenes.join("words")] {
         let mut paths: Vec<_> = fs::read_dir(folder)?
             .map(|entry| Ok(entry?.path()))
             .collect::<io::Result<_>>()?;

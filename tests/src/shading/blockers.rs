@@ -4,7 +4,7 @@
 use super::primal::{about, between, integral, transform, wave};
 use super::strips::{coefficients, in_common, strips};
 use super::words::Statement;
-use crate::table1::slope;
+use crate::orders::slope;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 

@@ -5,7 +5,7 @@ use super::brdfs::{THETA0, THETA1};
 use super::light::light_hat;
 use super::primal::{about, between, transform};
 use super::words::Statement;
-use crate::table1::slope;
+use crate::orders::slope;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::environment::{Glow, irradiance};

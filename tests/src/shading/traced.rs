@@ -2,10 +2,11 @@
 
 use super::light::Bell;
 use super::primal::{about, wave};
+use crate::orders::{self, ORDER, slope};
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row, worse};
 use crate::rows::Line;
-use crate::table1::{ORDER, apart, order, slope};
+use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{
@@ -78,7 +79,7 @@ pub(super) fn traced() -> ReportSection {
             let fitted = slope(&logs);
             let known = case.known(step);
             let check = match known {
-                Some(known) => order(fitted, known),
+                Some(known) => orders::check(fitted, known),
                 None => {
                     let largest = errors.into_iter().fold(0.0, worse);
                     Check::new(

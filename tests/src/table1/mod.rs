@@ -5,7 +5,6 @@ mod bench;
 mod errata;
 mod foci;
 mod operators;
-mod order;
 mod path;
 mod planar;
 mod planted;
@@ -14,7 +13,6 @@ mod scenes;
 mod steps;
 mod volume;
 
-pub(crate) use order::{ORDER, check as order, slope};
 pub(crate) use quadrature::apart;
 
 use crate::report::ReportSection;

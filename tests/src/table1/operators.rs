@@ -1,21 +1,16 @@
 //! Comparison of photons with theory at every plane of the scenes for Table 1.
 
-use super::order::{self, Fall, KnownOrder, ORDER, fall};
 use super::path::{MirrorPath, PathStage};
 use super::planar::StageFound;
 use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row, worse};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
-
-/// Permitted difference between the exact and the first-order prediction where the first order is
-/// exact; the quadrature of either prediction is accurate to 10⁻⁴.
-const QUADRATURE: f64 = 2e-4;
 
 /// Returns the section on Table 1 in 4D.
 pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> ReportSection {
@@ -35,18 +30,14 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             chain of affine maps. *Error* is the error of the chain, computed from the exact \
             prediction. *Excess* is the disagreement of the chain with the photons beyond noise, \
             and *bound* is the upper 95 % bound of the excess. *Resolvable* is the smallest \
-            excess that can be detected above the noise. *Order* is the exponent with which the \
-            error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares, and \
-            *last* is the exponent from 1/4 to 1/8. The columns *2D* repeat the table above for \
+            excess that can be detected above the noise. The columns *2D* repeat the table above for \
             the section in the plane of incidence, for one surface whose principal axes lie in \
             this plane. Required of every plane: light arrives. *p exact* is at least {level:.6}, \
             unless the stated error of the prediction may explain the whole difference; this \
             level is α = 0.01 over all {planes} planes (scenes with the same light are lit by the \
             same photons, so that their p-values are alike, and the level is on the safe side). \
-            The bound is at most 1.1 errors or 1 %. The order is within {ORDER} of 1 where light \
-            comes at an angle and of 2 where it comes along normals, and there is no error where \
-            the chain leaves nothing out. *p first order* is below {level:.6} wherever the error \
-            is above twice the resolvable excess."
+            The bound is at most 1.1 errors or 1 %. *p first order* is below {level:.6} \
+            wherever the error is above twice the resolvable excess."
         ),
         header: vec![
             "scene",
@@ -62,9 +53,6 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
             "bound",
             "resolvable",
             "p first order",
-            "order",
-            "last",
-            "known order",
             "verdict",
         ],
         rows,
@@ -75,8 +63,6 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
 fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let report = &outcome.planes[index].report;
     let view = outcome.system(index);
-    let known = KnownOrder::expected(&view);
-    let fall = fall(outcome, index);
     let first = report.first_order.as_ref();
     let error = first.map_or(f64::NAN, |f| f.chain.error);
     let resolvable = first.and_then(|f| f.resolvable);
@@ -87,7 +73,6 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
         Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
         Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
-        follows(&fall, known),
     ];
     if resolvable.is_some_and(|r| error > 2.0 * r) {
         let p = p_first.unwrap_or(1.0);
@@ -96,12 +81,6 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     }
     let planar = section(&view).map(|(path, stage)| path.found(stage));
     checks.extend(planar.iter().flat_map(StageFound::checks));
-    let [.., before, last] = fall.errors;
-    let exponent = known.exponent();
-    let order = |x: f64| match exponent {
-        Some(_) => format!("{x:.3}"),
-        None => "–".to_owned(),
-    };
     let (word, line) = operator(&view);
     let cells = vec![
         outcome.scene.name.clone(),
@@ -117,24 +96,8 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
         percent(first.and_then(|f| f.excess_bound)),
         percent(resolvable),
         number(p_first),
-        order(fall.order),
-        order((before / last).log2()),
-        exponent.map_or("exact".to_owned(), |n| format!("{n:.0}")),
     ];
     Row::new(cells, checks).of(line)
-}
-
-fn follows(fall: &Fall, known: KnownOrder) -> Check {
-    if let Some(known) = known.exponent() {
-        return order::check(fall.order, known);
-    }
-    let largest = fall.errors.into_iter().fold(0.0, worse);
-    Check::new(
-        "order",
-        largest,
-        Below(QUADRATURE),
-        "difference of two quadratures",
-    )
 }
 
 /// Returns the name of the last step before a plane, and the row of the paper's Table 1 that

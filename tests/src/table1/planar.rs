@@ -1,10 +1,10 @@
 //! Comparison of the operators in 2D with a plain quadrature of the mapped field, and with rays
 //! traced off a circle.
 
-use super::order::{self, ORDER, slope};
 use super::path::MirrorPath;
 use super::path::PathStage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 use super::quadrature::{apart, of_field, of_rays};
+use crate::orders::{self, ORDER, slope};
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
@@ -132,7 +132,7 @@ impl StageFound {
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
             Check::new("map", self.map, Below(ROUNDING), "rounding error of a sum"),
-            order::check(self.order, self.known),
+            orders::check(self.order, self.known),
         ]
     }
 }

@@ -11,7 +11,12 @@ use std::collections::BTreeMap;
 const LINES: &[(&str, usize, usize, &str)] = &[
     ("bvh", 1261, 1261, ""),
     ("cli", 4109, 4111, "the feature `worlds`"),
-    ("compare", 7463, 7463, ""),
+    (
+        "compare",
+        7463,
+        7555,
+        "converge tells its noise from its error",
+    ),
     ("explorer", 1059, 1059, ""),
     ("export", 1413, 1413, ""),
     ("field", 3031, 3031, ""),
@@ -31,7 +36,12 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("spectrum", 3218, 3218, ""),
     ("store", 3185, 3185, ""),
     ("sweep", 1238, 1238, ""),
-    ("theory", 16875, 16875, ""),
+    (
+        "theory",
+        16875,
+        16899,
+        "converge tells its noise from its error",
+    ),
     ("trace", 6797, 6797, ""),
     ("transform", 1685, 1685, ""),
     ("variance", 2023, 2023, ""),

@@ -190,8 +190,8 @@ pub(crate) struct CompareArgs {
       the error of the paper's printed formulas does not fall
 
 Light and windows are multiplied by e, and frequencies are divided by e. The error of first-order maps is \
-then proportional to e, or to e² at normal incidence. No order is printed where the error is as small as \
-the error of the quadrature.")]
+then proportional to e, or to e² at normal incidence. No order is printed where fewer than \
+three errors are clearly above the error of the sums over rays.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

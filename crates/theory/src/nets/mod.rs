@@ -18,7 +18,7 @@ pub use rays::RayNets;
 pub(crate) use rays::SampledNets;
 pub(crate) use sobol::{DIMENSIONS, NetPoints};
 
-use crate::predicted::Predicted;
+use crate::predicted::{NetMean, Predicted};
 use crate::work::PredictionWork;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use etendue_transform::SliceTransform;
@@ -197,7 +197,7 @@ pub(crate) fn means(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     predicted: &Predicted,
-) -> Vec<Slices> {
+) -> Vec<NetMean> {
     if integrand.fields() == 0 {
         return Vec::new();
     }
@@ -206,11 +206,7 @@ pub(crate) fn means(
     let first = REPLICATES + OF_TRIALS;
     let mut running = begin(integrand, grid, 1, first, OF_DERIVATIVES);
     let of_field = |running: &[Running], field: usize| {
-        let replicates = running.iter().map(|net| &net.slices[field]);
-        (
-            mean(replicates.clone()),
-            relative(error_and_norm(replicates)),
-        )
+        NetMean::new(running.iter().map(|net| &net.slices[field]))
     };
     let most = most_for_derivatives(integrand.fields(), predicted.nodes);
     let (mut each, mut more) = (0, DERIVATIVE_NODES[0]);
@@ -220,10 +216,10 @@ pub(crate) fn means(
             .for_each(|net| net.add(integrand, &transform, &picture, more));
         each += more;
         let fields = (0..integrand.fields()).map(|field| of_field(&running, field));
-        let (mut means, errors): (Vec<_>, Vec<_>) = fields.unzip();
-        if each >= most || errors.iter().all(|error| *error <= DERIVATIVE_ERROR) {
+        let mut means: Vec<NetMean> = fields.collect();
+        if each >= most || means.iter().all(|mean| mean.error <= DERIVATIVE_ERROR) {
             for mean in &mut means {
-                mean.half /= Complex::from(f64::from(each));
+                mean.slices.half /= Complex::from(f64::from(each));
             }
             return means;
         }
@@ -369,6 +365,16 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
     sum
 }
 
+impl NetMean {
+    /// Returns the mean of sums over independent nets.
+    pub(crate) fn new<'a>(sums: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> Self {
+        Self {
+            slices: mean(sums.clone()),
+            error: relative(error_and_norm(sums)),
+        }
+    }
+}
+
 /// Returns ‖σ‖ and ‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
 /// (12)).
 fn error_and_norm<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> [f64; 2] {
@@ -464,7 +470,7 @@ mod tests {
         }
         let mut same = mean(running.iter().map(|net| &net.slices[0]));
         same.half /= Complex::from(f64::from(DERIVATIVE_NODES[0]));
-        assert_ne!(derivative.half, same.half);
+        assert_ne!(derivative.slices.half, same.half);
     }
 
     #[test]

@@ -132,7 +132,8 @@ fn derivatives(
         apart: moved.iter().map(|moved| moved.apart).collect(),
         sides,
     };
-    nets::means(&differences, (over.0, over.1), predicted)
+    let means = nets::means(&differences, (over.0, over.1), predicted);
+    means.into_iter().map(|mean| mean.slices).collect()
 }
 
 fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {

@@ -15,20 +15,31 @@ impl ReflectionSystem {
         &self.surfaces[..self.visited]
     }
 
-    /// Returns the system with a light, lobes and textures `factor` times as wide. Returns `None` if
-    /// a surface reflects diffusely, since its lobe has no width.
+    /// Returns the system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
+    /// wide. A Lambertian lobe has no width and stays as it is. Returns `None` if a lobe stays as it
+    /// is and the light that it receives does not become narrower, which is so for an environment
+    /// and between several surfaces.
     ///
     /// If windows become narrower and frequencies higher by the same factor, the error of
     /// first-order maps falls with the factor.
     #[must_use]
-    pub fn shrunk(&self, factor: f64) -> Option<Self> {
+    pub fn shrunk(&self, factor: f64, keeps_lobes: bool) -> Option<Self> {
+        let is_environment = matches!(self.light, Light::Environment { .. });
+        let is_lit_narrowly = self.visited == 1 && !is_environment;
         let mut system = self.clone();
         system.light = shrunk_light(&self.light, factor);
         for surface in &mut system.surfaces[..self.visited] {
             match &mut surface.interaction {
                 Interaction::Specular(_) => {}
+                Interaction::Diffuse { .. } if is_lit_narrowly => {}
                 Interaction::Diffuse { .. } => return None,
-                Interaction::Reflects(reflectance) => shrink(reflectance, factor)?,
+                Interaction::Reflects(reflectance) => {
+                    let lobes = if keeps_lobes { 1.0 } else { factor };
+                    let have_width = shrink(reflectance, factor, lobes);
+                    if (keeps_lobes || !have_width) && !is_lit_narrowly {
+                        return None;
+                    }
+                }
             }
         }
         Some(system)
@@ -40,14 +51,16 @@ impl ReflectionSystem {
     }
 }
 
-/// Makes the lobes and the patterns of a reflectance `factor` times as wide. Returns `None` if a
-/// term is Lambertian.
-fn shrink(reflectance: &mut Reflectance, factor: f64) -> Option<()> {
+/// Makes the patterns of a reflectance `factor` times as wide, and its lobes `lobes` times as wide.
+/// Returns whether all lobes have a width.
+fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
     let Reflectance { terms, texture } = reflectance;
+    let mut have_width = true;
     for term in &mut *terms {
-        match term.brdf.lobe.number_mut()? {
-            ("exponent", exponent) => *exponent /= factor * factor,
-            (_, roughness) => *roughness *= factor,
+        match term.brdf.lobe.number_mut() {
+            Some(("exponent", exponent)) => *exponent /= lobes * lobes,
+            Some((_, roughness)) => *roughness *= lobes,
+            None => have_width = false,
         }
     }
     let weights = terms.iter_mut().filter_map(|term| match &mut term.weight {
@@ -61,7 +74,7 @@ fn shrink(reflectance: &mut Reflectance, factor: f64) -> Option<()> {
             Pattern::Picture(picture) => picture.size = picture.size.map(|side| side * factor),
         }
     }
-    Some(())
+    have_width
 }
 
 impl PathSurface {

@@ -22,7 +22,7 @@ pub(super) struct FieldPaths<'a> {
     window: &'a Window,
     obstacles: PreparedObstacles<'a>,
     chain: ReflectionChain,
-    start: LightSampler<'a>,
+    start: PathStart<'a>,
     /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
     guides: Vec<Conditional>,
     /// The coordinates by which rays are aimed, for the leg from the light and for the leg from
@@ -32,7 +32,7 @@ pub(super) struct FieldPaths<'a> {
 
 /// The sampling of the light's rays.
 #[derive(Debug)]
-enum LightSampler<'a> {
+enum PathStart<'a> {
     /// Positions in a beam are drawn. The Gaussian describes the rays that reach the window.
     Beam(Conditional),
     /// Directions from points of the light are drawn. The Gaussian describes the rays that reach
@@ -41,7 +41,7 @@ enum LightSampler<'a> {
     Sky(Box<SkyRays<'a>>),
 }
 
-impl<'a> LightSampler<'a> {
+impl<'a> PathStart<'a> {
     /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
     /// window. `aim` contains the coordinates of the leg from the light.
     fn new(
@@ -104,7 +104,7 @@ impl<'a> FieldPaths<'a> {
         let legs = 0..chain.maps.len();
         let aims = legs.map(|leg| DirectionCoordinates::new(&view.system, &chain.scatterers, leg));
         let aims: Vec<DirectionCoordinates> = aims.collect();
-        let start = LightSampler::new(view, &chain, &guide, aims[0])?;
+        let start = PathStart::new(view, &chain, &guide, aims[0])?;
         Some(Self {
             view,
             window,
@@ -168,17 +168,17 @@ impl<'a> FieldPaths<'a> {
         let aim = &self.aims[0];
         let mut target = None;
         let (ray, density) = match &self.start {
-            LightSampler::Sky(rays) => {
+            PathStart::Sky(rays) => {
                 let (ray, density, aimed) = rays.draw([a, b, c, d])?;
                 target = aimed;
                 (ray, density)
             }
-            LightSampler::Beam(guide) => {
+            PathStart::Beam(guide) => {
                 let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
                 let [x, y] = rays.draw([a, b]);
                 ([x, y, 0.0, 0.0], rays.density([x, y]))
             }
-            LightSampler::Points(guide) => {
+            PathStart::Points(guide) => {
                 let [x, y] = outer;
                 let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
                 let at = targets.draw([a, b]);

@@ -44,7 +44,7 @@ pub(crate) fn predict(
     let mut means = nets::means(&around, (window, grid), &found).into_iter();
     Predicted {
         to_first_order: means.next(),
-        derivatives: means.collect(),
+        derivatives: means.map(|mean| mean.slices).collect(),
         ..found
     }
 }

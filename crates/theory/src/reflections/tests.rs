@@ -190,7 +190,7 @@ fn one_surface_is_that_of_scattering() {
         // The chains differ only in the points where rays meet the mask.
         let [one, other] = [one, other].map(|found| {
             let size = found.slices.at_zero();
-            found.to_first_order.unwrap().at_zero() / size
+            found.to_first_order.unwrap().slices.at_zero() / size
         });
         assert!((one - other).abs() < 0.02, "{lobe:?} {one} {other}"); // noise of derivatives' nets
     }

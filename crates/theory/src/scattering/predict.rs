@@ -43,7 +43,7 @@ pub(crate) fn predict(
     let mut means = nets::means(&around, (window, grid), &found).into_iter();
     Predicted {
         to_first_order: around.linear.as_ref().and_then(|_| means.next()),
-        derivatives: means.collect(),
+        derivatives: means.map(|mean| mean.slices).collect(),
         ..found
     }
 }

@@ -37,7 +37,7 @@ fn linearised(
     chain: &ScatteringChain,
 ) -> f64 {
     let right = by(system, plane, window, grid, Some(chain));
-    let mut near = right.to_first_order.unwrap();
+    let mut near = right.to_first_order.unwrap().slices;
     near.half += &right.slices.half;
     near.relative_difference(&right.slices)
 }
