@@ -232,11 +232,7 @@ impl Job {
 }
 
 fn bad(py: Python<'_>, error: &dyn std::fmt::Display) -> PyErr {
-    let failure = Failure {
-        message: error.to_string(),
-        code: 2,
-    };
-    raised(py, failure)
+    raised(py, Failure::bad_input(error))
 }
 
 #[pymethods]

@@ -1,6 +1,6 @@
 //! Converts failures to Python exceptions.
 
-use etendue_store::Failure;
+use etendue_store::{Failure, FailureKind};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -18,9 +18,9 @@ create_exception!(
     "The request cannot be carried out here: for example, there is too little memory or disk space, or a folder contains something else."
 );
 
-/// Returns the exception for a failure. The exit code 2 of a failure means bad input.
+/// Returns the exception for a failure.
 pub(crate) fn raised(py: Python<'_>, failure: Failure) -> PyErr {
-    if failure.code != 2 {
+    if failure.kind != FailureKind::BadInput {
         return CannotRun::new_err(failure.message);
     }
     let faults: Vec<String> = failure.message.lines().map(str::to_owned).collect();

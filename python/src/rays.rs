@@ -114,10 +114,7 @@ pub(crate) fn spectrum(
     let all = rays.0.iter().map(|batch| batch.len() as u64).sum();
     let watch = live.trace(all, "rays");
     let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, &watch);
-    let few = |error: estimate::TooFewBatches| Failure {
-        message: error.to_string(),
-        code: 2,
-    };
+    let few = |error: estimate::TooFewBatches| Failure::bad_input(error);
     let power = CrossPower::new(&measured, 0).map_err(few)?;
     let grid = &plane.grid;
     let varying = measured.without_mean(0);

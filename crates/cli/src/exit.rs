@@ -1,7 +1,7 @@
 //! Determines how a command ends: its message and its exit code.
 
 use crate::print::{MAX_ERROR_LINES, printable, tell};
-use etendue_store::Failure;
+use etendue_store::{Failure, FailureKind};
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -25,6 +25,14 @@ pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     }
 }
 
+/// Returns the exit code of a command that failed.
+pub(crate) const fn code_of(kind: FailureKind) -> u8 {
+    match kind {
+        FailureKind::BadInput => 2,
+        FailureKind::CannotRun => 3,
+    }
+}
+
 /// Returns the exit code for the outcome of a command. Prints the message of a failure unless
 /// `quiet` is set, because another process then prints this message.
 pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
@@ -35,7 +43,7 @@ pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
                 let message = printable(&failure.message, MAX_ERROR_LINES);
                 tell(&format!("error: {message}"));
             }
-            failure.code
+            code_of(failure.kind)
         }
     }
 }

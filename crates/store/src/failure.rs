@@ -4,36 +4,39 @@ use etendue_scene::SceneError;
 use std::fmt::Display;
 use std::path::Path;
 
-/// The reason why a command stopped, with the message for the user and the exit code.
+/// The reason why a request was not carried out, with the message for the user.
 #[derive(Debug)]
 pub struct Failure {
     /// The message for the user, one line for each fault.
     pub message: String,
-    /// The exit code, which is 2 for bad input, and 3 if the command cannot run on this machine.
-    pub code: u8,
+    /// Whose fault it is.
+    pub kind: FailureKind,
 }
 
-/// Exit code of bad input.
-const BAD_INPUT: u8 = 2;
-/// Exit code of a run that this machine cannot carry out: because of a folder, the disk, the memory
-/// or an interruption.
-pub const CANNOT_RUN: u8 = 3;
+/// The kinds of [`Failure`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FailureKind {
+    /// The input of the user is wrong.
+    BadInput,
+    /// This machine cannot carry out the request: because of a folder, the disk, the memory or an
+    /// interruption.
+    CannotRun,
+}
 
 impl Failure {
-    /// Returns the failure for wrong input of the user, with exit code 2.
+    /// Returns the failure for wrong input of the user.
     pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
-            code: BAD_INPUT,
+            kind: FailureKind::BadInput,
         }
     }
 
-    /// Returns the failure for a request that cannot be carried out on this machine, with exit
-    /// code 3.
+    /// Returns the failure for a request that cannot be carried out on this machine.
     pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
-            code: CANNOT_RUN,
+            kind: FailureKind::CannotRun,
         }
     }
 

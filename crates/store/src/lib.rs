@@ -32,7 +32,7 @@ pub mod unfinished;
 mod version;
 
 pub use argument_style::ArgumentStyle;
-pub use failure::{CANNOT_RUN, Failure};
+pub use failure::{Failure, FailureKind};
 pub use method::Method;
 pub use results::{
     COVARIANCE, EXPORT, FIGURE, Finished, MAX_INDEX_BYTES, MEASUREMENT, PICTURE, PREDICTION, PROBE,

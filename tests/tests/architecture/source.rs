@@ -109,9 +109,9 @@ fn literal(text: &str, is_word: bool) -> Option<usize> {
     if text.starts_with("/*") {
         return Some(after(2, "*/"));
     }
-    if text.starts_with('"') {
+    if let Some(string) = text.strip_prefix('"') {
         let mut escaped = false;
-        let end = text[1..].find(|c| {
+        let end = string.find(|c| {
             let ends = c == '"' && !escaped;
             escaped = c == '\\' && !escaped;
             ends

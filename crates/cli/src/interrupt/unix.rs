@@ -1,6 +1,7 @@
 //! Handles the signals of Unix.
 
-use etendue_store::{CANNOT_RUN, Failure, machine, unfinished};
+use crate::exit::code_of;
+use etendue_store::{Failure, FailureKind, machine, unfinished};
 use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag::{register, register_conditional_shutdown};
 use signal_hook::iterator::Signals;
@@ -21,14 +22,14 @@ fn end() {
         });
         let _ = wait.recv_timeout(Duration::from_secs(1));
         #[expect(clippy::exit, reason = "the user asked the process to stop")]
-        std::process::exit(CANNOT_RUN.into());
+        std::process::exit(code_of(FailureKind::CannotRun).into());
     });
 }
 
 /// Installs the signal handlers that `interrupt` describes.
 pub(super) fn install() -> Result<(), Failure> {
     let install = || {
-        let code = CANNOT_RUN.into();
+        let code = code_of(FailureKind::CannotRun).into();
         let asked = Arc::new(AtomicBool::new(false));
         let mut signals = vec![SIGINT, SIGTERM];
         // If `nohup` makes the process ignore SIGHUP, the process continues to ignore it.

@@ -24,6 +24,7 @@ pub(crate) fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
+    use etendue_store::FailureKind;
 
     #[test]
     fn pixels_that_are_not_finite_are_refused() {
@@ -31,7 +32,7 @@ mod tests {
         // The first value of the test exceeds the range of 32 bits.
         for lost in [1e39, f64::INFINITY, f64::NAN] {
             let refused = require_finite([2, 2], &[0.0, 1.0, 2.0, lost]).unwrap_err();
-            assert_eq!(refused.code, 2);
+            assert_eq!(refused.kind, FailureKind::BadInput);
             assert!(
                 refused
                     .message
