@@ -180,6 +180,28 @@ fn a_header_of_any_length_is_read_in_proportion() {
     assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
 }
 
+/// With boxes padded for the distance of the light, the hierarchy took sixty times as long.
+#[test]
+fn a_light_that_is_too_far_is_refused_as_fast_as_a_scene_is_read() {
+    let seconds = |y: &str| {
+        let text = format!(
+            "(light: Rectangle(center: (0, {y}, 0), size: (0.2, 0.2)), blockers: [Mesh(name: \"star\", \
+             center: (0, 0, 1), mesh: Star(radius: 0.25, relief: 0.3, lobes: 5, rings: 120))], \
+             surfaces: [Rectangle(name: \"floor\", center: (0, 0, 2), size: (6, 6))], \
+             path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"floor\"]), \
+             planes: [(name: \"a\", at: Before(\"floor\"))], window: (x: Hann(0.5), u: Hann(0.5)), \
+             frequencies: (rho: (max: 1), nu: (max: 1)), run: (photons: 1000))"
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        let start = std::time::Instant::now();
+        let is_refused = resolve("far", file, ".".as_ref(), u64::MAX).is_err();
+        (is_refused, start.elapsed().as_secs_f64())
+    };
+    let [(sound, near), (refused, far)] = ["0", "1e19"].map(seconds);
+    assert!(!sound && refused);
+    assert!(far < 20.0 * near, "{far} s, {near} s");
+}
+
 /// The relative difference between photons and backward rays is 3 % with two cells. With eight
 /// cells, the difference is so small that 4e7 photons do not detect it.
 #[test]

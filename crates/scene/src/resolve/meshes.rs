@@ -8,6 +8,7 @@ use crate::scene::{MeshObject, SmoothMesh};
 use crate::triangles::Triangles;
 use etendue_field::Frame;
 use etendue_scenefile::Fault;
+use etendue_scenefile::limits::MAX_NUMBER;
 use etendue_scenefile::{
     BlockersFile, EventFile, FormFile, LightFile, MeshSource, SceneFile, SurfaceFile,
 };
@@ -185,5 +186,8 @@ fn reach(file: &SceneFile) -> f64 {
     let lights = std::iter::once(&file.light).chain(&file.other_lights);
     let centers = centers.chain(lights.map(LightFile::center));
     let farthest = centers.map(|center| DVec3::from(center).length());
-    farthest.fold(0.0, f64::max)
+    // A scene with a farther centre is refused. Boxes that are padded for such a distance all
+    // overlap, and a hierarchy over them takes minutes.
+    let allowed = farthest.filter(|distance| *distance < 2.0 * MAX_NUMBER);
+    allowed.fold(0.0, f64::max)
 }
