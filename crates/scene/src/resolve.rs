@@ -27,7 +27,7 @@ use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::{Frame, tidy};
 use etendue_scenefile::SceneError;
-use etendue_scenefile::limits::INPUT_BYTES;
+use etendue_scenefile::limits::{INPUT_BYTES, MAX_NUMBER};
 use etendue_scenefile::number;
 use etendue_scenefile::{Color, RunFile, SceneFile};
 use faults::{Faults, show, vector};
@@ -92,9 +92,10 @@ impl Resolver<'_> {
         let frame = self.frame(&file);
         self.run(&file.run, 1 + file.other_lights.len());
         self.level(file.run.alpha, file.planes.len());
-        // If the frame is unknown or not finite, the checks continue with the identity frame,
+        // If the frame is unknown or too far away, the checks continue with the identity frame,
         // which leaves all values unchanged.
-        let checked = frame.filter(|frame| frame.origin.is_finite());
+        let is_allowed = |frame: &Frame| frame.origin.abs().cmple(DVec3::splat(MAX_NUMBER)).all();
+        let checked = frame.filter(is_allowed);
         let checked = checked.unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
         let surfaces = self.surfaces(&file, &checked);
