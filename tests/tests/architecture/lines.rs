@@ -30,7 +30,12 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("report", 2599, 2599, ""),
     ("sampling", 495, 495, ""),
     ("scatter", 1291, 1291, ""),
-    ("scene", 6458, 6458, ""),
+    (
+        "scene",
+        6458,
+        6462,
+        "too distant lights are refused at once",
+    ),
     ("scenefile", 3036, 3036, ""),
     ("scenes", 52, 52, ""),
     ("spectrum", 3218, 3218, ""),
