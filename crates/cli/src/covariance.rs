@@ -23,8 +23,9 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;
     let inputs = load::inputs(&args.scene.source(), &scene);
-    let job = Job::of(scene.clone(), args.photons.method, inputs.clone())?;
+    let job = Job::of(scene, args.photons.method, inputs.clone())?;
     let study = CovarianceStudy::new(job)?;
+    let scene = study.scene();
     let folder = args.out.or_named(format!("{}-covariance", scene.name));
     let planes = scene.planes.iter();
     let files = planes.flat_map(|plane| NAMES.map(|file| format!("{}/{file}", plane.name)));
@@ -41,7 +42,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         Ok((results, study.run(&Terminal::new(args.work.quiet))?))
     })?;
     for (index, plane) in scene.planes.iter().enumerate() {
-        let figure = drawn(&scene, &found, index)?;
+        let figure = drawn(scene, &found, index)?;
         PictureFiles::new(format!("{}/covariance", plane.name), figure)?.write(&mut results)?;
     }
     if !args.work.quiet {

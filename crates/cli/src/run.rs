@@ -74,16 +74,16 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
 fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
     let job = args.photons.job(&args.scene)?;
-    let scene = &job.scene;
-    let folder = args.out.or_named(&scene.name);
+    let folder = args.out.or_named(&job.scene.name);
     let plan = plan(
-        scene,
+        &job.scene,
         &args.save,
         job.inputs.clone(),
         args.work.force.force,
         ArgumentStyle::Command,
     );
     on_threads(&args.work.threads, || {
+        let scene = &job.scene;
         warnings::tell(scene, args.work.quiet);
         job.check_limits()?;
         if args.save.contains(&Save::Field) {
@@ -118,7 +118,7 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
             results,
             workers,
         };
-        stages(args, job.clone(), place)
+        stages(args, job, place)
     })
 }
 

@@ -2,9 +2,10 @@
 
 use crate::moments::{check_memory, fitting};
 use crate::reporter::{Reporter, Work};
-use crate::{Job, MeasuredScene, limits, method};
+use crate::{Job, limits, measured, method};
 use etendue_compare::{AXES, Applicability, CovarianceReport, Prediction};
 use etendue_field::PhotonSource;
+use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::field::measure_field;
 use etendue_store::{Failure, VERSION};
@@ -29,6 +30,12 @@ impl CovarianceStudy {
         Ok(Self(job))
     }
 
+    /// Returns the scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.0.scene
+    }
+
     /// Checks that the work and its memory are within the limits.
     pub fn check_limits(&self) -> Result<(), Failure> {
         self.0.check_limits()?;
@@ -37,14 +44,15 @@ impl CovarianceStudy {
 
     /// Measures and predicts all planes, and compares their covariances.
     pub fn run(&self, reporter: &dyn Reporter) -> Result<SceneCovariances, Failure> {
-        let MeasuredScene {
+        let Job {
             scene,
             theories,
             method,
-            measurement,
-            predictions,
-        } = self.0.clone().run(reporter)?;
-        let source = method::source(&scene.clone().on_grids(), method)?;
+            ..
+        } = &self.0;
+        let measurement = measured(scene, *method, 0..scene.run.batches, reporter)?;
+        let predictions = self.0.predictions(None, reporter)?;
+        let source = method::source(&scene.clone().on_grids(), *method)?;
         let bar = reporter.begin(Work::Steps {
             verb: "transforming",
             total: scene.planes.len(),
