@@ -10,18 +10,14 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 const BUDGET: RayBudget = RayBudget::new(5e6, 5e-4);
 
 /// Predicts the slices behind specular surfaces by rays.
-pub(crate) fn traced(
-    view: &Observed<rays::SpecularSystem>,
-    window: &Window,
-    grid: &SliceGrid,
-) -> Predicted {
+pub(crate) fn traced(view: &Observed, window: &Window, grid: &SliceGrid) -> Predicted {
     let picture = ProjectionGrid::new(window, 1);
     view.predict(&[], (window, grid, &picture), BUDGET)
 }
 
 /// Predicts the slices behind specular surfaces by a chain.
 pub(crate) fn linear(
-    view: &Observed<rays::SpecularSystem>,
+    view: &Observed,
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
@@ -32,7 +28,7 @@ pub(crate) fn linear(
 
 /// Predicts the slices behind a surface with a BRDF, both exactly and by a first-order chain.
 pub(crate) fn scattered(
-    view: &Observed<scattering::ScatteringSystem>,
+    view: &Observed,
     plane: &VirtualPlane,
     chain: &ScatteringChain,
 ) -> [Slices; 2] {

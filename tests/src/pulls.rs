@@ -12,10 +12,9 @@ use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
 use crate::statistics::mean;
 use crate::{nets, wild};
-use etendue_compare::{
-    Applicability, Class, Prediction, Test, Theory, Verdict, compare, too_much_work,
-};
+use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare, too_much_work};
 use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_theory::{Observed, PathKind};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -226,14 +225,15 @@ fn normal(t: f64, freedom: usize) -> f64 {
 fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     let nets = !prediction.replicates.is_empty();
     let is_rule = prediction.quadrature_error.is_some();
-    match (&theory.theory, nets, is_rule) {
-        (Theory::Parallel(_), true, _) => "exact, nets",
-        (Theory::Parallel(_), false, true) => "exact, quadrature",
-        (Theory::Parallel(_), false, false) => "exact, closed form",
-        (Theory::Specular(_), true, _) => "specular, nets",
-        (Theory::Specular(_), false, _) => "specular, quadrature",
-        (Theory::Reflections(_), ..) => "several surfaces, nets",
-        _ => "scattering, nets",
+    let kind = theory.theory.path().map(Observed::kind);
+    match (kind, nets, is_rule) {
+        (None, true, _) => "exact, nets",
+        (None, false, true) => "exact, quadrature",
+        (None, false, false) => "exact, closed form",
+        (Some(PathKind::Specular), true, _) => "specular, nets",
+        (Some(PathKind::Specular), false, _) => "specular, quadrature",
+        (Some(PathKind::Several), ..) => "several surfaces, nets",
+        (Some(PathKind::Scattered), ..) => "scattering, nets",
     }
 }
 

@@ -3,12 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Residuals, Theory, system};
+use etendue_compare::{Applicability, Residuals, path};
 use etendue_field::{Light, Orientation, ProjectionGrid, Quantity, VirtualPlane};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::rays::SpecularSystem;
-use etendue_theory::reflections::ReflectionSystem;
 use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
@@ -22,7 +20,7 @@ const PHOTONS: u64 = 1 << 22;
 const ALPHA: f64 = 0.01;
 
 /// A fault planted in a system.
-type Fault<S = SpecularSystem> = (&'static str, fn(&mut Observed<S>));
+type Fault = (&'static str, fn(&mut Observed));
 
 /// Returns a scene of the repository, with fewer photons than its file states.
 fn scene(name: &str) -> Scene {
@@ -34,7 +32,7 @@ fn scene(name: &str) -> Scene {
     scene
 }
 
-fn predicted(view: &impl Model, plane: &VirtualPlane) -> Predicted {
+fn predicted(view: &Observed, plane: &VirtualPlane) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET)
 }
@@ -43,21 +41,13 @@ fn predicted(view: &impl Model, plane: &VirtualPlane) -> Predicted {
 /// each fault.
 fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     let plane = scene.planes.iter().find(|plane| plane.name == name);
-    let view = system(scene, plane.unwrap()).unwrap();
+    let view = path(scene, plane.unwrap()).unwrap();
     tells_in(&view, scene, photons, name, faults);
 }
 
-fn tells_in<S: Clone>(
-    view: &Observed<S>,
-    scene: &Scene,
-    photons: &Measurement,
-    name: &str,
-    faults: &[Fault<S>],
-) where
-    Observed<S>: Model,
-{
+fn tells_in(view: &Observed, scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     let plane = scene.planes.iter().position(|p| p.name == name).unwrap();
-    let p = |fault: fn(&mut Observed<S>)| {
+    let p = |fault: fn(&mut Observed)| {
         let mut view = view.clone();
         fault(&mut view);
         let found = predicted(&view, &scene.planes[plane]);
@@ -73,33 +63,33 @@ fn tells_in<S: Clone>(
 }
 
 /// Rotates the axes of a surface by half a turn about the normal of this surface.
-fn turned_round(view: &mut Observed<SpecularSystem>) {
+fn turned_round(view: &mut Observed) {
     let frame = &mut view.plane.frame;
     (frame.x, frame.y) = (-frame.x, -frame.y);
 }
 
 /// Replaces a convex sphere by a hollow one.
-fn hollow(view: &mut Observed<SpecularSystem>) {
+fn hollow(view: &mut Observed) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| -k);
 }
 
 /// Increases the curvature of a sphere by one per cent.
-fn more_curved(view: &mut Observed<SpecularSystem>) {
+fn more_curved(view: &mut Observed) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| 1.01 * k);
 }
 
-fn without_cosine(view: &mut Observed<SpecularSystem>) {
+fn without_cosine(view: &mut Observed) {
     view.plane.quantity = Quantity::Radiance;
 }
 
-fn mirrored(view: &mut Observed<SpecularSystem>) {
+fn mirrored(view: &mut Observed) {
     view.plane.orientation = Orientation::Mirrored;
 }
 
 /// Rotates the environment by one degree.
-fn turned_light(view: &mut Observed<SpecularSystem>) {
+fn turned_light(view: &mut Observed) {
     turn(&mut view.system.light, 1.0);
 }
 
@@ -112,8 +102,8 @@ fn turn(light: &mut Light, degrees: f64) {
     (frame.x, frame.y, frame.d) = (turn * frame.x, turn * frame.y, turn * frame.d);
 }
 
-fn without_masks(view: &mut Observed<SpecularSystem>) {
-    view.system.layers.clear();
+fn without_masks(view: &mut Observed) {
+    view.system.masks.clear();
 }
 
 fn traced(scene: &Scene) -> Measurement {
@@ -161,8 +151,8 @@ fn the_steps_of_shading() {
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");
     let photons = traced(&scene);
-    let faults: [Fault<ReflectionSystem>; 3] = [
-        ("no card", |view| view.system.obstacles.clear()),
+    let faults: [Fault; 3] = [
+        ("no card", |view| view.system.masks.clear()),
         ("light turned", |view| turn(&mut view.system.light, 3.0)),
         ("floor flat", |view| {
             view.system.surfaces[1].patch.curvature = [0.0; 3];
@@ -171,9 +161,7 @@ fn behind_several_surfaces() {
     for (plane, faults) in [("leaving_wall", &faults[..2]), ("beyond", &faults[..])] {
         let number = scene.planes.iter().position(|p| p.name == plane).unwrap();
         let found = Applicability::new(&scene, &scene.planes[number]);
-        let Theory::Reflections(view) = found.theory else {
-            panic!("{plane}: no prediction by paths");
-        };
-        tells_in(&view, &scene, &photons, plane, faults);
+        let view = found.theory.path().expect("a prediction by paths");
+        tells_in(view, &scene, &photons, plane, faults);
     }
 }

@@ -1,13 +1,11 @@
 //! Tests scenes that must pass and scenes that must fail, from the text of the scene to the
 //! verdict.
 
-use etendue_compare::{
-    Applicability, Class, FirstOrderChain, Prediction, Test, Theory, Verdict, compare,
-};
+use etendue_compare::{Applicability, Class, FirstOrderChain, Prediction, Test, Verdict, compare};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::rays;
+use etendue_theory::{PathKind, rays};
 use etendue_trace::Tracer;
 
 const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
@@ -207,7 +205,7 @@ fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);
     for scene in scene_files() {
         for (plane, theory) in scene.planes.iter().zip(Applicability::of_planes(&scene)) {
-            let Theory::Specular(view) = &theory.theory else {
+            let Some(view) = theory.theory.path_of(PathKind::Specular) else {
                 continue;
             };
             // The chain to a plane at the light has no affine maps.

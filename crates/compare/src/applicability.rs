@@ -3,13 +3,13 @@
 use crate::chain::chain;
 use crate::class::Class;
 use crate::off_parallel::obstacles_to_theory;
-use crate::theories::{Theory, is_same};
-use crate::theory_input::{in_the_way, print, reflected, system, too_fine};
+use crate::off_patches::{OffPatches, off_patches};
+use crate::theories::Theory;
+use crate::theory_input::{path, print, too_fine};
 use crate::unlit;
-use crate::validity::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
-use etendue_field::{Orientation, Side, VirtualPlane, Window};
-use etendue_scene::{BlockerLayer, Scene};
-use etendue_theory::{rays, reflections, scattering};
+use etendue_field::{VirtualPlane, Window};
+use etendue_scene::Scene;
+use etendue_theory::{Observed, PathKind, rays, reflections, scattering};
 
 /// The theory that applies to a plane, or the reasons why none does.
 #[derive(Clone, Debug)]
@@ -19,8 +19,8 @@ pub struct Applicability {
     /// Descriptions of objects that stand in the way of the light and that no theory covers. The
     /// list is empty where a theory applies.
     pub reasons: Vec<String>,
-    /// The reasons why the theory of several surfaces replaces a theory of fewer surfaces. The list
-    /// is empty where no theory is replaced.
+    /// The reasons why the theory of a path replaces the theory of parallel planes. The list is empty
+    /// where it is not replaced.
     pub declined: Vec<String>,
     /// The reason why no light reaches the plane, in words; `None` where light may reach the plane.
     pub dark: Option<String>,
@@ -31,47 +31,6 @@ pub struct Applicability {
     /// `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
 }
-
-impl Theory {
-    /// Describes in words which parts of a scene violate the assumptions of the theory. Light may
-    /// meet blockers on a leg where the central ray does not meet them. The function adds these
-    /// blockers to the obstacles of the theory.
-    fn obstacles(
-        &mut self,
-        scene: &Scene,
-        plane: &VirtualPlane,
-        off: Option<OffPatches>,
-    ) -> Vec<String> {
-        let (mut found, layers) = match self {
-            Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
-            Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
-            Self::Parallel(_) => return obstacles_to_theory(scene, plane),
-            Self::Reflections(_) | Self::None => return Vec::new(),
-        };
-        for layer in layers {
-            self.take(&scene.blockers[layer.index], layer.from);
-        }
-        found.extend(too_fine(scene));
-        found
-    }
-
-    /// Adds a layer of blockers as an obstacle. Light meets the layer on the leg `from` and on
-    /// later legs.
-    fn take(&mut self, layer: &BlockerLayer, from: usize) {
-        let (layers, obstacles) = match self {
-            Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
-            Self::Scattering(view) => (&mut view.system.layers, &mut view.system.obstacles),
-            Self::Parallel(_) | Self::Reflections(_) | Self::None => return,
-        };
-        // A layer is not added twice on the first leg.
-        layers.retain(|known| from > 0 || !is_same(known, layer));
-        obstacles.push(in_the_way(layer, from));
-    }
-}
-
-/// A plane and an object at the same distance are separated by this offset. It is given as a share
-/// of the distance. The offset exceeds rounding errors but is too small to change phases visibly.
-const AT_PLANE: f64 = 1e-12;
 
 impl Applicability {
     /// Decides which theory applies to each plane of a scene.
@@ -122,63 +81,41 @@ impl Applicability {
         }
     }
 
-    /// Decides which theory applies to the light of the first light of a scene.
+    /// Decides which theory applies to the light of the first light of a scene. Where light does
+    /// not stay between parallel planes, the theory of its path applies instead, because it tests
+    /// every ray against all objects.
     fn of_first_light(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let found = Self::of(scene, plane, Theory::of(scene, plane));
-        if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
-            return found;
+        let view = path(scene, plane);
+        let mut theory = Theory::first(scene, plane, view.as_ref());
+        let (mut reasons, mut declined) = (Vec::new(), Vec::new());
+        if let Theory::Parallel(_) = theory {
+            reasons = obstacles_to_theory(scene, plane);
         }
-        // On the first leg, the theory of rays may apply instead, because it tests rays against
-        // objects that do not lie across the leg.
-        let Some(mut view) = system(scene, plane) else {
-            return found;
-        };
-        if plane.orientation == Orientation::Orthogonal {
-            // A plane directly after an object is at the same distance as the object.
-            let off = match plane.side {
-                Side::Before => -AT_PLANE,
-                Side::After => AT_PLANE,
-            };
-            view.plane.frame = view.plane.frame.travelled(off * plane.distance);
-        }
-        let past = Self::of(scene, plane, Theory::Specular(Box::new(view)));
-        if past.reasons.is_empty() { past } else { found }
-    }
-
-    fn of(scene: &Scene, plane: &VirtualPlane, mut theory: Theory) -> Self {
-        let off_patches = match &theory {
-            Theory::Specular(view) => off_patches(scene, plane, view),
-            _ => None,
-        };
-        let mut reasons = theory.obstacles(scene, plane, off_patches);
-        let mut declined = Vec::new();
-        if !reasons.is_empty()
-            && too_fine(scene).is_empty()
-            && let Some(view) = reflected(scene, plane)
-        {
-            theory = Theory::Reflections(Box::new(view));
+        let fine = too_fine(scene);
+        if let (false, true, Some(view)) = (reasons.is_empty(), fine.is_empty(), view) {
             declined = std::mem::take(&mut reasons);
+            theory = Theory::Path(Box::new(view));
         }
-        if !reasons.is_empty() {
-            return Self {
-                theory: Theory::None,
-                reasons,
-                declined,
-                dark: None,
-                others: Vec::new(),
-                off_patches: None,
-            };
+        let specular = theory.path_of(PathKind::Specular);
+        let off_patches = specular.and_then(|view| off_patches(scene, plane, view));
+        reasons.extend(off_patches.and_then(|off| off.reason()));
+        if theory.path().is_some() {
+            reasons.extend(fine);
         }
-        // Objects are known to stop all light only on the paths that the theory assumes. Light on
-        // other paths might pass beside these objects.
-        let dark = unlit::reason(scene, plane, &theory);
-        Self {
+        let found = Self {
+            dark: None,
             theory,
             reasons,
             declined,
-            dark,
             others: Vec::new(),
             off_patches,
+        };
+        if found.reasons.is_empty() {
+            let dark = unlit::reason(scene, plane, &found.theory);
+            Self { dark, ..found }
+        } else {
+            let reasons = found.reasons.clone();
+            found.without_theory(reasons)
         }
     }
 
@@ -206,9 +143,7 @@ impl Applicability {
                 Class::FirstOrder
             }
             Theory::Parallel(_) => Class::Exact,
-            Theory::Specular(_) | Theory::Scattering(_) | Theory::Reflections(_) => {
-                Class::FirstOrder
-            }
+            Theory::Path(_) => Class::FirstOrder,
             Theory::None => Class::Reference,
         }
     }
@@ -217,10 +152,7 @@ impl Applicability {
     /// uses the paper's printed formulas where the scene asks for these formulas.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
-        match &self.theory {
-            Theory::Specular(view) => rays::chain(view, print(scene)),
-            _ => None,
-        }
+        rays::chain(self.theory.path_of(PathKind::Specular)?, print(scene))
     }
 
     /// Describes the steps that produce the spectrum of the plane, with one line for each step. The
@@ -253,15 +185,7 @@ impl Applicability {
     fn steps_of_light(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let mut steps = chain(scene, plane).describe();
         let maps = match &self.theory {
-            Theory::Specular(_) => self.affine_chain(scene).map(|chain| chain.steps),
-            Theory::Scattering(view) => {
-                let chain = scattering::chain(view);
-                Some(chain.map(|chain| chain.steps).unwrap_or_default())
-            }
-            Theory::Reflections(view) => {
-                let chain = reflections::chain(view);
-                Some(chain.map(|chain| chain.steps).unwrap_or_default())
-            }
+            Theory::Path(view) => Some(self.maps(scene, view).unwrap_or_default()),
             Theory::None => Some(Vec::new()),
             Theory::Parallel(_) => None,
         };
@@ -273,5 +197,14 @@ impl Applicability {
         }
         steps.extend(self.dark.iter().map(|reason| format!("dark  {reason}")));
         steps
+    }
+
+    /// Describes the maps of the first-order chain along a path.
+    fn maps(&self, scene: &Scene, view: &Observed) -> Option<Vec<String>> {
+        Some(match view.kind() {
+            PathKind::Specular => self.affine_chain(scene)?.steps,
+            PathKind::Scattered => scattering::chain(view)?.steps,
+            PathKind::Several => reflections::chain(view)?.steps,
+        })
     }
 }

@@ -3,14 +3,13 @@
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
-use crate::theories::Theory;
 use etendue_field::{Lobe, Orientation, ProjectionGrid, Reflectance, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
-use etendue_theory::{Model, scattering};
+use etendue_theory::{Model, PathKind, scattering};
 
 /// Returns the criterion for a plane behind a surface with a BRDF, perpendicular to the ray that
 /// leaves this surface. Returns `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a
@@ -24,15 +23,14 @@ pub fn criterion(
     plane: &VirtualPlane,
     applicability: &Applicability,
 ) -> Option<Criterion> {
-    let Theory::Scattering(view) = &applicability.theory else {
-        return None;
-    };
+    let view = applicability.theory.path_of(PathKind::Scattered)?;
     let system = &view.system;
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
     let chain = scattering::chain(view)?;
-    let last = system.layers.last().map(|(distance, _)| *distance);
+    let mut before = system.masks.iter().map(|(distance, _)| *distance);
+    let last = before.rfind(|distance| *distance < chain.distance);
     let edge = if system.light.is_distant() {
         last
     } else {
@@ -44,7 +42,7 @@ pub fn criterion(
         outgoing: chain.outgoing[0],
         distance: scene.path.along(plane),
         blocker_distance: edge.map(|distance| chain.distance - distance),
-        lobe_cutoff: sharpest_cutoff(&system.reflectance),
+        lobe_cutoff: sharpest_cutoff(system.scatterer().1),
         environment_cutoff: f64::INFINITY,
     })
 }
@@ -76,9 +74,7 @@ pub fn exact_bandwidth(
     plane: &VirtualPlane,
     applicability: &Applicability,
 ) -> Option<f64> {
-    let Theory::Scattering(view) = &applicability.theory else {
-        return None;
-    };
+    let view = applicability.theory.path_of(PathKind::Scattered)?;
     let (window, grid) = (&plane.window, &plane.grid);
     let picture = ProjectionGrid::new(window, 1);
     let over = (window, grid, &picture);

@@ -2,12 +2,12 @@
 //! central ray shrinks.
 
 use crate::applicability::Applicability;
-use crate::theories::Theory;
-use crate::theory_input::{print, reflected};
+use crate::theory_input::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::reflections::{self, ReflectionSystem};
-use etendue_theory::{Model, NetMean, Observed, Over, Predicted, RayBudget, rays};
+use etendue_theory::{
+    Model, NetMean, Observed, Over, PathKind, Predicted, RayBudget, rays, reflections,
+};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in successively smaller neighbourhoods of the central
@@ -91,28 +91,15 @@ pub fn converge_to(
         };
         let picture = ProjectionGrid::new(&window, 1);
         let over = (&window, &grid, &picture);
-        let [error, floor] = match &applicability.theory {
-            Theory::Specular(view) => {
-                let chain = match &other {
-                    None => view,
-                    Some((_, Theory::Specular(other))) => other,
-                    Some(_) => return None,
-                };
-                by_rays(scene, view, chain, e, over)?
-            }
-            Theory::Reflections(_) | Theory::Scattering(_) => {
-                let system = |scene: &Scene, theory: &Theory| match theory {
-                    Theory::Reflections(view) => Some((**view).clone()),
-                    _ => reflected(scene, plane),
-                };
-                let view = system(scene, &applicability.theory)?;
-                let chain = match &other {
-                    None => None,
-                    Some((scene, theory)) => Some(system(scene, theory)?),
-                };
-                by_paths(&view, chain.as_ref(), e, over)?
-            }
-            Theory::Parallel(_) | Theory::None => return None,
+        let view = applicability.theory.path()?;
+        let other = match &other {
+            Some((scene, theory)) => Some((*scene, theory.path()?)),
+            None => None,
+        };
+        let [error, floor] = if view.kind() == PathKind::Specular {
+            by_rays(scene, view, other.map_or(view, |(_, other)| other), e, over)?
+        } else {
+            by_paths(view, other.map(|(_, other)| other), e, over)?
         };
         steps.push(ConvergenceStep {
             share: e,
@@ -134,13 +121,13 @@ pub fn converge_to(
 /// of this error.
 fn by_rays(
     scene: &Scene,
-    whole: &Observed<rays::SpecularSystem>,
-    chain: &Observed<rays::SpecularSystem>,
+    whole: &Observed,
+    chain: &Observed,
     e: f64,
     over: Over<'_>,
 ) -> Option<[f64; 2]> {
     let view = Observed {
-        system: whole.system.shrunk(e),
+        system: whole.system.shrunk(e, false)?,
         plane: whole.plane,
     };
     let chain = rays::chain(chain, print(scene))?;
@@ -157,18 +144,18 @@ fn by_rays(
 /// Returns the error of the chain where surfaces scatter, and the floor of this error. The same
 /// paths give the exact sum and the sum of the chain.
 fn by_paths(
-    whole: &Observed<ReflectionSystem>,
-    chain: Option<&Observed<ReflectionSystem>>,
+    whole: &Observed,
+    chain: Option<&Observed>,
     e: f64,
     over: Over<'_>,
 ) -> Option<[f64; 2]> {
     let keeps_lobes = are_beside_peaks(whole)?;
-    let predicted = |whole: &Observed<ReflectionSystem>| {
+    let predicted = |whole: &Observed| {
         let view = Observed {
             system: whole.system.shrunk(e, keeps_lobes)?,
             plane: whole.plane,
         };
-        Some(view.predict(&[], over, PATHS))
+        Some(reflections::by_paths(&view, over, PATHS))
     };
     let exact = predicted(whole)?;
     let Some(chain) = chain else {
@@ -182,7 +169,7 @@ fn by_paths(
 
 /// Checks whether the central ray leaves a scattering surface beside the mirror direction. A lobe
 /// that becomes narrower would then no longer reach the window.
-fn are_beside_peaks(view: &Observed<ReflectionSystem>) -> Option<bool> {
+fn are_beside_peaks(view: &Observed) -> Option<bool> {
     let scatterers = reflections::chain(view)?.scatterers;
     let mut angles = scatterers.iter().map(|scatterer| {
         let [longitude, latitude] = scatterer.outgoing;

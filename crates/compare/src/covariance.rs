@@ -85,11 +85,7 @@ impl TracedPlane {
     pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
         let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
             Theory::Parallel(chain) => chain.spectral_covariance(),
-            Theory::Specular(view) => view.spectral_covariance(),
-            Theory::Scattering(view) => view.spectral_covariance(),
-            Theory::Reflections(_) => {
-                return Err("several surfaces have scattered the light".to_owned());
-            }
+            Theory::Path(view) => view.spectral_covariance(),
             Theory::None => return Err("there is no chain for this plane".to_owned()),
         };
         let seen = traced.map_err(|reason| reason.to_string())?;

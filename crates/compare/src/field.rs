@@ -71,9 +71,7 @@ impl PredictedField {
                 }
                 chain.with_rays(over, budget, put);
             }
-            Theory::Specular(view) => view.with_rays(over, budget, put),
-            Theory::Scattering(view) => view.with_rays(over, budget, put),
-            Theory::Reflections(view) => view.with_rays(over, budget, put),
+            Theory::Path(view) => view.with_rays(over, budget, put),
             Theory::None => {}
         }
         found

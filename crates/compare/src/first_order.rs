@@ -7,8 +7,10 @@ use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
-use etendue_theory::rays::{self, SpecularSystem};
-use etendue_theory::{Observed, Over, Predicted, RayBudget};
+use etendue_theory::path::PathSystem;
+use etendue_theory::{
+    Observed, Over, PathKind, Predicted, RayBudget, rays, reflections, scattering,
+};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -107,9 +109,31 @@ impl FirstOrderReport {
 }
 
 impl FirstOrder {
-    pub(crate) fn new(
+    /// Returns the chain along a path, if the central ray arrives.
+    pub(crate) fn of_path(
         scene: &Scene,
-        view: &Observed<SpecularSystem>,
+        view: &Observed,
+        over: Over<'_>,
+        (exact, budget): (&Predicted, RayBudget),
+    ) -> Option<Self> {
+        match view.kind() {
+            PathKind::Specular => Self::of_specular(scene, view, over, (exact, budget)),
+            PathKind::Scattered => {
+                let chain = scattering::chain(view)?;
+                let defect = scattering::defect(view, &chain)?;
+                Self::of_reflection(exact, defect, chain.rays().matrix)
+            }
+            PathKind::Several => {
+                let chain = reflections::chain(view)?;
+                let defect = reflections::defect(view, &chain)?;
+                Self::of_reflection(exact, defect, chain.rays().matrix)
+            }
+        }
+    }
+
+    fn of_specular(
+        scene: &Scene,
+        view: &Observed,
         over: Over<'_>,
         (exact, budget): (&Predicted, RayBudget),
     ) -> Option<Self> {
@@ -149,7 +173,7 @@ impl FirstOrder {
     /// `matrix` is its matrix for rays along the mirror directions. The noise of the chain is the
     /// noise of the exact prediction, because the difference between the chain and the exact
     /// prediction has little noise.
-    pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
+    fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
         let near = |slices: &Slices| Slices {
@@ -205,7 +229,7 @@ impl FirstOrder {
 /// Returns the covariance of a Gaussian that starts as wide as the light, after it has passed the
 /// chain and the window. Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹
 /// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment, which has no width.
-fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
+fn propagated(system: &PathSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;
     }

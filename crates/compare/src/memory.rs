@@ -138,6 +138,6 @@ fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     match theory {
         Theory::Parallel(chain) if chain.is_sampled(over, budget(scene)) => each,
         Theory::Parallel(_) | Theory::None => 0.0,
-        Theory::Specular(_) | Theory::Scattering(_) | Theory::Reflections(_) => 2.0 * each,
+        Theory::Path(_) => 2.0 * each,
     }
 }

@@ -5,13 +5,13 @@ use crate::budget::budget;
 use crate::class::Class;
 use crate::depth::depth;
 use crate::first_order::FirstOrder;
+use crate::off_patches::OffPatches;
 use crate::theories::Theory;
-use crate::validity::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Model, Over, Parameter, RayBudget, reflections, scattering};
+use etendue_theory::{Model, Over, Parameter, RayBudget};
 use ndarray::Array2;
 
 /// Everything that a measurement of a plane is compared with.
@@ -152,9 +152,9 @@ impl Prediction {
         match &applicability.theory {
             Theory::Parallel(chain) => empty.by(chain, over, (budget, number), |_| None),
             Theory::None => empty,
-            Theory::Specular(view) => {
+            Theory::Path(view) => {
                 let found = empty.by(view.as_ref(), over, (budget, number), |exact| {
-                    FirstOrder::new(scene, view, over, (exact, budget))
+                    FirstOrder::of_path(scene, view, over, (exact, budget))
                 });
                 let size = found.slices.norm();
                 let meshes = applicability.off_patches.filter(|_| size > 0.0);
@@ -164,16 +164,6 @@ impl Prediction {
                     ..found
                 }
             }
-            Theory::Scattering(view) => empty.by(view.as_ref(), over, (budget, number), |exact| {
-                let chain = scattering::chain(view)?;
-                let defect = scattering::defect(view, &chain)?;
-                FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
-            }),
-            Theory::Reflections(view) => empty.by(view.as_ref(), over, (budget, number), |exact| {
-                let chain = reflections::chain(view)?;
-                let defect = reflections::defect(view, &chain)?;
-                FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
-            }),
         }
     }
 

@@ -1,54 +1,121 @@
-//! Derives systems of smooth surfaces from the scene, for rays and for reflection by a BRDF.
+//! Derives the path of light to a plane from the scene.
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
-use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, Surface};
+use etendue_scene::{Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{Plane, SpecularSurface, SpecularSystem};
-use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
+use etendue_theory::path::{Interaction, PatchExtent, PathSurface, PathSystem};
+use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane, reflections};
 
-/// Returns a plane, and the light, the masks and the specular surfaces on the way to this plane.
-/// Returns `None` where light comes from a ray file, and where a surface is not specular.
+/// Returns a plane, the light, all masks and all surfaces of the path to it. Returns `None` where
+/// light comes from a ray file, where too many surfaces have scattered the light, or where some
+/// surface has scattered it and another is a mesh. Also returns `None` if a mesh of the path that
+/// is met later has too many triangles.
 #[must_use]
-pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSystem>> {
+pub fn path(scene: &Scene, plane: &VirtualPlane) -> Option<Observed> {
     if matches!(scene.light, Light::Rays { .. }) {
         return None;
     }
-    let path = &scene.path;
-    let hits = path.legs[..=plane.leg].iter().filter_map(|leg| leg.leaves);
-    let elements: Option<Vec<SpecularSurface>> = hits
-        .map(|hit| match hit.object {
-            Object::Patch(i) => {
-                let object = &scene.patches[i];
-                let Event::Specular(event) = object.event else {
-                    return None;
-                };
-                Some(SpecularSurface {
-                    name: object.name.clone(),
-                    patch: object.patch,
-                    event,
-                })
-            }
-            Object::Mesh(i) => {
-                let mesh = &scene.meshes[i];
-                Some(SpecularSurface {
-                    name: mesh.name.clone(),
-                    patch: mesh.osculating(&hit)?,
-                    event: seen_from(mesh.smooth.as_ref()?.event, mesh.is_met_on_its_back(&hit)),
-                })
-            }
-            Object::Surface(_) => None,
-        })
+    let legs = scene.path.legs.iter();
+    let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
+    let visited = plane.leg;
+    let before: Option<Vec<PathSurface>> = hits[..visited]
+        .iter()
+        .map(|hit| surface_of(scene, hit).or_else(|| osculating(scene, hit)))
         .collect();
-    let system = SpecularSystem {
+    let mut surfaces = before?;
+    let scatterers = surfaces.iter().filter(|surface| surface.scatters()).count();
+    let has_mesh = surfaces
+        .iter()
+        .any(|surface| surface.extent == PatchExtent::Osculating);
+    if scatterers > reflections::MAX_SCATTERERS || scatterers > 0 && has_mesh {
+        return None;
+    }
+    let later = hits[visited..].iter();
+    surfaces.extend(later.map_while(|hit| surface_of(scene, hit)));
+    let mut obstacles = beside_the_path(scene);
+    // From the first mesh that light meets later, objects stop light as objects beside the path do.
+    // The object that ends the last leg stops light only on the legs before.
+    let ends = scene.path.ends_at(visited).map(|end| end.object);
+    for hit in &hits[surfaces.len()..] {
+        let object = hit.object;
+        let until = (Some(object) == ends).then_some(visited);
+        if until == Some(0) {
+            continue;
+        }
+        if is_finer(scene, object, MAX_VISITED_TRIANGLES) {
+            return None;
+        }
+        obstacles.push(Obstacle {
+            until,
+            ..as_obstacle(scene, object)
+        });
+    }
+    let system = PathSystem {
         light: scene.light.clone(),
-        layers: layers_before(scene, plane),
-        obstacles: beside_the_path(scene),
-        elements: elements?,
+        masks: masks(scene, plane),
+        obstacles,
+        surfaces,
+        visited,
     };
     Some(Observed {
         system,
         plane: in_frame(scene, plane),
+    })
+}
+
+/// Returns a surface of the path; `None` for a mesh.
+fn surface_of(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
+    let (patch, extent, interaction) = match hit.object {
+        Object::Patch(i) => {
+            let PatchObject { patch, event, .. } = &scene.patches[i];
+            let interaction = match event {
+                Event::Specular(event) => Interaction::Specular(*event),
+                Event::Reflects(reflectance) => {
+                    Interaction::Reflects(Box::new(reflectance.clone()))
+                }
+            };
+            (*patch, PatchExtent::Whole, interaction)
+        }
+        Object::Surface(i) => {
+            let Surface {
+                frame,
+                size,
+                albedo,
+                ..
+            } = &scene.surfaces[i];
+            let patch = Patch {
+                frame: *frame,
+                curvature: [0.0; 3],
+                aperture: 0.5 * libm::hypot(size[0], size[1]),
+            };
+            let interaction = Interaction::Diffuse { albedo: *albedo };
+            (patch, PatchExtent::Rectangle(*size), interaction)
+        }
+        Object::Mesh(_) => return None,
+    };
+    Some(PathSurface {
+        name: scene.name_of(hit.object).to_owned(),
+        patch,
+        extent,
+        hit: hit.point,
+        interaction,
+    })
+}
+
+/// Returns the patch that osculates a smooth mesh at the central ray's hit.
+fn osculating(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
+    let Object::Mesh(i) = hit.object else {
+        return None;
+    };
+    let mesh = &scene.meshes[i];
+    let event = seen_from(mesh.smooth.as_ref()?.event, mesh.is_met_on_its_back(hit));
+    Some(PathSurface {
+        name: mesh.name.clone(),
+        patch: mesh.osculating(hit)?,
+        extent: PatchExtent::Osculating,
+        hit: hit.point,
+        interaction: Interaction::Specular(event),
     })
 }
 
@@ -67,139 +134,15 @@ fn seen_from(event: Specular, back: bool) -> Specular {
     }
 }
 
-/// Returns a plane, and the light, the masks and the surface with a BRDF before this plane. Returns
-/// `None` where the plane is not on the second leg, where the first surface has no BRDF, and where
-/// light comes from a ray file.
-#[must_use]
-pub fn scattered(
-    scene: &Scene,
-    plane: &VirtualPlane,
-) -> Option<Observed<scattering::ScatteringSystem>> {
-    // A plane on the next surface has the coordinates of that surface.
-    let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
-    if plane.leg != 1 || is_on_next || matches!(scene.light, Light::Rays { .. }) {
-        return None;
-    }
-    let Object::Patch(i) = scene.path.legs[1].leaves?.object else {
-        return None;
-    };
-    let object = &scene.patches[i];
-    let Event::Reflects(reflectance) = &object.event else {
-        return None;
-    };
-    let system = scattering::ScatteringSystem {
-        light: scene.light.clone(),
-        layers: layers_before(scene, plane),
-        obstacles: beside_the_path(scene),
-        name: object.name.clone(),
-        patch: object.patch,
-        reflectance: reflectance.clone(),
-    };
-    Some(Observed {
-        system,
-        plane: in_frame(scene, plane),
-    })
-}
-
-/// Returns the light, all masks and all surfaces of the path, and a plane behind some of these
-/// surfaces. Returns `None` if light comes from a ray file or has met a mesh. Also returns `None`
-/// if no surface has scattered the light, if too many surfaces have, or if a mesh that light meets
-/// later has too many triangles.
-pub(crate) fn reflected(
-    scene: &Scene,
-    plane: &VirtualPlane,
-) -> Option<Observed<reflections::ReflectionSystem>> {
-    if matches!(scene.light, Light::Rays { .. }) {
-        return None;
-    }
-    let legs = scene.path.legs.iter();
-    let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
-    let visited = plane.leg;
-    let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
-    // A mesh does not count as a surface of the path if it ends the last leg or stands beside the
-    // path.
-    let surfaces: Vec<reflections::PathSurface> = surfaces.map_while(|surface| surface).collect();
-    let scatterers = surfaces
-        .iter()
-        .take(visited)
-        .filter(|s| s.scatters())
-        .count();
-    let is_in_range = (1..=reflections::MAX_SCATTERERS).contains(&scatterers);
-    if surfaces.len() < visited || !is_in_range {
-        return None;
-    }
-    let mut obstacles = beside_the_path(scene);
-    obstacles.extend(scene.blockers.iter().map(|layer| in_the_way(layer, 0)));
-    let ends = scene.path.ends_at(visited).map(|end| end.object);
-    let later = hits.iter().skip(surfaces.len()).map(|hit| hit.object);
-    if later
-        .clone()
-        .any(|object| is_finer(scene, object, MAX_VISITED_TRIANGLES))
-    {
-        return None;
-    }
-    obstacles.extend(later.map(|object| Obstacle {
-        // The object that ends the last leg stops light only on the legs before.
-        until: (Some(object) == ends).then_some(visited),
-        ..as_obstacle(scene, object)
-    }));
-    let system = reflections::ReflectionSystem {
-        light: scene.light.clone(),
-        obstacles,
-        surfaces,
-        visited,
-    };
-    Some(Observed {
-        system,
-        plane: in_frame(scene, plane),
-    })
-}
-
-/// Returns a surface of the path; `None` for a mesh.
-fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::PathSurface> {
-    let name = scene.name_of(hit.object).to_owned();
-    let of = |patch, outline, interaction| reflections::PathSurface {
-        name,
-        patch,
-        outline,
-        hit: hit.point,
-        interaction,
-    };
-    match hit.object {
-        Object::Patch(i) => {
-            let PatchObject { patch, event, .. } = &scene.patches[i];
-            let interaction = match event {
-                Event::Specular(event) => reflections::Interaction::Specular(*event),
-                Event::Reflects(reflectance) => {
-                    reflections::Interaction::Reflects(Box::new(reflectance.clone()))
-                }
-            };
-            Some(of(*patch, None, interaction))
-        }
-        Object::Surface(i) => {
-            let Surface {
-                frame,
-                size,
-                albedo,
-                ..
-            } = &scene.surfaces[i];
-            let patch = Patch {
-                frame: *frame,
-                curvature: [0.0; 3],
-                aperture: 0.5 * libm::hypot(size[0], size[1]),
-            };
-            let interaction = reflections::Interaction::Diffuse { albedo: *albedo };
-            Some(of(patch, Some(*size), interaction))
-        }
-        Object::Mesh(_) => None,
-    }
-}
-
-/// Returns the masks that light meets before a plane, with their distances.
-fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
+/// Returns the masks that light may cross before a plane, with their distances. Light that has not
+/// met a surface crosses no mask behind a plane that is orthogonal to it.
+fn masks(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
+    let is_straight = plane.leg == 0 && plane.orientation == Orientation::Orthogonal;
     let layers = scene.blockers.iter();
-    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
-    layers.map(|l| (l.distance, l.mask.clone())).collect()
+    let layers = layers.filter(|layer| !is_straight || stands_before(layer.distance, scene, plane));
+    let mut masks: Vec<_> = layers.map(|l| (l.distance, l.mask.clone())).collect();
+    masks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    masks
 }
 
 /// Returns a plane in the frame at the light.
@@ -279,20 +222,6 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
             Object::Mesh(i) => {
                 ObstacleForm::Mesh(scene.meshes[i].triangles.iter().copied().collect())
             }
-        },
-        until: None,
-    }
-}
-
-/// Returns the obstacle for a layer of blockers. Light meets the layer on the leg `from` and on
-/// later legs, at places where the central ray does not meet it.
-pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
-    Obstacle {
-        name: layer.name.clone(),
-        form: ObstacleForm::Mask {
-            from,
-            distance: layer.distance,
-            mask: layer.mask.clone(),
         },
         until: None,
     }

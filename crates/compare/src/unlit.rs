@@ -2,8 +2,9 @@
 
 use crate::chain::stands_before;
 use crate::theories::Theory;
-use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
+use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Event, Object, Scene};
+use glam::DVec3;
 
 /// The lowest and highest coordinate of a rectangle along each of two axes.
 type Extent = [[f64; 2]; 2];
@@ -32,7 +33,7 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
     }
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
-        stands_before(layer.distance, scene, plane) && theory.has_all_light_meet(layer)
+        stands_before(layer.distance, scene, plane) && is_met_by_all(scene, plane, theory, layer)
     });
     let layers: Vec<&BlockerLayer> = layers.collect();
     let mut sections = [0, 1].map(|axis| RaySection::new(scene, plane, axis));
@@ -60,6 +61,58 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Op
         .into_iter()
         .find(|layer| covers(layer, &sections, scene, plane));
     covering.map(|layer| format!("{} blocks all paths of light", layer.name))
+}
+
+/// Checks whether all light of a path meets a layer before it meets a surface or the plane.
+fn is_met_by_all(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    theory: &Theory,
+    layer: &BlockerLayer,
+) -> bool {
+    let is_straight = plane.leg == 0 && plane.orientation == Orientation::Orthogonal;
+    let ends = || ends_of_first_leg(scene, plane);
+    theory.path().is_none() || is_straight || ends().iter().all(|end| end.z > layer.distance)
+}
+
+/// Returns points around all places at which light for a plane ends its first leg.
+fn ends_of_first_leg(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
+    let Some(hit) = scene.path.ends_at(0) else {
+        return vec![DVec3::ZERO];
+    };
+    let (flat, whole) = match hit.object {
+        Object::Surface(i) => (true, scene.surfaces[i].corners().to_vec()),
+        Object::Mesh(i) => (false, scene.meshes[i].triangles.bounds().to_vec()),
+        Object::Patch(i) => {
+            let patch = &scene.patches[i].patch;
+            let is_flat = patch.curvature.iter().all(|k| *k == 0.0);
+            (is_flat, patch.corners().to_vec())
+        }
+    };
+    let Window { x, y, u, v } = &plane.window;
+    let [position, slope] =
+        [[x, y], [u, v]].map(|[a, b]| libm::hypot(a.half_width(), b.half_width()));
+    let normal = hit.normal;
+    let radius = match plane.leg {
+        0 => position,
+        1 => {
+            // At a distance r from the central hit, the surface is at most r sin θ farther from the
+            // plane, and r cos θ or more away from the central ray.
+            let cos = scene.path.legs[1].frame.d.dot(normal).abs();
+            let room = cos - slope * (1.0 - cos * cos).max(0.0).sqrt();
+            (position + scene.path.along(plane) * slope) / room
+        }
+        _ => f64::INFINITY,
+    };
+    let reach = whole.iter().map(|corner| corner.distance(hit.point));
+    let is_narrow = radius > 0.0 && radius < reach.fold(0.0, f64::max);
+    if !(flat && is_narrow) {
+        return whole;
+    }
+    let (s, t) = normal.any_orthonormal_pair();
+    [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]]
+        .map(|[a, b]| hit.point + radius * (a * s + b * t))
+        .to_vec()
 }
 
 /// Checks whether a surface reflects no light because each of its albedos is 0.

@@ -8,7 +8,8 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
     Side, SliceGrid,
 };
-use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
+use etendue_theory::path::{Interaction, PathSurface, PathSystem};
+use etendue_theory::{Model, Observed, Over, Plane, Predicted, RayBudget};
 use glam::DVec3;
 
 /// The budget that the command uses for a saved scene, whose number of photons is 2²²: the total
@@ -30,41 +31,31 @@ pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     };
     let cells = ProjectionGrid::new(&window, CELLS);
     let over: Over<'_> = (&window, &grid, &cells);
-    let (light, layers) = (square(setup), layers(setup));
+    let light = square(setup);
     let patch = patch(setup);
-    match plane {
-        PathPlace::Curved => {
-            let system = rays::SpecularSystem {
-                light,
-                layers,
-                obstacles: Vec::new(),
-                elements: Vec::new(),
-            };
-            let plane = seen(&patch, Orientation::LocalNormals, Side::Before);
-            Some(Observed { system, plane }.predict(&[], over, BUDGET))
-        }
+    let (surfaces, orientation, side) = match plane {
+        PathPlace::Curved => (Vec::new(), Orientation::LocalNormals, Side::Before),
         PathPlace::Blurred | PathPlace::Glossy => {
+            let interaction = Interaction::Reflects(Box::new(reflectance(setup)));
             let orientation = if plane == PathPlace::Glossy {
                 Orientation::Orthogonal
             } else {
                 Orientation::LocalNormals
             };
-            let system = scattering::ScatteringSystem {
-                light,
-                layers,
-                obstacles: Vec::new(),
-                name: "receiver".to_owned(),
-                patch,
-                reflectance: reflectance(setup),
-            };
-            let plane = seen(&patch, orientation, Side::After);
-            Some(Observed { system, plane }.predict(&[], over, BUDGET))
+            let surface = PathSurface::new("receiver", patch, interaction);
+            (vec![surface], orientation, Side::After)
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    let system = PathSystem {
+        masks: masks(setup),
+        ..PathSystem::new(light, surfaces)
+    };
+    let plane = seen(&patch, orientation, side);
+    Some(Observed { system, plane }.predict(&[], over, BUDGET))
 }
 
-fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
+fn masks(setup: &Setup) -> Vec<(f64, Mask)> {
     if setup.get(SettingKey::Fill) <= 0.0 {
         return Vec::new();
     }
@@ -93,9 +84,9 @@ fn reflectance(setup: &Setup) -> Reflectance {
 
 /// Returns a plane where the central ray meets the receiver. The ray goes straight back, so X is
 /// reversed.
-fn seen(patch: &Patch, orientation: Orientation, side: Side) -> rays::Plane {
+fn seen(patch: &Patch, orientation: Orientation, side: Side) -> Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
-    rays::Plane {
+    Plane {
         frame: frame.expect("axes at right angles"),
         orientation,
         longitude: 0.0,

@@ -2,11 +2,12 @@
 //! measured bandwidths.
 
 use crate::values::{SweepPoint, message_at};
-use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
+use etendue_compare::{Applicability, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Term, VirtualPlane};
 use etendue_pipeline::{Reporter, Work, measured};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
+use etendue_theory::PathKind;
 use etendue_theory::shading::Criterion;
 
 /// The numbers of one plane at one point of the sweep.
@@ -80,10 +81,11 @@ pub fn bandwidths(
 
 /// Returns the effects that the criteria do not cover.
 fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
-    let Theory::Scattering(view) = &applicability.theory else {
+    let Some(view) = applicability.theory.path_of(PathKind::Scattered) else {
         return Vec::new();
     };
-    let (name, reflectance) = (&view.system.name, &view.system.reflectance);
+    let name = &view.system.surfaces[0].name;
+    let (_, reflectance) = view.system.scatterer();
     let mut warnings = Vec::new();
     if !reflectance.is_uniform() {
         warnings.push(format!(

@@ -1,7 +1,7 @@
 //! Predicted spectra of local light fields, in closed form or from nets of rays.
 //!
-//! Every prediction comes from a [`Model`]. A model is a [`Chain`] of parallel planes, or light
-//! [`Observed`] after specular surfaces ([`rays`]) or after a surface with a BRDF ([`scattering`]).
+//! Every prediction comes from a [`Model`]. A model is a [`Chain`] of parallel planes, or the light
+//! of a path over surfaces, [`Observed`] at a plane ([`path`]).
 //!
 //! A [`Chain`] contains a light, travel, masks, and the cosine and diffuse reflection of a
 //! receiver. Masks are opaque shapes, half-planes and cosine gratings in planes. The prediction
@@ -55,13 +55,13 @@
 mod barrier;
 pub mod covariance;
 pub mod geometry;
-mod mask;
 mod model;
 mod nets;
 mod numerics;
 mod obstacle;
 mod parallel;
 mod parameter;
+pub mod path;
 mod plane;
 mod predicted;
 pub mod rays;
@@ -76,7 +76,7 @@ mod testing;
 mod words;
 mod work;
 
-pub use model::{Model, Observed, Over};
+pub use model::{Model, Over};
 pub use nets::{REPLICATES, RayBudget, RayNets};
 pub use obstacle::{Obstacle, ObstacleForm};
 pub use parallel::{
@@ -84,6 +84,8 @@ pub use parallel::{
     projection, quadrature_error, slices,
 };
 pub use parameter::Parameter;
+pub use path::{Observed, PathKind};
+pub use plane::Plane;
 pub use predicted::{NetMean, Predicted};
 pub use shading::{g_hat, g_hat_3d};
 pub use work::PredictionWork;

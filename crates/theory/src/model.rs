@@ -2,7 +2,6 @@
 
 use crate::nets::{RayBudget, RayNets};
 use crate::parameter::{New, Parameter};
-use crate::plane::Plane;
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{Light, ProjectionGrid, SliceGrid, Window};
@@ -60,15 +59,6 @@ pub trait Model: Clone {
         other.change(parameter, &mut |_| value)?;
         Some(other)
     }
-}
-
-/// A system of surfaces, and the plane at which its light is observed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Observed<S> {
-    /// The light and the surfaces on its path.
-    pub system: S,
-    /// The plane at which the light is observed.
-    pub plane: Plane,
 }
 
 /// A model with a parameter slightly increased and slightly decreased.

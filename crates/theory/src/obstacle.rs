@@ -1,7 +1,6 @@
-//! Occluders other than the masks of the first leg.
+//! Rays of a leg, and the occluders beside the path.
 
-use crate::barrier::Barrier;
-use etendue_field::{Frame, Mask, Patch};
+use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
 /// A straight leg of a ray.
@@ -11,6 +10,89 @@ pub(crate) struct LegRay {
     pub(crate) point: DVec3,
     /// The direction of the leg, a unit vector.
     pub(crate) direction: DVec3,
+}
+
+impl LegRay {
+    /// Returns the ray with position (x, y) and slopes (u, v) at the light's plane.
+    pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
+        Self {
+            point: DVec3::new(x, y, 0.0),
+            direction: DVec3::new(u, v, 1.0).normalize(),
+        }
+    }
+
+    /// Returns the line through a point along a unit vector. The line starts beyond all its
+    /// intersections with a patch.
+    pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
+        let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
+        Self {
+            point: through + along * far,
+            direction: -along,
+        }
+    }
+
+    pub(crate) fn at(&self, distance: f64) -> DVec3 {
+        self.point + distance * self.direction
+    }
+
+    /// Returns the distance below which an intersection is the point where the leg starts.
+    pub(crate) fn start(&self) -> f64 {
+        ROUNDING * self.point.length()
+    }
+
+    /// Returns the distance to the first intersection with a patch, and the patch's unit normal
+    /// there, on the side of the patch's D.
+    pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
+        let start = self.start();
+        let first = self.hits(patch).filter(|t| *t > start);
+        let first = first.min_by(f64::total_cmp)?;
+        Some((first, normal(patch, self.at(first))?))
+    }
+
+    /// Returns the intersection at which the ray meets a patch from the given side, even if
+    /// another intersection is nearer. `side` is 1 for the side of the patch's D and −1 for the
+    /// opposite side.
+    ///
+    /// A ray meets a quadric at most once from either side, so the intersection is unique.
+    pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {
+        let ahead = self.hits(patch).filter(|t| *t > 0.0);
+        let mut met = ahead.filter_map(|t| Some((t, normal(patch, self.at(t))?)));
+        met.find(|(_, normal)| side * normal.dot(self.direction) < 0.0)
+    }
+
+    /// Returns the distances to the intersections of the ray's line with a patch, in any order.
+    pub(crate) fn hits(&self, patch: &Patch) -> impl Iterator<Item = f64> + use<> {
+        let point = patch.frame.to_local(self.point);
+        let direction = patch.frame.vector_to_local(self.direction);
+        // Distances are measured from a point near the patch, so that a far start costs no digits.
+        let base = if direction.z.abs() > 1e-3 {
+            -point.z / direction.z
+        } else {
+            -point.dot(direction)
+        };
+        let near = point + direction * base;
+        // At distance s from that point, the patch's implicit function is a s² + 2 b s + c.
+        let a = (DVec3::from(patch.curvature) * direction).dot(direction);
+        let b = patch.gradient(near).dot(direction);
+        let c = patch.value(near);
+        // To avoid cancellation, the second root is computed as c divided by q, the numerator of
+        // the first root.
+        let q = -(b + (b * b - a * c).sqrt().copysign(b));
+        let patch = *patch;
+        let roots = [q / a, c / q].into_iter();
+        roots.filter_map(move |s| {
+            let is_on_patch = s.is_finite() && patch.contains(near + s * direction);
+            is_on_patch.then_some(base + s)
+        })
+    }
+}
+
+/// Returns the unit normal of a patch at one of its points, on the side of the patch's D.
+pub(crate) fn normal(patch: &Patch, point: DVec3) -> Option<DVec3> {
+    let gradient = patch
+        .gradient(patch.frame.to_local(point))
+        .try_normalize()?;
+    Some(patch.frame.vector_to_world(gradient))
 }
 
 /// An occluder, in the frame at the light; it stops every ray that meets it.
@@ -27,17 +109,6 @@ pub struct Obstacle {
 /// The shape and position of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg of the path. This obstacle stops light on leg `from` and on all
-    /// later legs. If `from` is not the first leg, the mask is also among the masks of the first
-    /// leg.
-    Mask {
-        /// The index of the first leg on which this obstacle blocks light.
-        from: usize,
-        /// Distance of the mask's plane from the light, metres.
-        distance: f64,
-        /// The mask, as a function of x and y.
-        mask: Mask,
-    },
     /// An opaque rectangle that is centred on the origin of a frame and perpendicular to the
     /// frame's D.
     Rectangle {
@@ -58,7 +129,6 @@ pub(crate) struct PreparedObstacles<'a>(Vec<(Option<usize>, Ready<'a>)>);
 
 #[derive(Debug)]
 enum Ready<'a> {
-    Mask(usize, Barrier<'a>),
     Rectangle(&'a Frame, [f64; 2]),
     Patch(&'a Patch),
     Mesh {
@@ -75,11 +145,6 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 impl<'a> PreparedObstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
         let ready = |form: &'a ObstacleForm| match form {
-            ObstacleForm::Mask {
-                from,
-                distance,
-                mask,
-            } => Ready::Mask(*from, Barrier::new(*distance, mask)),
             ObstacleForm::Rectangle { frame, size } => Ready::Rectangle(frame, *size),
             ObstacleForm::Patch(patch) => Ready::Patch(patch),
             ObstacleForm::Mesh(triangles) => around(triangles),
@@ -90,49 +155,27 @@ impl<'a> PreparedObstacles<'a> {
         Self(each.collect())
     }
 
-    /// Returns the fraction of a ray's radiance that passes the obstacles over the first `length`
-    /// metres of the leg with index `leg`.
-    pub(crate) fn passes(&self, leg: usize, ray: &LegRay, length: f64) -> f64 {
-        let start = ROUNDING * ray.point.length();
+    /// Checks whether an obstacle stops a ray within the first `length` metres of the leg with index
+    /// `leg`.
+    pub(crate) fn stop(&self, leg: usize, ray: &LegRay, length: f64) -> bool {
+        let start = ray.start();
         let is_between = |t: f64| start < t && t < length;
-        let mut passes = 1.0;
         let is_there = |until: &Option<usize>| until.is_none_or(|until| leg < until);
-        for (_, ready) in self.0.iter().filter(|(until, _)| is_there(until)) {
-            passes *= match ready {
-                Ready::Mask(from, barrier) if leg >= *from => {
-                    let t = (barrier.distance - ray.point.z) / ray.direction.z;
-                    let at = ray.point + t * ray.direction;
-                    if is_between(t) {
-                        barrier.transmittance(at.x, at.y)
-                    } else {
-                        1.0
-                    }
-                }
-                Ready::Mask(..) => 1.0,
-                Ready::Rectangle(frame, size) => {
-                    let t = on_rectangle(frame, *size, ray);
-                    let is_met = t.is_some_and(is_between);
-                    if is_met { 0.0 } else { 1.0 }
-                }
-                Ready::Patch(patch) => {
-                    let is_met = on_patch(patch, ray).into_iter().flatten().any(is_between);
-                    if is_met { 0.0 } else { 1.0 }
-                }
-                Ready::Mesh {
-                    center,
-                    radius,
-                    triangles,
-                } => {
-                    let mut meets = triangles.iter().filter_map(|triangle| on(triangle, ray));
-                    let is_met = is_near(*center, *radius, ray) && meets.any(is_between);
-                    if is_met { 0.0 } else { 1.0 }
-                }
-            };
-            if passes == 0.0 {
-                break;
+        let mut there = self.0.iter().filter(|(until, _)| is_there(until));
+        there.any(|(_, ready)| match ready {
+            Ready::Rectangle(frame, size) => {
+                on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
-        }
-        passes
+            Ready::Patch(patch) => ray.hits(patch).any(is_between),
+            Ready::Mesh {
+                center,
+                radius,
+                triangles,
+            } => {
+                let mut meets = triangles.iter().filter_map(|triangle| on(triangle, ray));
+                is_near(*center, *radius, ray) && meets.any(is_between)
+            }
+        })
     }
 }
 
@@ -163,22 +206,6 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {
     is_inside.then_some(t)
 }
 
-/// Returns the distances to both intersections of a ray with the patch's quadric, or `None` for an
-/// intersection that is not on the patch.
-pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
-    let point = patch.frame.to_local(ray.point);
-    let direction = patch.frame.vector_to_local(ray.direction);
-    let curved = DVec3::from(patch.curvature) * direction;
-    let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-    let c = patch.value(point);
-    // To avoid cancellation, the second root is computed as c divided by q, the numerator of the
-    // first root.
-    let root = (b * b - a * c).sqrt();
-    let q = -(b + root.copysign(b));
-    [q / a, c / q]
-        .map(|t| Some(t).filter(|t| t.is_finite() && patch.contains(point + *t * direction)))
-}
-
 /// Returns the distance along a ray to a triangle. The ray meets the triangle if the three volumes
 /// that the ray spans with the edges have the same sign (Plücker coordinates).
 fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
@@ -193,7 +220,6 @@ fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::{Rectangle, Shape};
 
     const RAY: LegRay = LegRay {
         point: DVec3::new(0.1, 0.2, 1.0),
@@ -206,27 +232,7 @@ mod tests {
             form: form.clone(),
             until: Some(3),
         };
-        PreparedObstacles::new(&[obstacle]).passes(leg, ray, length) < 0.5
-    }
-
-    #[test]
-    fn a_mask_counts_on_its_legs() {
-        let shapes = vec![Shape::Rectangle(Rectangle {
-            center: [0.1, 0.2],
-            size: [0.1, 0.1],
-        })];
-        let mask = Mask::Opaque {
-            shapes,
-            half_planes: vec![],
-        };
-        let from = |from| ObstacleForm::Mask {
-            from,
-            distance: 0.5,
-            mask: mask.clone(),
-        };
-        assert!(stops(&from(1), 1, &RAY, 0.6) && !stops(&from(1), 0, &RAY, 0.6));
-        assert!(stops(&from(0), 0, &RAY, 0.6) && !stops(&from(1), 1, &RAY, 0.4));
-        assert!(stops(&from(0), 2, &RAY, 0.6) && !stops(&from(0), 3, &RAY, 0.6));
+        PreparedObstacles::new(&[obstacle]).stop(leg, ray, length)
     }
 
     /// Tests which rays are stopped by a square, by a bowl with its vertex on the square, and by
@@ -258,6 +264,10 @@ mod tests {
         for form in forms {
             assert!(stops(&form, 0, &RAY, 0.6), "{form:?}");
             assert!(!stops(&form, 0, &RAY, 0.4), "{form:?}");
+            assert!(
+                stops(&form, 2, &RAY, 0.6) && !stops(&form, 3, &RAY, 0.6),
+                "{form:?}"
+            );
             assert!(!stops(&form, 0, &beside, 0.6), "{form:?}");
         }
     }

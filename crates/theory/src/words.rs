@@ -1,7 +1,7 @@
 //! Describes the steps of light in words: maps, masks and numbers.
 
 use crate::geometry::Matrix;
-use crate::obstacle::{Obstacle, ObstacleForm};
+use crate::obstacle::Obstacle;
 use etendue_field::{Grating, Hole, Mask, Shape, tidy};
 
 /// Formats a number to six decimals, without trailing zeros.
@@ -67,15 +67,11 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
 
 pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
     let name = &obstacle.name;
-    if obstacle.until.is_some() {
-        return format!("multiply  by the visibility of {name} on the legs before it");
-    }
-    match obstacle.form {
-        ObstacleForm::Mask { from: 1.., .. } => {
-            format!("multiply  by the visibility of {name} on later legs")
-        }
-        _ => format!("multiply  by the visibility of {name} on any leg"),
-    }
+    let legs = match obstacle.until {
+        Some(_) => "the legs before it",
+        None => "any leg",
+    };
+    format!("multiply  by the visibility of {name} on {legs}")
 }
 
 /// Describes opaque shapes, e.g. "4 opaque rectangles, 1 half-plane".

@@ -3,12 +3,7 @@
 
 /// Each assumption, with a phrase from the reasons that `check` gives for its violation. A reason
 /// is assigned to the first phrase that it contains.
-const PHRASES: [(&str, &str); 15] = [
-    ("surfaces are met in their order", "out of order"),
-    (
-        "a surface is met once, and not in its own shadow",
-        "in its own shadow",
-    ),
+const PHRASES: [(&str, &str); 13] = [
     (
         "a smooth mesh is one smooth surface",
         "its osculating patch",

@@ -146,9 +146,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     let over = (&plane.window, &plane.grid, &picture);
     match theory {
         Theory::Parallel(chain) => chain.predict(&[], over, BUDGET),
-        Theory::Specular(view) => view.predict(&[], over, BUDGET),
-        Theory::Scattering(view) => view.predict(&[], over, BUDGET),
-        Theory::Reflections(view) => view.predict(&[], over, BUDGET),
+        Theory::Path(view) => view.predict(&[], over, BUDGET),
         Theory::None => unreachable!("a plane has some theory if nothing is checked"),
     }
 }

@@ -170,9 +170,7 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     let over = (&plane.window, &plane.grid, &picture);
     let found = match theory {
         Theory::Parallel(chain) => chain.sampled(&[], over, budget),
-        Theory::Specular(view) => view.predict(&[], over, budget),
-        Theory::Scattering(view) => view.predict(&[], over, budget),
-        Theory::Reflections(view) => view.predict(&[], over, budget),
+        Theory::Path(view) => view.predict(&[], over, budget),
         Theory::None => return None,
     };
     Some(PredictionFound {

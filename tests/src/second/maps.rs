@@ -13,8 +13,8 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Side, Specular,
 };
 use etendue_theory::geometry::{AffineMap, Edition};
-use etendue_theory::rays::{self, Plane, SpecularSurface};
-use etendue_theory::{Observed, scattering};
+use etendue_theory::path::{Interaction, PathSurface, PathSystem};
+use etendue_theory::{Observed, Plane, rays, scattering};
 use std::path::Path;
 
 /// Half of the step between the two rays of a finite difference, in metres or radians.
@@ -118,16 +118,11 @@ impl Met {
     }
 
     /// Returns theory's system for light that the surface reflects.
-    fn scattering(&self, plane: Plane) -> Observed<scattering::ScatteringSystem> {
+    fn scattering(&self, plane: Plane) -> Observed {
         let brdf = Brdf::new(Lobe::Lambertian, 1.0, Fresnel::White);
-        let system = scattering::ScatteringSystem {
-            light: Light::Point { intensity: 1.0 },
-            layers: Vec::new(),
-            obstacles: vec![],
-            name: "it".to_owned(),
-            patch: self.patch,
-            reflectance: brdf.into(),
-        };
+        let interaction = Interaction::Reflects(Box::new(brdf.into()));
+        let surface = PathSurface::new("it", self.patch, interaction);
+        let system = PathSystem::new(Light::Point { intensity: 1.0 }, vec![surface]);
         Observed { system, plane }
     }
 }
@@ -156,21 +151,14 @@ fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
     let seen = *dice.pick(&PLANES);
     let smooth = met.smooth.wrong(fault);
     let looking = Looking::new(&smooth, &met.legs, seen);
-    let mirror = SpecularSurface {
-        name: "it".to_owned(),
-        patch: met.patch,
-        event: Specular::Mirror,
+    let mirror = Interaction::Specular(Specular::Mirror);
+    let mirror = PathSurface::new("it", met.patch, mirror);
+    let surfaces = if looking.arrives {
+        Vec::new()
+    } else {
+        vec![mirror]
     };
-    let system = rays::SpecularSystem {
-        light: Light::Point { intensity: 1.0 },
-        layers: Vec::new(),
-        obstacles: vec![],
-        elements: if looking.arrives {
-            Vec::new()
-        } else {
-            vec![mirror]
-        },
-    };
+    let system = PathSystem::new(Light::Point { intensity: 1.0 }, surfaces);
     let plane = met.plane(&looking);
     let Some(chain) = rays::chain(&Observed { system, plane }, Edition::Corrected) else {
         return f64::NAN;

@@ -2,12 +2,13 @@
 
 use crate::predicted;
 use crate::scenes::traced;
-use etendue_compare::{Residuals, scattered};
-use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlane};
+use etendue_compare::{Residuals, path};
+use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Reflectance, Slices, VirtualPlane};
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
 use etendue_theory::Observed;
-use etendue_theory::scattering::{ScatteringSystem, chain};
+use etendue_theory::path::Interaction;
+use etendue_theory::scattering::chain;
 use etendue_trace::Tracer;
 use glam::DVec3;
 
@@ -37,10 +38,12 @@ impl Bench {
         }
     }
 
-    /// Predicts the slices at the plane for a modified system.
-    pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
+    /// Predicts the slices at the plane for a modified reflectance.
+    pub(super) fn predicted(&self, change: impl Fn(&mut Reflectance)) -> Slices {
         let mut view = seen(&self.scene);
-        change(&mut view.system);
+        if let Interaction::Reflects(reflectance) = &mut view.system.surfaces[0].interaction {
+            change(reflectance);
+        }
         said(&view, &self.scene.planes[0])
     }
 
@@ -85,11 +88,11 @@ pub(super) fn mean(photons: &Measurement) -> Slices {
     estimate.expect("a scene has 64 batches").mean
 }
 
-fn seen(scene: &Scene) -> Observed<ScatteringSystem> {
-    scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF")
+fn seen(scene: &Scene) -> Observed {
+    path(scene, &scene.planes[0]).expect("a plane behind a BRDF")
 }
 
-fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
+fn said(view: &Observed, plane: &VirtualPlane) -> Slices {
     let chain = chain(view).expect("a central ray");
     let [exact, _] = predicted::scattered(view, plane, &chain);
     exact
@@ -99,7 +102,7 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
 ///
 /// # Panics
 /// Panics if the scene has no BRDF.
-pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
+pub(super) fn reflectance(scene: &mut Scene) -> &mut Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,
         Event::Specular(_) => panic!("a surface with a BRDF"),

@@ -6,7 +6,7 @@ use crate::predicted;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{compared, traced};
 use etendue_compare::{
-    Applicability, FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict, scattered,
+    Applicability, FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict, path,
 };
 use etendue_field::Slices;
 use etendue_scene::Scene;
@@ -64,7 +64,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
         let measurement = traced(&scene);
         let place = &scene.planes[0];
         let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
-        let view = scattered(&scene, place).expect("a plane behind a BRDF");
+        let view = path(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
             // At a plane on the surface, the maps after the surface have no effect.
             if plane == "texture" && name.starts_with("off") {
@@ -136,7 +136,7 @@ fn judged(
     tampered: &ScatteringChain,
     slices: Slices,
 ) -> FirstOrderReport {
-    let view = scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF");
+    let view = path(scene, &scene.planes[0]).expect("a plane behind a BRDF");
     let kept = sound.first_order.as_ref().expect("a chain");
     let tried = Prediction {
         first_order: Some(FirstOrder {

@@ -6,7 +6,7 @@ use super::scenes::{alone, changed};
 use crate::predicted::traced;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use etendue_compare::{sidak, system};
+use etendue_compare::{path, sidak};
 use etendue_field::{Complex, Light, Quantity, Slices};
 use etendue_scene::Scene;
 use std::f64::consts::PI;
@@ -111,7 +111,7 @@ fn diffuse(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
 fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     let scene = alone(changed("concave_oblique", photons, &[]), "reflection");
     let place = &scene.planes[0];
-    let mirror = system(&scene, place).expect("a mirror alone");
+    let mirror = path(&scene, place).expect("a mirror alone");
     let of = |quantity| {
         let mut seen = mirror.clone();
         seen.plane.quantity = quantity;

@@ -10,7 +10,6 @@ use crate::report::{Check, ReportSection, Row};
 use etendue_compare::sidak;
 use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term, Weight};
 use etendue_scene::Scene;
-use etendue_theory::scattering::ScatteringSystem;
 use glam::DQuat;
 use std::f64::consts::TAU;
 
@@ -23,8 +22,8 @@ const PIXEL: f64 = TAU / 256.0;
 
 /// A planted fault.
 enum Plant {
-    /// Changes the prediction, which is computed for a modified system.
-    ScatteringSystem(fn(&mut ScatteringSystem)),
+    /// Changes the prediction, which is computed for a modified reflectance.
+    Prediction(fn(&mut Reflectance)),
     /// Multiplies the prediction by a factor.
     Factor(f64),
     /// Changes the photons by modifications of the scene and of the crossings.
@@ -105,7 +104,7 @@ impl Plant {
             (p, bench.apart(said, &bench.sound))
         };
         match self {
-            Self::ScatteringSystem(change) => by_prediction(&bench.predicted(change)),
+            Self::Prediction(change) => by_prediction(&bench.predicted(change)),
             Self::Factor(factor) => {
                 let mut said = bench.sound.clone();
                 said.half.mapv_inplace(|value| value * factor);
@@ -150,8 +149,8 @@ fn stands() -> Vec<Stand> {
                 ),
                 (
                     "index + 2 %",
-                    Plant::ScatteringSystem(|s| {
-                        s.reflectance.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
+                    Plant::Prediction(|s| {
+                        s.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
                     }),
                 ),
             ],
@@ -161,19 +160,19 @@ fn stands() -> Vec<Stand> {
             plane: "texture",
             texts: &[],
             faults: vec![
-                ("exponent + 5 %", Plant::ScatteringSystem(|s| lobe(s, 1.05))),
-                ("exponent − 5 %", Plant::ScatteringSystem(|s| lobe(s, 0.95))),
+                ("exponent + 5 %", Plant::Prediction(|s| lobe(s, 1.05))),
+                ("exponent − 5 %", Plant::Prediction(|s| lobe(s, 0.95))),
                 (
                     "frequency of the texture + 1 %",
-                    Plant::ScatteringSystem(|s| texture(s, 1.01)),
+                    Plant::Prediction(|s| texture(s, 1.01)),
                 ),
                 (
                     "frequency of the texture − 1 %",
-                    Plant::ScatteringSystem(|s| texture(s, 0.99)),
+                    Plant::Prediction(|s| texture(s, 0.99)),
                 ),
                 (
                     "albedo forgotten",
-                    Plant::ScatteringSystem(|s| s.reflectance.first_mut().albedo = 1.0),
+                    Plant::Prediction(|s| s.first_mut().albedo = 1.0),
                 ),
             ],
         },
@@ -191,21 +190,18 @@ fn stands() -> Vec<Stand> {
             plane: "reflection",
             texts: &[],
             faults: vec![
-                (
-                    "weights swapped",
-                    Plant::ScatteringSystem(|s| swapped(&mut s.reflectance)),
-                ),
+                ("weights swapped", Plant::Prediction(swapped)),
                 (
                     "width of a lobe + 1 %",
-                    Plant::ScatteringSystem(|s| lobe(s, 1.01_f64.powi(-2))),
+                    Plant::Prediction(|s| lobe(s, 1.01_f64.powi(-2))),
                 ),
                 (
                     "width of a lobe − 1 %",
-                    Plant::ScatteringSystem(|s| lobe(s, 0.99_f64.powi(-2))),
+                    Plant::Prediction(|s| lobe(s, 0.99_f64.powi(-2))),
                 ),
                 (
                     "modulation of the weights 1 instead of 0.9",
-                    Plant::ScatteringSystem(|s| full(&mut s.reflectance)),
+                    Plant::Prediction(full),
                 ),
             ],
         },
@@ -216,18 +212,12 @@ fn stands() -> Vec<Stand> {
             faults: vec![
                 (
                     "a term left out",
-                    Plant::ScatteringSystem(|s| {
-                        s.reflectance.terms.remove(1);
+                    Plant::Prediction(|s| {
+                        s.terms.remove(1);
                     }),
                 ),
-                (
-                    "weights swapped",
-                    Plant::ScatteringSystem(|s| swapped(&mut s.reflectance)),
-                ),
-                (
-                    "h for f",
-                    Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
-                ),
+                ("weights swapped", Plant::Prediction(swapped)),
+                ("h for f", Plant::Prediction(turned_round)),
             ],
         },
         Stand {
@@ -235,13 +225,10 @@ fn stands() -> Vec<Stand> {
             plane: "reflection",
             texts: &[],
             faults: vec![
-                (
-                    "h for f",
-                    Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
-                ),
+                ("h for f", Plant::Prediction(turned_round)),
                 (
                     "f left out",
-                    Plant::ScatteringSystem(|s| s.reflectance.first_mut().incoming = None),
+                    Plant::Prediction(|s| s.first_mut().incoming = None),
                 ),
             ],
         },
@@ -249,10 +236,7 @@ fn stands() -> Vec<Stand> {
             scene: "factor_outgoing",
             plane: "reflection",
             texts: &[],
-            faults: vec![(
-                "f for h",
-                Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
-            )],
+            faults: vec![("f for h", Plant::Prediction(turned_round))],
         },
         Stand {
             scene: "checkerboard",
@@ -289,10 +273,10 @@ fn stands() -> Vec<Stand> {
     ]
 }
 
-fn lobe(system: &mut ScatteringSystem, factor: f64) {
+fn lobe(reflectance: &mut Reflectance, factor: f64) {
     if let Lobe::Phong { exponent: number }
     | Lobe::Beckmann { roughness: number }
-    | Lobe::Ggx { roughness: number } = &mut system.reflectance.first_mut().lobe
+    | Lobe::Ggx { roughness: number } = &mut reflectance.first_mut().lobe
     {
         *number *= factor;
     }
@@ -323,8 +307,8 @@ fn full(reflectance: &mut Reflectance) {
     }
 }
 
-fn texture(system: &mut ScatteringSystem, factor: f64) {
-    if let Some(Pattern::Cosine(grating)) = &mut system.reflectance.texture {
+fn texture(reflectance: &mut Reflectance, factor: f64) {
+    if let Some(Pattern::Cosine(grating)) = &mut reflectance.texture {
         grating.frequency *= factor;
     }
 }

@@ -4,7 +4,7 @@ use super::TableRun;
 use crate::predicted;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use etendue_compare::system;
+use etendue_compare::path;
 use etendue_field::{Crossing, PhotonSource, Profile, VirtualPlane, Window};
 use etendue_scene::{Emission, LightFile, Scene, resolve};
 use etendue_trace::Tracer;
@@ -157,7 +157,7 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
         v: all,
     };
     let variance = |plane: &VirtualPlane| {
-        let view = system(scene, plane).expect("a free mirror");
+        let view = path(scene, plane).expect("a free mirror");
         let found = predicted::traced(&view, &window, &plane.grid);
         let moments = found.covariance.expect("light arrives");
         [moments[0][0], moments[1][1]]

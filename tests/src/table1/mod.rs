@@ -17,11 +17,10 @@ pub(crate) use quadrature::apart;
 
 use crate::report::ReportSection;
 use crate::scenes::{compared, predicted, traced};
-use etendue_compare::{PlaneComparison, Prediction, TESTS, sidak, system};
+use etendue_compare::{PlaneComparison, Prediction, TESTS, path, sidak};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::Observed;
-use etendue_theory::rays::SpecularSystem;
 
 /// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
@@ -39,8 +38,8 @@ impl TableRun {
     ///
     /// # Panics
     /// Panics if theory does not trace rays to the plane.
-    fn system(&self, plane: usize) -> Observed<SpecularSystem> {
-        system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
+    fn system(&self, plane: usize) -> Observed {
+        path(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
 
     /// Returns the index of a plane.

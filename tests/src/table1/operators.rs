@@ -9,7 +9,7 @@ use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
-use etendue_theory::rays::SpecularSystem;
+use etendue_theory::path::PathSurface;
 use etendue_theory::{Model, Observed, Parameter};
 
 /// Returns the section on Table 1 in 4D.
@@ -102,9 +102,9 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
 
 /// Returns the name of the last step before a plane, and the row of the paper's Table 1 that
 /// describes this step.
-fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
+fn operator(view: &Observed) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
-    let last = system.elements.last();
+    let last = system.before_plane().last();
     if plane.is_arriving() {
         return match plane.orientation {
             Orientation::LocalNormals => ("curvature", Some(Line::Curvature)),
@@ -115,16 +115,16 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Some(element) = last else {
         return ("travel", Some(Line::Travel));
     };
-    let refracts = matches!(element.event, Specular::Refraction { .. });
+    let refracts = matches!(element.event(), Some(Specular::Refraction { .. }));
     match plane.orientation {
         Orientation::LocalNormals if refracts => ("refraction", None),
         Orientation::LocalNormals | Orientation::Mirrored => ("mirror", Some(Line::Mirror)),
         Orientation::Tangent => ("back", Some(Line::Curvature)),
         Orientation::Orthogonal => {
             let far = (plane.frame.origin - element.patch.frame.origin).length();
-            match element.event {
+            match element.event() {
                 _ if far > 1e-6 => ("travel", Some(Line::Travel)),
-                Specular::ThinLens { .. } => ("lens", None),
+                Some(Specular::ThinLens { .. }) => ("lens", None),
                 _ => ("outgoing", Some(Line::Outgoing)),
             }
         }
@@ -133,10 +133,10 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
 
 /// Returns the 2D section, in the plane of incidence, of a scene with one surface; a principal
 /// axis of this surface must lie in that plane.
-fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
+fn section(view: &Observed) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
-    let arriving = plane.is_arriving() || system.elements.is_empty();
+    let arriving = plane.is_arriving() || system.visited == 0;
     let before = value(Parameter::Travel(0))?;
     if arriving && plane.orientation == Orientation::Orthogonal {
         let path = MirrorPath {
@@ -147,10 +147,10 @@ fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
         };
         return Some((path, PathStage::Travel));
     }
-    if arriving != system.elements.is_empty() || system.elements.len() > 1 {
+    if arriving != (system.visited == 0) || system.visited > 1 {
         return None;
     }
-    let patch = match system.elements.first() {
+    let patch = match system.before_plane().first() {
         Some(element) => Some(element.patch),
         None => plane.patch,
     };
@@ -161,7 +161,7 @@ fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     if across && (k1 - k2).abs() > 1e-12 {
         return None;
     }
-    let media = match system.elements.first().map(|e| e.event) {
+    let media = match system.before_plane().first().and_then(PathSurface::event) {
         Some(Specular::ThinLens { .. }) => return None,
         Some(Specular::Refraction { front, back }) => Some(Media {
             before: front,

@@ -10,7 +10,7 @@ use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{AffineMap, SpectrumMap};
-use etendue_theory::rays::SpecularSystem;
+use etendue_theory::path::Interaction;
 use etendue_theory::{Model, Observed, Parameter};
 
 type MirrorChange = fn(&mut Steps, &MirrorBench<'_>);
@@ -171,17 +171,13 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
     }
 }
 
-type Tamper = fn(&Observed<SpecularSystem>) -> Option<Observed<SpecularSystem>>;
+type Tamper = fn(&Observed) -> Option<Observed>;
 
 fn numbers() -> Vec<(&'static str, Tamper)> {
-    fn scaled(
-        view: &Observed<SpecularSystem>,
-        p: Parameter,
-        by: f64,
-    ) -> Option<Observed<SpecularSystem>> {
+    fn scaled(view: &Observed, p: Parameter, by: f64) -> Option<Observed> {
         view.with(p, by * view.value(p)?)
     }
-    fn turned(view: &Observed<SpecularSystem>, degrees: f64) -> Option<Observed<SpecularSystem>> {
+    fn turned(view: &Observed, degrees: f64) -> Option<Observed> {
         let p = Parameter::Incidence(0);
         view.with(p, view.value(p)? + degrees.to_radians())
     }
@@ -193,7 +189,10 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
         ("θ₀ − 1°", |v| turned(v, -1.0)),
         ("indices of the two sides swapped", |v| {
             let mut view = v.clone();
-            let Specular::Refraction { front, back } = &mut view.system.elements[0].event else {
+            let surface = &mut view.system.surfaces[0];
+            let Interaction::Specular(Specular::Refraction { front, back }) =
+                &mut surface.interaction
+            else {
                 return None;
             };
             std::mem::swap(front, back);

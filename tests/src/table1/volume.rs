@@ -3,10 +3,11 @@
 use super::TableRun;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row, worse};
-use etendue_field::{Frame, Orientation};
+use etendue_field::{Frame, Orientation, Specular};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{self, SpecularSurface, SpecularSystem};
+use etendue_theory::path::{PathSurface, PathSystem};
+use etendue_theory::rays;
 use glam::DVec3;
 
 /// Step of the finite differences, in metres or direction cosines; the error of these differences
@@ -99,10 +100,10 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
 }
 
 /// Returns the index of refraction at the light divided by the index at the plane.
-fn index_ratio(system: &SpecularSystem) -> f64 {
+fn index_ratio(system: &PathSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
-    for element in &system.elements {
+    for element in system.before_plane() {
         ratio *= crossed(element, ray.direction);
         if let Some(next) = follow(element, &ray) {
             ray = next;
@@ -112,8 +113,8 @@ fn index_ratio(system: &SpecularSystem) -> f64 {
 }
 
 /// Returns the index before a surface divided by the index after it.
-fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
-    let etendue_field::Specular::Refraction { front, back } = element.event else {
+fn crossed(element: &PathSurface, direction: DVec3) -> f64 {
+    let Some(Specular::Refraction { front, back }) = element.event() else {
         return 1.0;
     };
     if direction.dot(element.patch.frame.d) < 0.0 {
@@ -134,11 +135,11 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
 }
 
 /// Returns the errors of the phase-space volume, of the invariant, and of the rays traced back.
-fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
+fn defects(system: &PathSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
         let arrived = through(
-            &system.elements,
+            system.before_plane(),
             &start(if slopes { with_cosines(z) } else { z }),
         )?;
         let mut z = coordinates(plane, &arrived)?;
@@ -165,8 +166,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
         }
     }
     let rays = etendue_theory::geometry::AffineMap::linear(jacobian);
-    let arrived = through(&system.elements, &start(at))?;
-    let mut elements = system.elements.clone();
+    let arrived = through(system.before_plane(), &start(at))?;
+    let mut elements = system.before_plane().to_vec();
     elements.reverse();
     let turned = VolumeRay {
         point: arrived.point + arrived.direction * STEP,
@@ -184,11 +185,11 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
 
 /// Checks whether the path contains an ideal lens. Unlike a real lens, an ideal lens preserves the
 /// volume of positions and slopes.
-fn has_lens(system: &SpecularSystem) -> bool {
-    let events = system.elements.iter().map(|e| e.event);
+fn has_lens(system: &PathSystem) -> bool {
+    let events = system.before_plane().iter().filter_map(PathSurface::event);
     events
         .into_iter()
-        .any(|e| matches!(e, etendue_field::Specular::ThinLens { .. }))
+        .any(|e| matches!(e, Specular::ThinLens { .. }))
 }
 
 fn with_slopes([x, y, p, q]: [f64; 4]) -> [f64; 4] {
@@ -209,11 +210,11 @@ fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     }
 }
 
-fn through(elements: &[SpecularSurface], ray: &VolumeRay) -> Option<VolumeRay> {
+fn through(elements: &[PathSurface], ray: &VolumeRay) -> Option<VolumeRay> {
     elements.iter().try_fold(*ray, |ray, e| follow(e, &ray))
 }
 
-fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
+fn follow(element: &PathSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     let frame = &element.patch.frame;
     let (start, along) = (
         frame.to_local(ray.point),
@@ -222,7 +223,7 @@ fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     let hits = element.patch.hits(start, along);
     let distance = hits.into_iter().find(|t| *t > 1e-9)?;
     let point = ray.point + ray.direction * distance;
-    let direction = element.event.turned(
+    let direction = element.event()?.turned(
         &element.patch.frame,
         element.patch.normal(point),
         point,

@@ -3,11 +3,11 @@
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{named, traced};
-use etendue_compare::{Applicability, Prediction, Test, Theory, compare};
+use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::{Frame, Lobe, ProjectionGrid};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::reflections::{Interaction, ReflectionSystem};
+use etendue_theory::path::{Interaction, PathSystem};
 use etendue_theory::{Model, Observed, RayBudget};
 use glam::DQuat;
 
@@ -21,11 +21,11 @@ const SEEN: f64 = 0.01;
 const SCENE: &str = "two_glossy";
 const PLANE: &str = "beyond";
 
-type PlantedFault = (&'static str, fn(&mut ReflectionSystem));
+type PlantedFault = (&'static str, fn(&mut PathSystem));
 
 /// The planted faults, each with a description.
 const FAULTS: [PlantedFault; 6] = [
-    ("square left out", |system| system.obstacles.clear()),
+    ("square left out", |system| system.masks.clear()),
     ("first lobe 1 % wider", |system| {
         change_lobe(system, 0, 1.01);
     }),
@@ -49,7 +49,7 @@ const FAULTS: [PlantedFault; 6] = [
     }),
 ];
 
-fn change_lobe(system: &mut ReflectionSystem, surface: usize, factor: f64) {
+fn change_lobe(system: &mut PathSystem, surface: usize, factor: f64) {
     if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction {
         let lobe: &mut Lobe = &mut reflectance.first_mut().lobe;
         if let Some((_, number)) = lobe.number_mut() {
@@ -58,7 +58,7 @@ fn change_lobe(system: &mut ReflectionSystem, surface: usize, factor: f64) {
     }
 }
 
-fn tilt(system: &mut ReflectionSystem, angle: f64) {
+fn tilt(system: &mut PathSystem, angle: f64) {
     let frame = &mut system.surfaces[1].patch.frame;
     let turn = DQuat::from_axis_angle(frame.y, angle);
     *frame = Frame {
@@ -75,18 +75,18 @@ pub(super) fn planted() -> ReportSection {
     let scene = scene.seen_at(&[number.unwrap_or_default()]);
     let measured = traced(&scene);
     let theory = Applicability::new(&scene, &scene.planes[0]);
-    let Theory::Reflections(view) = &theory.theory else {
+    let Some(view) = theory.theory.path() else {
         unreachable!("{SCENE} has two surfaces that scatter");
     };
     let like = Prediction::new(&scene, &scene.planes[0], &theory);
-    let p_value = |view: &Observed<ReflectionSystem>| p_value(&scene, &measured, view, &like);
+    let p_value = |view: &Observed| p_value(&scene, &measured, view, &like);
     let sound = p_value(view);
     let mut rows = vec![Row::new(
         vec!["none".to_owned(), format!("{sound:.5}")],
         vec![Check::p("p", Some(sound), SEEN)],
     )];
     rows.extend(FAULTS.iter().map(|(name, change)| {
-        let mut view = view.as_ref().clone();
+        let mut view = view.clone();
         change(&mut view.system);
         let p = p_value(&view);
         let cells = vec![(*name).to_owned(), format!("{p:.5}")];
@@ -110,12 +110,7 @@ pub(super) fn planted() -> ReportSection {
 
 /// Returns the p-value for the slices predicted for `view`. All other fields of the prediction are
 /// taken from `like`.
-fn p_value(
-    scene: &Scene,
-    measured: &Measurement,
-    view: &Observed<ReflectionSystem>,
-    like: &Prediction,
-) -> f64 {
+fn p_value(scene: &Scene, measured: &Measurement, view: &Observed, like: &Prediction) -> f64 {
     let plane = &scene.planes[0];
     let picture = ProjectionGrid::new(&plane.window, 1);
     let found = view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);

@@ -7,8 +7,9 @@ use super::scene;
 use super::small::{MORE_PHOTONS, SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
 use crate::progress::progress;
 use crate::report::{Check, ReportSection, Row};
-use etendue_compare::{Applicability, Class, Theory, Verdict};
+use etendue_compare::{Applicability, Class, Verdict};
 use etendue_scene::{Event, Object, Scene, SceneFile, resolve};
+use etendue_theory::PathKind;
 use rayon::prelude::*;
 use std::io;
 use std::path::Path;
@@ -57,7 +58,7 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
             Ok(Some(Tried {
                 number,
                 scatterers: scatterers(&scene),
-                by_paths: matches!(theory, Theory::Reflections(_)),
+                by_paths: theory.path_of(PathKind::Several).is_some(),
                 ending,
                 seconds: begun.elapsed().as_secs_f64(),
             }))

@@ -13,12 +13,13 @@ mod obstacles;
 mod surfaces;
 
 use etendue_compare::{
-    Applicability, Class, PlaneReport, Prediction, Test, Verdict, compare, system,
+    Applicability, Class, PlaneReport, Prediction, Test, Verdict, compare, path,
 };
 use etendue_field::{PhotonSource, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::{Model, Observed, RayBudget, rays, scattering};
+use etendue_theory::path::{PatchExtent, PathSystem};
+use etendue_theory::{Model, Observed, RayBudget};
 use etendue_trace::{Backward, Tracer};
 use std::time::Instant;
 
@@ -158,55 +159,42 @@ fn the_tracers_agree(scene: &Scene) {
     assert_eq!(judged, Verdict::Pass, "{}", scene.name);
 }
 
-/// Checks that both tracers agree with each other. They must disagree with a prediction by
-/// `theory`, which does not apply.
-fn only_the_reference_is_right(
-    scene: &Scene,
-    plane: usize,
-    theory: impl Fn(&Scene, Prediction) -> Prediction,
-) {
-    let found = Applicability::new(scene, &scene.planes[plane]);
-    assert!(!found.reasons.is_empty() || !found.declined.is_empty());
-    let (photons, rays) = (photons(scene), backward(scene));
-    let reference = by_reference(scene, plane, &rays);
-    let judged = report(scene, &photons, plane, &reference);
-    assert_eq!(judged.verdict, Verdict::Pass);
-    let regardless = theory(scene, reference);
-    let wrong = report(scene, &photons, plane, &regardless);
-    assert_eq!(wrong.verdict, Verdict::Fail);
+/// Checks that theory agrees with both tracers on light that some surface of the path stops, and
+/// that photons disagree with a prediction that is blind to this surface.
+fn only_the_blind_are_wrong(scene: &Scene, plane: usize, blind: fn(&mut PathSystem)) {
+    let right = by_exact_rays(scene, plane);
+    let photons = photons(scene);
+    for measured in [&photons, &backward(scene)] {
+        let judged = report(scene, measured, plane, &right);
+        assert_eq!(judged.verdict, Verdict::Pass);
+    }
+    let mut view = path(scene, &scene.planes[plane]).unwrap();
+    blind(&mut view.system);
+    let wrong = by_path(scene, plane, &view, right);
+    let judged = report(scene, &photons, plane, &wrong);
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
+/// Makes a prediction blind to surfaces that light visits later.
+fn forgets_later_surfaces(system: &mut PathSystem) {
+    system.surfaces.truncate(system.visited);
+    system.obstacles.clear();
+}
+
+/// Makes a prediction blind to the shadow of a surface on itself.
+fn forgets_own_shadows(system: &mut PathSystem) {
+    for surface in &mut system.surfaces {
+        surface.extent = PatchExtent::Osculating;
+    }
 }
 
 /// Budget with which a prediction has an error of half a per cent in each of these scenes.
 const BUDGET: RayBudget = RayBudget::new(1e6, 5e-3);
 
-fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
-    let view = system(scene, &scene.planes[plane]).unwrap();
-    by_rays(scene, plane, &view, like)
-}
-
-fn by_rays(
-    scene: &Scene,
-    plane: usize,
-    view: &Observed<rays::SpecularSystem>,
-    like: Prediction,
-) -> Prediction {
-    let plane = &scene.planes[plane];
-    let picture = ProjectionGrid::new(&plane.window, 1);
-    let over = (&plane.window, &plane.grid, &picture);
-    let found = view.predict(&[], over, BUDGET);
-    replaced(like, found.slices, found.replicates)
-}
-
-fn by_scattering(
-    scene: &Scene,
-    view: &Observed<scattering::ScatteringSystem>,
-    like: Prediction,
-) -> Prediction {
-    let grid = like.slices.grid;
-    let window = &scene.planes[0].window;
+fn by_path(scene: &Scene, plane: usize, view: &Observed, like: Prediction) -> Prediction {
+    let (window, grid) = (&scene.planes[plane].window, like.slices.grid);
     let picture = ProjectionGrid::new(window, 1);
-    let over = (window, &grid, &picture);
-    let found = view.predict(&[], over, BUDGET);
+    let found = view.predict(&[], (window, &grid, &picture), BUDGET);
     replaced(like, found.slices, found.replicates)
 }
 

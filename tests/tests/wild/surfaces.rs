@@ -1,11 +1,11 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    FOLDER, MORE, both_tracers_agree_with_theory, by_exact_rays, by_reference, by_scattering,
-    by_specular, by_theory, does_not_fail, edited, measured, only_the_reference_is_right, photons,
+    FOLDER, MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory,
+    does_not_fail, edited, forgets_own_shadows, measured, only_the_blind_are_wrong, photons,
     report, scene, scene_does_not_fail, the_tracers_agree, verdict,
 };
-use etendue_compare::{Applicability, Class, Prediction, Verdict, scattered};
+use etendue_compare::{Applicability, Class, Prediction, Verdict, path};
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::Tracer;
 use std::path::Path;
@@ -59,28 +59,21 @@ fn the_stated_error_of_triangles_is_right() {
     assert_eq!(judged.verdict, Verdict::Fail);
 }
 
-/// In theory, a ray meets a surface only once. Therefore backward rays replace theory for light
-/// that meets the surface twice.
+/// Light that meets a hollow mirror twice is lost, for theory as for photons.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
     for plane in 0..2 {
-        only_the_reference_is_right(&scene, plane, |scene, reference| {
-            by_specular(scene, plane, reference)
-        });
+        only_the_blind_are_wrong(&scene, plane, forgets_own_shadows);
     }
 }
 
-/// Backward rays also replace theory if one side of a surface blocks light of the other side.
+/// One side of a surface blocks light of the other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
-    for plane in 0..2 {
-        only_the_reference_is_right(&scene, plane, |scene, reference| {
-            let view = scattered(scene, &scene.planes[plane]).unwrap();
-            by_scattering(scene, &view, reference)
-        });
-    }
+    // No light of the second plane's window would come from the shadow.
+    only_the_blind_are_wrong(&scene, 0, forgets_own_shadows);
 }
 
 /// In these scenes, rays that leave the triangles of a mesh meet the mesh again, or take another
@@ -104,7 +97,8 @@ fn meshes_unlike_their_patches_are_decided() {
         );
         let judged = report(&scene, &measured, 0, &reference);
         assert_eq!(judged.verdict, Verdict::Pass, "{name}");
-        let regardless = by_specular(&scene, 0, reference);
+        let view = path(&scene, &scene.planes[0]).unwrap();
+        let regardless = by_path(&scene, 0, &view, reference);
         let wrong = report(&scene, &measured, 0, &regardless);
         assert_eq!(wrong.verdict, Verdict::Fail, "{name}");
     }

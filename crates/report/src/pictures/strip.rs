@@ -324,7 +324,9 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
             }
             // After a mirror, the power of the spectrum lies along a line; after a lobe, it does
             // not.
-            (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
+            (Theory::Path(view), Some(first_order)) if view.system.scatterers() == 0 => {
+                ridges(scene, &first_order.chain.matrix)
+            }
             _ => Vec::new(),
         },
     }

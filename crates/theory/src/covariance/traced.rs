@@ -3,8 +3,9 @@
 use super::factors;
 use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
-use crate::model::Observed;
 use crate::parallel::{Chain, Operator};
+use crate::path::{Observed, PathKind, PathSystem};
+use crate::plane::Plane;
 use crate::{rays, scattering};
 use etendue_field::{
     Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
@@ -26,6 +27,8 @@ pub enum Untraced {
     /// The reflectance varies by a picture, by squares or between BRDFs, and no Gaussian represents
     /// such a variation.
     Reflectance,
+    /// Several surfaces have redirected the light, and some of them scatter it.
+    Several,
     /// The central ray does not arrive, or a map on its path has no inverse.
     Lost,
 }
@@ -39,6 +42,7 @@ impl Display for Untraced {
             }
             Self::Light => "no Gaussian describes this light",
             Self::Reflectance => "no Gaussian describes the variation of this reflectance",
+            Self::Several => "several surfaces have scattered the light",
             Self::Lost => "the central ray does not arrive, or a map along it has no inverse",
         })
     }
@@ -71,51 +75,56 @@ impl Traced for Chain {
     }
 }
 
-impl Traced for Observed<rays::SpecularSystem> {
+impl Traced for Observed {
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
-        let Self { system, plane } = self;
-        let chain = rays::chain(self, Edition::Corrected).ok_or(Untraced::Lost)?;
-        if !system.obstacles.is_empty() {
+        if !self.system.obstacles.is_empty() {
             return Err(Untraced::Obstacles);
         }
-        let (light, travelled) = past_masks(&system.light, &system.layers)?;
-        let rest = AffineMap::travel(-travelled).then(&chain.map.rays());
-        let light = moved(&light, &rest)?;
-        Ok(counted(&light, plane.quantity, plane.orientation))
+        let light = match self.kind() {
+            PathKind::Specular => after_specular(self)?,
+            PathKind::Scattered => after_scatterer(self)?,
+            PathKind::Several => return Err(Untraced::Several),
+        };
+        let Plane {
+            quantity,
+            orientation,
+            ..
+        } = self.plane;
+        Ok(counted(&light, quantity, orientation))
     }
 }
 
-impl Traced for Observed<scattering::ScatteringSystem> {
-    fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
-        let Self { system, plane } = self;
-        let chain = scattering::chain(self).ok_or(Untraced::Lost)?;
-        let reflectance = &system.reflectance;
-        let brdf = reflectance.only().ok_or(Untraced::Reflectance)?;
-        if brdf.incoming.is_some() || brdf.outgoing.is_some() {
-            return Err(Untraced::Reflectance);
-        }
-        if !system.obstacles.is_empty() {
-            return Err(Untraced::Obstacles);
-        }
-        let (light, travelled) = past_masks(&system.light, &system.layers)?;
-        let onto = AffineMap::travel(-travelled).then(&chain.onto);
-        let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
-        let turned = moved(&arriving, &AffineMap::mirror())?;
-        let mut leaving = match factors::lobe(&brdf.lobe, chain.incidence) {
-            Some(lobe) => turned.convolved(&lobe),
-            None => turned.diffused(),
-        };
-        if let Some(texture) = &reflectance.texture {
-            let Pattern::Cosine(lines) = texture else {
-                return Err(Untraced::Reflectance);
-            };
-            let axis = [system.patch.frame.x, system.patch.frame.y][lines.axis];
-            let along = [chain.frame.x, chain.frame.y].map(|t| axis.dot(t));
-            leaving = leaving.multiplied(&along_line(along, factors::grating(lines)));
-        }
-        let light = moved(&leaving, &chain.off)?;
-        Ok(counted(&light, plane.quantity, plane.orientation))
+fn after_specular(view: &Observed) -> Result<SpectralCovariance, Untraced> {
+    let chain = rays::chain(view, Edition::Corrected).ok_or(Untraced::Lost)?;
+    let (light, travelled) = past_masks(view, chain.first_leg)?;
+    let rest = AffineMap::travel(-travelled).then(&chain.map.rays());
+    moved(&light, &rest)
+}
+
+fn after_scatterer(view: &Observed) -> Result<SpectralCovariance, Untraced> {
+    let chain = scattering::chain(view).ok_or(Untraced::Lost)?;
+    let (patch, reflectance) = view.system.scatterer();
+    let brdf = reflectance.only().ok_or(Untraced::Reflectance)?;
+    if brdf.incoming.is_some() || brdf.outgoing.is_some() {
+        return Err(Untraced::Reflectance);
     }
+    let (light, travelled) = past_masks(view, chain.distance)?;
+    let onto = AffineMap::travel(-travelled).then(&chain.onto);
+    let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
+    let turned = moved(&arriving, &AffineMap::mirror())?;
+    let mut leaving = match factors::lobe(&brdf.lobe, chain.incidence) {
+        Some(lobe) => turned.convolved(&lobe),
+        None => turned.diffused(),
+    };
+    if let Some(texture) = &reflectance.texture {
+        let Pattern::Cosine(lines) = texture else {
+            return Err(Untraced::Reflectance);
+        };
+        let axis = [patch.frame.x, patch.frame.y][lines.axis];
+        let along = [chain.frame.x, chain.frame.y].map(|t| axis.dot(t));
+        leaving = leaving.multiplied(&along_line(along, factors::grating(lines)));
+    }
+    moved(&leaving, &chain.off)
 }
 
 /// Returns the covariance of light at the source. The light is replaced by a Gaussian that has the
@@ -174,18 +183,15 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
 }
 
 /// Returns the covariance of light after the masks of the first leg, and the distance from the
-/// light to the last mask.
-fn past_masks(
-    light: &Light,
-    layers: &[(f64, Mask)],
-) -> Result<(SpectralCovariance, f64), Untraced> {
+/// light to the last mask. `length` is the length of the leg.
+fn past_masks(view: &Observed, length: f64) -> Result<(SpectralCovariance, f64), Untraced> {
+    let PathSystem { light, masks, .. } = &view.system;
+    let mut masks = masks.iter().filter(|(distance, _)| *distance < length);
     let start = (of_light(light)?, 0.0);
-    layers
-        .iter()
-        .try_fold(start, |(light, at), (distance, mask)| {
-            let arriving = moved(&light, &AffineMap::travel(distance - at))?;
-            Ok((masked(&arriving, mask)?, *distance))
-        })
+    masks.try_fold(start, |(light, at), (distance, mask)| {
+        let arriving = moved(&light, &AffineMap::travel(distance - at))?;
+        Ok((masked(&arriving, mask)?, *distance))
+    })
 }
 
 fn masked(light: &SpectralCovariance, mask: &Mask) -> Result<SpectralCovariance, Untraced> {

@@ -1,19 +1,14 @@
 //! Predictions by nets of rays. They are used for chains whose closed form takes too long or does
 //! not resolve a pattern.
 
-use crate::model::{Model, Observed, Over, ShiftedModels};
+use crate::model::{Model, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets};
+use crate::path::{Interaction, Observed, PathSurface, PathSystem};
+use crate::plane::Plane;
 use crate::predicted::Predicted;
-use crate::rays::Plane;
-use crate::{Chain, Parameter, rays, scattering};
-use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Window};
+use crate::{Chain, Parameter};
+use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Side, Window};
 use glam::DVec3;
-
-/// The system whose rays are summed over nets.
-enum NetDomain {
-    Rays(Box<Observed<rays::SpecularSystem>>),
-    Scattering(Box<Observed<scattering::ScatteringSystem>>),
-}
 
 impl Chain {
     /// Returns the prediction by nets of rays, with derivatives with respect to some parameters.
@@ -24,24 +19,8 @@ impl Chain {
         over: Over<'_>,
         budget: RayBudget,
     ) -> Predicted {
-        const ONE_KIND: &str = "a parameter does not change the kind of a chain";
-        match self.followed(over.0) {
-            NetDomain::Rays(view) => {
-                let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {
-                    NetDomain::Rays(view) => *view,
-                    NetDomain::Scattering(_) => unreachable!("{ONE_KIND}"),
-                });
-                rays::predict(&view, &moved, over, budget)
-            }
-            NetDomain::Scattering(view) => {
-                let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {
-                    NetDomain::Scattering(view) => *view,
-                    NetDomain::Rays(_) => unreachable!("{ONE_KIND}"),
-                });
-                let chain = scattering::chain(&view);
-                scattering::predict(&view, chain.as_ref(), &moved, over, budget)
-            }
-        }
+        let moved = self.moved(parameters, over, |chain| chain.followed(over.0));
+        self.followed(over.0).predicted(&moved, over, budget)
     }
 
     /// Calls a function with the nets of rays that [`sampled`](Self::sampled) sums.
@@ -51,10 +30,7 @@ impl Chain {
         budget: RayBudget,
         then: &mut dyn FnMut(&dyn RayNets),
     ) {
-        match self.followed(over.0) {
-            NetDomain::Rays(view) => view.with_rays(over, budget, then),
-            NetDomain::Scattering(view) => view.with_rays(over, budget, then),
-        }
+        self.followed(over.0).with_rays(over, budget, then);
     }
 
     /// Returns, for each parameter, the system with this parameter slightly increased and slightly
@@ -77,26 +53,23 @@ impl Chain {
         moved.expect("parameters of the chain")
     }
 
-    /// Returns the chain as a system of rays or, if it ends in a diffuse reflection, as a flat
-    /// surface that scatters.
-    fn followed(&self, window: &Window) -> NetDomain {
+    /// Returns the chain as a path, which has a flat surface that scatters if the chain ends in a
+    /// diffuse reflection.
+    fn followed(&self, window: &Window) -> Observed {
         let path = self.path();
-        let layers = path.layers.iter();
         let distance = path.distance;
-        let layers = layers.map(|layer| (distance - layer.distance, layer.mask.clone()));
-        let (light, layers) = (self.source.light.clone(), layers.collect());
+        let mut system = PathSystem::new(self.source.light.clone(), Vec::new());
+        let masks = path.layers.iter();
+        let masks = masks.map(|layer| (distance - layer.distance, layer.mask.clone()));
+        system.masks = masks.collect();
         let Some(reflection) = path.reflection else {
             let mut plane = Plane::orthogonal(Frame::IDENTITY.travelled(distance));
+            // All masks of the chain stand before the plane, even those at its distance.
+            plane.side = Side::After;
             if path.cosines > 0 {
                 plane.quantity = Quantity::DifferentialIrradiance;
             }
-            let system = rays::SpecularSystem {
-                light,
-                layers,
-                obstacles: Vec::new(),
-                elements: Vec::new(),
-            };
-            return NetDomain::Rays(Box::new(Observed { system, plane }));
+            return Observed { system, plane };
         };
         let facing = Frame {
             origin: DVec3::Z * distance,
@@ -104,20 +77,16 @@ impl Chain {
             y: DVec3::Y,
             d: DVec3::NEG_Z,
         };
-        let system = scattering::ScatteringSystem {
-            light,
-            layers,
-            obstacles: Vec::new(),
-            name: String::new(),
-            patch: Patch {
-                frame: facing,
-                curvature: [0.0; 3],
-                aperture: seen(window, reflection.after),
-            },
-            reflectance: diffuse(reflection.albedo),
+        let patch = Patch {
+            frame: facing,
+            curvature: [0.0; 3],
+            aperture: seen(window, reflection.after),
         };
+        let interaction = Interaction::Reflects(Box::new(diffuse(reflection.albedo)));
+        system.surfaces = vec![PathSurface::new("", patch, interaction)];
+        system.visited = 1;
         let plane = Plane::orthogonal(facing.travelled(reflection.after));
-        NetDomain::Scattering(Box::new(Observed { system, plane }))
+        Observed { system, plane }
     }
 }
 

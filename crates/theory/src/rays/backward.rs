@@ -1,7 +1,9 @@
 //! Follows rays at a plane back to the light through the exact geometry.
 
-use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
-use crate::obstacle::LegRay;
+use super::AT_LIGHT;
+use crate::obstacle::{LegRay, normal};
+use crate::path::{PathSurface, PathSystem};
+use crate::plane::Plane;
 use etendue_field::Specular;
 use glam::DVec3;
 
@@ -9,14 +11,14 @@ use glam::DVec3;
 #[derive(Clone, Debug)]
 pub(super) struct Back {
     plane: Plane,
-    elements: Vec<SpecularSurface>,
+    surfaces: Vec<PathSurface>,
 }
 
 impl Back {
-    pub(super) fn new(system: &SpecularSystem, plane: &Plane) -> Self {
+    pub(super) fn new(system: &PathSystem, plane: &Plane) -> Self {
         Self {
             plane: *plane,
-            elements: system.elements.clone(),
+            surfaces: system.before_plane().to_vec(),
         }
     }
 
@@ -30,12 +32,12 @@ impl Back {
         let mut after = last.direction;
         let mut spread = 1.0;
         let mut ray = None;
-        for element in self.elements.iter().rev() {
+        for element in self.surfaces.iter().rev() {
             let before = match ray {
                 None => self.off_last(element, &last)?,
                 Some(ray) => element.follow(&ray)?,
             };
-            spread *= element.spread(&before, after);
+            spread *= element.spread(&before, after)?;
             after = -before.direction;
             ray = Some(before);
         }
@@ -59,29 +61,30 @@ impl Back {
     /// The line of `last` starts beyond all its possible intersections with the last surface. This
     /// is necessary because a plane at an oblique surface may lie partly behind the surface. If the
     /// plane is on the last surface, the point where the ray leaves this surface is already known.
-    fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
-        let SpecularSurface { patch, .. } = element;
+    fn off_last(&self, element: &PathSurface, last: &LegRay) -> Option<LegRay> {
+        let PathSurface { patch, .. } = element;
         let back = -last.direction;
         if self.plane.patch.is_some() && !self.plane.is_arriving() {
-            let normal = patch.gradient(patch.frame.to_local(last.point));
-            let normal = patch.frame.vector_to_world(normal.try_normalize()?);
-            return element.turned(back, last.point, normal);
+            let arriving = LegRay {
+                direction: back,
+                ..*last
+            };
+            return element.turned(&arriving, last.point);
         }
         element.follow(&LegRay::back(patch, last.point, last.direction))
     }
 }
 
-impl SpecularSurface {
+impl PathSurface {
     /// Returns the factor by which dx dy du dv / (1 + u² + v²)² increases when a ray is followed
     /// backward through the surface. `before` is the ray on the light's side, and `after` is the
     /// direction on the plane's side.
-    fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
+    fn spread(&self, before: &LegRay, after: DVec3) -> Option<f64> {
         let frame = &self.patch.frame;
-        match self.event {
+        Some(match self.event()? {
             Specular::Mirror => 1.0,
             Specular::Refraction { front, back } => {
-                let normal = self.patch.gradient(frame.to_local(before.point));
-                let from_front = frame.vector_to_local(before.direction).dot(normal) > 0.0;
+                let from_front = before.direction.dot(normal(&self.patch, before.point)?) > 0.0;
                 let ratio = if from_front {
                     front / back
                 } else {
@@ -93,6 +96,6 @@ impl SpecularSurface {
             Specular::ThinLens { .. } => {
                 (after.dot(frame.d) / before.direction.dot(frame.d)).powi(4)
             }
-        }
+        })
     }
 }

@@ -1,8 +1,8 @@
 //! The central ray and its intersections with the surfaces.
 
-use super::{SpecularSurface, SpecularSystem};
 use crate::geometry::{Matrix, Media};
 use crate::obstacle::LegRay;
+use crate::path::{PathSurface, PathSystem};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
@@ -62,23 +62,23 @@ impl Incidence {
 
 /// The central ray at an element.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CentralHit {
+pub(crate) struct CentralHit {
     /// The frame of the leg that arrives at the element, with its origin at the hit point.
-    pub(super) arriving: Frame,
+    pub(crate) arriving: Frame,
     /// The frame of the leg that leaves the element.
-    pub(super) leaving: Frame,
+    pub(crate) leaving: Frame,
     /// Length of the leg that arrives at the element, in metres.
     pub(super) distance: f64,
-    pub(super) incidence: Incidence,
+    pub(crate) incidence: Incidence,
 }
 
-impl SpecularSystem {
+impl PathSystem {
     /// Returns the hits of the central ray. Returns `None` if the ray misses an element or does
     /// not continue from it.
-    pub(super) fn hits(&self) -> Option<Vec<CentralHit>> {
+    pub(crate) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
         let mut hits = Vec::new();
-        for element in &self.elements {
+        for element in self.before_plane() {
             let ray = LegRay {
                 point: frame.origin,
                 direction: frame.d,
@@ -98,11 +98,11 @@ impl SpecularSystem {
     }
 }
 
-impl SpecularSurface {
+impl PathSurface {
     /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); at other
     /// elements the frame is turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
-        if !matches!(self.event, Specular::Mirror) {
+        if self.event() != Some(Specular::Mirror) {
             return arriving.turned_to(direction);
         }
         let mirrored = |v: DVec3| v - normal * (2.0 * v.dot(normal));
@@ -118,7 +118,7 @@ impl SpecularSurface {
     /// Returns the refractive indices before and after a refraction, for light along the D of the
     /// incidence's frame.
     pub(super) fn media(&self, incidence: &Incidence) -> Option<Media> {
-        let Specular::Refraction { front, back } = self.event else {
+        let Some(Specular::Refraction { front, back }) = self.event() else {
             return None;
         };
         let from_front = self.patch.frame.d.dot(incidence.n) > 0.0;

@@ -1,9 +1,11 @@
 //! The first-order chain of a specular system: the affine maps along its central ray.
 
 use super::central::{CentralHit, Incidence};
-use super::{Plane, SpecularSurface, SpecularSystem};
 use crate::geometry::{AffineMap, Edition, Matrix, SpectrumMap};
-use crate::model::Observed;
+use crate::obstacle::LegRay;
+use crate::path::Observed;
+use crate::path::{PathSurface, PathSystem};
+use crate::plane::Plane;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
@@ -26,6 +28,8 @@ pub struct AffineChain {
     /// plane, one distance is for rays in this plane, and the other distance is for rays
     /// perpendicular to this plane.
     pub foci: Vec<f64>,
+    /// The length of the first leg, in metres.
+    pub(crate) first_leg: f64,
 }
 
 /// Derives the chain from the distances, angles and curvatures of the geometry along the central
@@ -35,7 +39,7 @@ pub struct AffineChain {
 /// The editions differ in the steps for incidence, curvature and outgoing angle. They do not differ
 /// for refraction and lenses, which the paper does not treat.
 #[must_use]
-pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
+pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
     let hits = system.hits()?;
     let mut walk = Walk {
@@ -45,20 +49,20 @@ pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineCh
         frame: Frame::IDENTITY,
         at: "light".into(),
     };
-    let mut layers = system.layers.clone();
+    let elements = system.before_plane();
     let on_last = plane.orientation != Orientation::Orthogonal && !plane.is_arriving();
-    let is_lens = |element: &SpecularSurface| matches!(element.event, Specular::ThinLens { .. });
-    if on_last && system.elements.last().is_some_and(is_lens) {
+    let is_lens =
+        |element: &PathSurface| matches!(element.event(), Some(Specular::ThinLens { .. }));
+    if on_last && elements.last().is_some_and(is_lens) {
         return None;
     }
-    let mut travelled = 0.0;
+    let first_leg = match hits.first() {
+        Some(hit) => hit.distance,
+        None => plane.along(&LegRay::new([0.0; 4]))?,
+    };
+    let mut travelled = walk.cross(system, first_leg);
     let mut foci = Vec::new();
-    for (i, (element, hit)) in system.elements.iter().zip(&hits).enumerate() {
-        for (distance, mask) in layers.drain(..) {
-            walk.travel(distance - travelled, "mask");
-            walk.steps.push(words::mask("", &mask));
-            travelled = distance;
-        }
+    for (i, (element, hit)) in elements.iter().zip(&hits).enumerate() {
         walk.travel(hit.distance - travelled, &element.name);
         travelled = 0.0;
         let ends_here = on_last && i + 1 == hits.len();
@@ -69,11 +73,6 @@ pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineCh
         } else {
             walk = across;
         }
-    }
-    for (distance, mask) in layers {
-        walk.travel(distance - travelled, "mask");
-        walk.steps.push(words::mask("", &mask));
-        travelled = distance;
     }
     if !on_last {
         let to = plane.frame.origin - walk.frame.origin;
@@ -95,6 +94,7 @@ pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineCh
         maps: walk.maps,
         steps: walk.steps,
         foci,
+        first_leg,
     })
 }
 
@@ -130,6 +130,17 @@ impl Walk {
         self.at = to.into();
     }
 
+    /// Appends the steps through the masks of the first leg, and returns the distance of the last.
+    fn cross(&mut self, system: &PathSystem, first_leg: f64) -> f64 {
+        let mut travelled = 0.0;
+        for (distance, mask) in system.masks.iter().filter(|(at, _)| *at < first_leg) {
+            self.travel(distance - travelled, "mask");
+            self.steps.push(words::mask("", mask));
+            travelled = *distance;
+        }
+        travelled
+    }
+
     fn turn(&mut self, angle: f64, into: &str) {
         // A rotation that is only a rounding error is skipped.
         if angle.abs() > 1e-12 {
@@ -141,8 +152,8 @@ impl Walk {
     }
 
     /// Appends the steps from a surface to the frame of the leg that leaves it.
-    fn after(mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<Self> {
-        if let Specular::ThinLens { focal_length } = element.event {
+    fn after(mut self, element: &PathSurface, hit: &CentralHit) -> Option<Self> {
+        if let Some(Specular::ThinLens { focal_length }) = element.event() {
             let map = lens(&element.patch.frame, hit, focal_length)?;
             let name = &element.name;
             let f = number(focal_length);
@@ -161,7 +172,7 @@ impl Walk {
         self.back(shape, theta1);
         let Incidence { n, t, b, .. } = hit.incidence;
         let (sin, cos) = libm::sincos(theta1);
-        let x = if let Specular::Mirror = element.event {
+        let x = if element.event() == Some(Specular::Mirror) {
             let words = format!("map  outgoing angle {}", degrees(theta1));
             self.step(&self.print.outgoing_4d(theta1), words);
             t * cos - n * sin
@@ -183,7 +194,7 @@ impl Walk {
     /// Appends the steps onto a surface and into its local normals, and the step of the event at
     /// the surface. Returns the surface's shape operator, and the longitude of the central ray
     /// after the event (for refracted light, directions remain flipped).
-    fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
+    fn event(&mut self, element: &PathSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
         self.turn(incidence.turn, "the plane of incidence");
@@ -232,7 +243,7 @@ impl Walk {
     /// Appends the steps to a plane on the surface of the last element, for light that leaves it.
     fn leaving_surface(
         &mut self,
-        element: &SpecularSurface,
+        element: &PathSurface,
         hit: &CentralHit,
         plane: &Plane,
     ) -> Option<()> {

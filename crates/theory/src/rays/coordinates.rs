@@ -1,13 +1,21 @@
 //! Conversion between rays and the coordinates of a plane.
 
-use super::Plane;
 use crate::obstacle::LegRay;
 use crate::obstacle::ROUNDING;
+use crate::plane::Plane;
 use etendue_field::{Frame, Orientation, Patch, Quantity, Side, TwoPlane};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
+    /// Returns the coordinates at the plane of a ray that leaves a point along a unit vector.
+    /// Returns `None` if the ray misses.
+    #[must_use]
+    pub fn arrival(&self, point: DVec3, direction: DVec3) -> Option<[f64; 4]> {
+        let (coordinates, _) = self.coordinates(&LegRay { point, direction })?;
+        Some(coordinates)
+    }
+
     /// Returns the coordinates at the plane of a ray on its last leg, and the factor that converts
     /// the ray's flux to the recorded quantity in ray space. Returns `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {

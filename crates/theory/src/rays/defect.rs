@@ -1,8 +1,7 @@
 //! Checks whether the maps of a first-order chain match the real geometry.
 
-use super::SpecularSystem;
 use crate::geometry::SpectrumMap;
-use crate::model::Observed;
+use crate::path::Observed;
 use etendue_field::Window;
 
 /// Returns the error of a chain of affine maps in the limit of a small neighbourhood of the central
@@ -16,11 +15,7 @@ use etendue_field::Window;
 ///
 /// Returns `None` if the central ray does not arrive.
 #[must_use]
-pub fn defect(
-    view: &Observed<SpecularSystem>,
-    map: &SpectrumMap<4>,
-    window: &Window,
-) -> Option<f64> {
+pub fn defect(view: &Observed, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
     let Observed { system, plane } = view;
     let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
@@ -31,7 +26,7 @@ pub fn defect(
 /// Returns the contribution of the chain's factor to [`defect`]. It is the radiance that the chain
 /// predicts for the central ray, divided by the actual radiance, minus 1.
 #[must_use]
-pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
+pub fn radiance_defect(view: &Observed, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
     // Per unit of ray space at the light, the central ray carries a flux equal to its radiance, so
     // `per_flux` is the ratio of radiance at the plane to radiance at the light.

@@ -9,11 +9,13 @@
 //! all four coordinates of rays are therefore sampled in the window, and the rays are followed back
 //! through the exact geometry.
 
+use super::AT_LIGHT;
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
-use super::{AT_LIGHT, Plane, SpecularSystem};
 use crate::geometry::{AffineMap, Matrix};
 use crate::nets::{DIMENSIONS, LinearDensity, Target};
+use crate::path::PathSystem;
+use crate::plane::Plane;
 use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
@@ -95,11 +97,11 @@ enum By {
 impl<'a> Outer<'a> {
     /// Returns the density of directions towards an environment, or `None` if no part of the
     /// environment emits light.
-    fn new(system: &'a SpecularSystem, plane: Option<&Plane>) -> Option<Self> {
+    fn new(system: &'a PathSystem, plane: Option<&Plane>) -> Option<Self> {
         Some(match &system.light {
             Light::Area { shape, .. } => Self::Shape(*shape),
             Light::Environment { environment } => {
-                let met = plane.filter(|plane| plane.is_arriving() && system.elements.is_empty());
+                let met = plane.filter(|plane| plane.is_arriving() && system.visited == 0);
                 let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
                 Self::Sky(environment, Box::new(SkyDensity::new(environment, normal)?))
             }
@@ -135,7 +137,7 @@ impl<'a> RaySampler<'a> {
         reason = "the coordinates by which each kind of light is aimed, side by side"
     )]
     pub(super) fn new(
-        (system, plane): (&'a SpecularSystem, Option<&Plane>),
+        (system, plane): (&'a PathSystem, Option<&Plane>),
         window: &Window,
         (center, jacobian): &([f64; 4], Matrix<4>),
         strategy: RayStrategy,
@@ -162,7 +164,7 @@ impl<'a> RaySampler<'a> {
         let by = match strategy {
             RayStrategy::Picture => By::Picture(system.picture_densities()?),
             RayStrategy::Positions => match (&outer, plane) {
-                (Outer::Sky(..), Some(plane)) if system.elements.is_empty() => By::Straight {
+                (Outer::Sky(..), Some(plane)) if system.visited == 0 => By::Straight {
                     positions: Box::new(
                         [window.x, window.y].map(|profile| LinearDensity::of(&profile)),
                     ),

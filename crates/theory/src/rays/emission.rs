@@ -1,7 +1,7 @@
 //! The emission of a light.
 
-use super::SpecularSystem;
 use crate::nets::LinearDensity;
+use crate::path::PathSystem;
 use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -29,7 +29,7 @@ impl EmissionMeasure {
     }
 }
 
-impl SpecularSystem {
+impl PathSystem {
     pub(super) fn emission(&self) -> EmissionMeasure {
         let image = self.light.image();
         let inner = if self.light.is_distant() {
@@ -45,7 +45,7 @@ impl SpecularSystem {
                 cycles[grating.axis] += grating.frequency.abs();
             }
         }
-        for (distance, mask) in &self.layers {
+        for (distance, mask) in &self.masks {
             if let Some(grating) = mask.grating() {
                 let per_unit = if inner[0] == 0 { 1.0 } else { *distance };
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;

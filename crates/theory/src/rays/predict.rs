@@ -3,16 +3,16 @@
 use super::draw::{RaySampler, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use super::{Plane, SpecularSystem};
 use crate::geometry::{AffineMap, SpectrumMap};
-use crate::mask::Masks;
-use crate::model::{Observed, Over, ShiftedModels};
-use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
+use crate::model::{Over, ShiftedModels};
+use crate::nets::{self, DIMENSIONS, Integrand, NetPoints, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
-use crate::obstacle::PreparedObstacles;
+use crate::path::{Observed, PathSystem, PreparedPath};
+use crate::plane::Plane;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The budget of rays in nets if no projection picture and no moments are requested.
 const NO_PICTURES: RayBudget = RayBudget::new(0.0, f64::INFINITY);
@@ -28,17 +28,21 @@ const FOR_PICTURES: f64 = 1e6;
 /// differences between two predictions from the same sampled rays, so the derivatives are accurate
 /// to about a per cent. The result is bitwise identical on any number of threads.
 pub(crate) fn predict(
-    view: &Observed<SpecularSystem>,
-    moved: &[ShiftedModels<Observed<SpecularSystem>>],
+    view: &Observed,
+    moved: &[ShiftedModels<Observed>],
     over: Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
     let Observed { system, plane } = view;
     let observed = (system, Some(plane));
-    let masks = Masks::new(&system.layers, &system.obstacles);
-    let field = exact_field(view, &masks);
-    let way = neighbourhood(system, plane)
-        .and_then(|lands| Some((lands, best(&field, observed, &lands, over, budget)?)));
+    let path = PreparedPath::new(system);
+    let field = exact_field(view, &path);
+    let way = neighbourhood(system, plane).and_then(|lands| {
+        Some((
+            lands,
+            best(&field, observed, &lands, (over.0, over.1), budget)?,
+        ))
+    });
     let of_pictures = RayBudget::new(budget.nodes.min(FOR_PICTURES), 0.0);
     let budgets = [budget, of_pictures];
     let found = summed(&field, observed, way, over, budgets);
@@ -50,27 +54,68 @@ pub(crate) fn predict(
 
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
-    view: &Observed<SpecularSystem>,
+    view: &Observed,
     over: Over<'_>,
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
     let Observed { system, plane } = view;
     let observed = (system, Some(plane));
-    let masks = Masks::new(&system.layers, &system.obstacles);
-    let field = exact_field(view, &masks);
+    let path = PreparedPath::new(system);
+    let field = exact_field(view, &path);
     let draw = neighbourhood(system, plane).and_then(|lands| {
-        let strategy = best(&field, observed, &lands, over, budget)?;
+        let strategy = best(&field, observed, &lands, (over.0, over.1), budget)?;
         RaySampler::new(observed, over.0, &lands, strategy)
     });
     if let Some(draw) = draw {
-        let drawn = SampledField {
-            field: Box::new(field),
-            draw: &draw,
-            window: over.0,
-        };
+        let drawn = SampledField::new(field, &draw, over.0);
         then(&nets::SampledNets::new(&drawn, budget));
     }
+}
+
+/// A ray of the light that is aimed at a window.
+#[derive(Clone, Copy, Debug)]
+pub struct LightRay {
+    /// Position and slopes (x, y, u, v) at the light.
+    pub start: [f64; 4],
+    /// The coordinates at which the ray arrives at the plane.
+    pub arrival: [f64; 4],
+    /// The light that the ray brings, before the window, in units that are the same for all rays.
+    pub light: f64,
+}
+
+/// Returns at most `most` rays of those that [`Model::predict`](crate::Model::predict) follows
+/// behind specular surfaces. The rays are the same in every run.
+#[must_use]
+pub fn sampled(
+    view: &Observed,
+    (window, grid): (&Window, &SliceGrid),
+    most: usize,
+) -> Vec<LightRay> {
+    let Observed { system, plane } = view;
+    let observed = (system, Some(plane));
+    let path = PreparedPath::new(system);
+    let field = exact_field(view, &path);
+    let budget = RayBudget::new(most as f64, 0.0);
+    let draw = neighbourhood(system, plane).and_then(|lands| {
+        let strategy = best(&field, observed, &lands, (window, grid), budget)?;
+        RaySampler::new(observed, window, &lands, strategy)
+    });
+    let Some(draw) = draw else {
+        return Vec::new();
+    };
+    let mut net = NetPoints::new(0, DIMENSIONS);
+    let ray = |at: [f64; DIMENSIONS]| {
+        let (start, density) = draw.draw(&at)?;
+        let (arrival, light) = field(start)?;
+        let light = light / density;
+        (light > 0.0 && light.is_finite()).then_some(LightRay {
+            start,
+            arrival,
+            light,
+        })
+    };
+    (0..most).filter_map(|_| ray(net.point())).collect()
 }
 
 /// Returns the prediction of a first-order chain over the same rays. [`chain`](super::chain())
@@ -83,7 +128,7 @@ pub(crate) fn with_rays(
 /// surface that is lit by an environment, z contains angles instead of slopes.
 #[must_use]
 pub fn linear(
-    view: &Observed<SpecularSystem>,
+    view: &Observed,
     over: Over<'_>,
     map: &SpectrumMap<4>,
     budget: RayBudget,
@@ -91,16 +136,17 @@ pub fn linear(
     let system = &view.system;
     // In the first-order chain, the map gives the landing point of each ray.
     let mapped = (system, None);
-    let masks = Masks::new(&system.layers, &system.obstacles);
+    let path = PreparedPath::new(system);
     let rays = map.rays();
     let lands = (rays.offset, rays.matrix);
-    let field = linear_field(view, &masks, map);
-    let way = best(&field, mapped, &lands, over, budget).map(|strategy| (lands, strategy));
+    let field = linear_field(view, &path, map);
+    let way =
+        best(&field, mapped, &lands, (over.0, over.1), budget).map(|strategy| (lands, strategy));
     summed(&field, mapped, way, over, [budget, NO_PICTURES])
 }
 
 fn derivatives(
-    moved: &[ShiftedModels<Observed<SpecularSystem>>],
+    moved: &[ShiftedModels<Observed>],
     over: Over<'_>,
     strategy: Option<RayStrategy>,
     predicted: &Predicted,
@@ -110,8 +156,8 @@ fn derivatives(
         return zeros();
     };
     let sides = || moved.iter().flat_map(|moved| &moved.sides);
-    let masks: Vec<_> = sides()
-        .map(|view| Masks::new(&view.system.layers, &view.system.obstacles))
+    let paths: Vec<_> = sides()
+        .map(|view| PreparedPath::new(&view.system))
         .collect();
     let draws: Option<Vec<RaySampler<'_>>> = sides()
         .map(|Observed { system, plane }| {
@@ -121,12 +167,8 @@ fn derivatives(
         .collect();
     let Some(draws) = draws else { return zeros() };
     let sides: Vec<SampledField<'_>> = sides()
-        .zip(masks.iter().zip(&draws))
-        .map(|(view, (masks, draw))| SampledField {
-            field: Box::new(exact_field(view, masks)),
-            draw,
-            window: over.0,
-        })
+        .zip(paths.iter().zip(&draws))
+        .map(|(view, (path, draw))| SampledField::new(exact_field(view, path), draw, over.0))
         .collect();
     let differences = Differences {
         apart: moved.iter().map(|moved| moved.apart).collect(),
@@ -136,47 +178,44 @@ fn derivatives(
     means.into_iter().map(|mean| mean.slices).collect()
 }
 
-fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
+fn exact_field<'a>(view: &'a Observed, path: &'a PreparedPath<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
     // Light starts in the plane z = 0, so parts of a surface behind this plane are dark. On a
     // curved surface no check is needed, because the point where a ray meets the surface is always
     // ahead of the ray's start.
-    let on_first_leg = plane.is_arriving() && system.elements.is_empty() && plane.patch.is_none();
+    let on_first_leg = plane.is_arriving() && system.visited == 0 && plane.patch.is_none();
     move |ray| {
-        let flux = flux(system, masks, ray);
+        let flux = emitted(&system.light, ray);
         if flux <= 0.0 {
             return None;
         }
-        let (ray, mut passes) = system.follow_past(&masks.obstacles, ray)?;
-        let last = system.elements.len();
-        passes *= masks.obstacles.passes(last, &ray, plane.along(&ray)?);
+        let (ray, mut passes) = path.follow(ray)?;
+        passes *= path.leaves(&ray, plane.along(&ray)?);
         let (z, per_flux) = plane.coordinates(&ray)?;
         let lit = !on_first_leg || plane.frame.to_world(DVec3::new(z[0], z[1], 0.0)).z > 0.0;
-        (lit && passes > 0.0).then_some((z, passes * flux * per_flux))
+        lit.then_some((z, passes * flux * per_flux))
     }
 }
 
 fn linear_field<'a>(
-    view: &'a Observed<SpecularSystem>,
-    masks: &'a Masks<'a>,
+    view: &'a Observed,
+    path: &'a PreparedPath<'a>,
     map: &'a SpectrumMap<4>,
 ) -> impl RayField + 'a {
     let Observed { system, plane } = view;
     let rays = map.rays();
     let legs = AffineLeg::all(view);
     let is_sky = matches!(system.light, Light::Environment { .. });
-    let by_angle = is_sky && plane.is_arriving() && system.elements.is_empty();
+    let by_angle = is_sky && plane.is_arriving() && system.visited == 0;
     let distance = plane.frame.origin.z;
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
-        let flux = flux(system, masks, ray);
+        let flux = emitted(&system.light, ray);
         if flux <= 0.0 {
             return None;
         }
         let legs = legs.iter().enumerate();
-        let passes: f64 = legs
-            .map(|(i, leg)| leg.passes(&masks.obstacles, i, ray))
-            .product();
+        let passes: f64 = legs.map(|(i, leg)| leg.passes(path, i, ray)).product();
         let radiance = passes * flux * (1.0 + u * u + v * v).powi(2);
         let (ray, per_slope) = if by_angle {
             angles(ray, distance)
@@ -217,10 +256,12 @@ struct AffineLeg {
 }
 
 impl AffineLeg {
-    /// Returns the legs on which obstacles may stand, or no legs if there are no obstacles.
-    fn all(view: &Observed<SpecularSystem>) -> Vec<Self> {
+    /// Returns the legs on which light may be stopped, or no legs if there are neither masks nor
+    /// obstacles.
+    fn all(view: &Observed) -> Vec<Self> {
         let Observed { system, plane } = view;
-        let Some(hits) = system.hits().filter(|_| !system.obstacles.is_empty()) else {
+        let is_open = system.masks.is_empty() && system.obstacles.is_empty();
+        let Some(hits) = system.hits().filter(|_| !is_open) else {
             return Vec::new();
         };
         let starts = std::iter::once(Frame::IDENTITY).chain(hits.iter().map(|hit| hit.leaving));
@@ -233,7 +274,7 @@ impl AffineLeg {
                 Some(hit) => hit.distance,
                 None => plane.along(&ray)?,
             };
-            let before = &system.elements[..number];
+            let before = &system.surfaces[..number];
             let map = AffineMap::touching(|emission| {
                 let start = LegRay::new(emission);
                 let ray = before
@@ -246,23 +287,17 @@ impl AffineLeg {
         starts.enumerate().filter_map(leg).collect()
     }
 
-    /// Returns the fraction of a ray's light that passes the obstacles on this leg; `number` is
-    /// the index of the leg.
-    fn passes(&self, obstacles: &PreparedObstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
+    /// Returns the fraction of a ray's light that passes masks and obstacles on this leg; `number`
+    /// is the index of the leg.
+    fn passes(&self, path: &PreparedPath<'_>, number: usize, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = self.map.apply(ray);
         let along = DVec3::new(u, v, 1.0);
         let ray = LegRay {
             point: self.frame.to_world(DVec3::new(x, y, 0.0)),
             direction: self.frame.vector_to_world(along.normalize()),
         };
-        obstacles.passes(number, &ray, self.length * along.length())
+        path.passes_beside(number, &ray, self.length * along.length())
     }
-}
-
-/// Returns the flux of a ray behind the masks, per unit of the emission's coordinates.
-fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
-    let [x, y, u, v] = ray;
-    emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
 
 /// The grid for nets that compute only projection pictures and moments, because slices are
@@ -279,7 +314,7 @@ const NO_FREQUENCY: FrequencyAxis = FrequencyAxis {
 
 fn summed(
     field: &impl RayField,
-    observed: (&SpecularSystem, Option<&Plane>),
+    observed: (&PathSystem, Option<&Plane>),
     way: Option<(Neighbourhood, RayStrategy)>,
     (window, grid, picture): Over<'_>,
     [of_slices, of_pictures]: [RayBudget; 2],
@@ -290,33 +325,32 @@ fn summed(
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
         return Predicted::dark(grid, picture);
     };
-    let drawn = SampledField {
-        field: Box::new(field),
-        draw: &draw,
-        window,
-    };
-    let has_edges = |(_, mask): &(f64, Mask)| !matches!(mask, Mask::Grating(_));
-    let emission = system.emission();
-    let is_cut = system.layers.iter().any(has_edges) || !system.obstacles.is_empty();
-    let is_smooth = !system.light.has_extent() && !is_cut;
+    let drawn = SampledField::new(field, &draw, window);
+    let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
+    let is_grating = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Grating(_));
+    let is_open = system.masks.iter().all(is_grating) && system.obstacles.is_empty();
+    if system.light.has_extent() || !is_open {
+        return by_nets(grid, of_slices);
+    }
+    let pictures = by_nets(&NO_FREQUENCIES, of_pictures);
+    // A surface that stops light leaves an edge, which a quadrature rule may miss.
+    if drawn.stops.load(Ordering::Relaxed) {
+        return by_nets(grid, of_slices);
+    }
     let finder = Finder {
         field,
         window,
-        emission,
+        emission: system.emission(),
         neighbourhood: lands,
     };
-    let by_rule = is_smooth
-        .then(|| finder.slices(grid, nets::work_of_nets(grid, of_slices).steps))
-        .flatten();
+    let by_rule = finder.slices(grid, nets::work_of_nets(grid, of_slices).steps);
     // If a quadrature rule finds no light, the window may still contain light, so nets are used.
-    let by_rule = by_rule.filter(|(slices, _)| !slices.is_dark());
-    let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
-    match by_rule {
+    match by_rule.filter(|(slices, _)| !slices.is_dark()) {
         Some((slices, error)) => Predicted {
             slices,
             replicates: Vec::new(),
             error: Some(error),
-            ..by_nets(&NO_FREQUENCIES, of_pictures)
+            ..pictures
         },
         None => by_nets(grid, of_slices),
     }
@@ -325,18 +359,14 @@ fn summed(
 /// Returns the sampling strategy that has the smallest error in a trial.
 fn best(
     field: &impl RayField,
-    observed: (&SpecularSystem, Option<&Plane>),
+    observed: (&PathSystem, Option<&Plane>),
     lands: &Neighbourhood,
-    (window, grid, _): Over<'_>,
+    (window, grid): (&Window, &SliceGrid),
     budget: RayBudget,
 ) -> Option<RayStrategy> {
     let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
         let draw = RaySampler::new(observed, window, lands, strategy)?;
-        let drawn = SampledField {
-            field: Box::new(field),
-            draw: &draw,
-            window,
-        };
+        let drawn = SampledField::new(field, &draw, window);
         Some((nets::trial(&drawn, (window, grid), budget), strategy))
     });
     let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -348,14 +378,28 @@ struct SampledField<'a> {
     field: Box<dyn RayField + 'a>,
     draw: &'a RaySampler<'a>,
     window: &'a Window,
+    /// Whether a ray towards the window has been stopped.
+    stops: AtomicBool,
 }
 
-impl SampledField<'_> {
+impl<'a> SampledField<'a> {
+    fn new(field: impl RayField + 'a, draw: &'a RaySampler<'a>, window: &'a Window) -> Self {
+        Self {
+            field: Box::new(field),
+            draw,
+            window,
+            stops: AtomicBool::new(false),
+        }
+    }
+
     fn node(&self, at: &[f64; DIMENSIONS]) -> RayNode {
         let arrives = self.draw.draw(at).and_then(|(ray, density)| {
             let (z, weight) = (self.field)(ray)?;
             let [x, y, u, v] = z;
             let seen = self.window.value(&TwoPlane { x, y, u, v });
+            if weight == 0.0 && seen > 0.0 {
+                self.stops.store(true, Ordering::Relaxed);
+            }
             let weight = weight * seen / density;
             weight.is_finite().then_some(RayNode { z, weight })
         });

@@ -1,9 +1,10 @@
 //! Searches the emission's inner coordinates for the region whose rays land in a window.
 
 use super::emission::EmissionMeasure;
-use super::{Plane, SpecularSystem};
 use crate::geometry::Matrix;
 use crate::nets::RayNode;
+use crate::path::PathSystem;
+use crate::plane::Plane;
 use etendue_field::{TwoPlane, Window};
 
 /// A box in two coordinates, given by the lowest and highest value of each coordinate.
@@ -44,7 +45,7 @@ pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// Returns the neighbourhood from exact rays without masks, or `None` if the central ray or one of
 /// its neighbours does not arrive.
-pub(super) fn neighbourhood(system: &SpecularSystem, plane: &Plane) -> Option<Neighbourhood> {
+pub(super) fn neighbourhood(system: &PathSystem, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
     let mut jacobian = [[0.0; 4]; 4];

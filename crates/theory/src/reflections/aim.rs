@@ -6,11 +6,10 @@
 //! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
 //! first order.
 
-use super::ReflectionSystem;
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
-use crate::model::Observed;
+use crate::path::{Observed, PathSystem};
 use etendue_field::{Frame, Light, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -37,11 +36,7 @@ pub(super) enum DirectionCoordinates {
 impl DirectionCoordinates {
     /// Builds the coordinates of the leg with the given index; leg 0 begins at the light, and every
     /// other leg at a scatterer. Rays of the last leg are aimed by angles.
-    pub(super) fn new(
-        system: &ReflectionSystem,
-        scatterers: &[ScatteringSurface],
-        leg: usize,
-    ) -> Self {
+    pub(super) fn new(system: &PathSystem, scatterers: &[ScatteringSurface], leg: usize) -> Self {
         let from = leg.checked_sub(1).map(|before| &scatterers[before]);
         let first = from.map_or(0, |from| from.number + 1);
         let to = scatterers.get(leg);
@@ -68,10 +63,7 @@ impl DirectionCoordinates {
     /// Returns positions on the plane or on its surface, for the leg from the last scatterer.
     /// Returns `None` if the leg does not run straight to the plane, or if the plane cuts the
     /// surface at which the leg begins.
-    pub(super) fn at_plane(
-        view: &Observed<ReflectionSystem>,
-        scatterers: &[ScatteringSurface],
-    ) -> Option<Self> {
+    pub(super) fn at_plane(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Self> {
         let Observed { system, plane } = view;
         let from = scatterers.last()?.number;
         // A plane across the leg also counts light from parts of the surface beyond the plane. No

@@ -1,10 +1,9 @@
 //! The first-order chain, which consists of affine maps between scattering surfaces and the lobes
 //! of these surfaces.
 
-use super::{Interaction, PathSurface, ReflectionSystem};
 use crate::geometry::{AffineMap, Matrix};
-use crate::model::Observed;
-use crate::obstacle::LegRay;
+use crate::obstacle::{LegRay, normal};
+use crate::path::{Interaction, Observed, PathSurface};
 use crate::rays::Incidence;
 use crate::scattering::{local, reflection};
 use crate::words::{self, degrees};
@@ -49,7 +48,7 @@ pub struct ScatteringSurface {
 ///
 /// The maps of the chain are the derivatives of the exact rays.
 #[must_use]
-pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
+pub fn chain(view: &Observed) -> Option<ReflectionChain> {
     let scatterers = scatterers(view)?;
     let maps = (0..=scatterers.len()).map(|leg| map(view, &scatterers, leg));
     Some(ReflectionChain {
@@ -63,7 +62,7 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
 /// rays, in metres or radians, or as a ratio of these. The difference is zero for the chain that
 /// [`chain`] returns.
 #[must_use]
-pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
+pub fn defect(view: &Observed, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
     let pairs = tried.maps.iter().zip(&traced.maps);
     Some(pairs.fold(0.0, |most, (a, b)| a.apart(b, &[1.0; 4]).max(most)))
@@ -82,9 +81,9 @@ impl ReflectionChain {
     }
 }
 
-fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface>> {
+fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
     let Observed { system, plane } = view;
-    let visited = &system.surfaces[..system.visited];
+    let visited = system.before_plane();
     let mut from = DVec3::ZERO;
     let mut found = Vec::new();
     for (number, surface) in visited.iter().enumerate() {
@@ -120,11 +119,7 @@ fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface
 }
 
 /// Returns the map from the light or a scatterer to the next scatterer or the plane.
-fn map(
-    view: &Observed<ReflectionSystem>,
-    scatterers: &[ScatteringSurface],
-    leg: usize,
-) -> Option<AffineMap<4>> {
+fn map(view: &Observed, scatterers: &[ScatteringSurface], leg: usize) -> Option<AffineMap<4>> {
     let Observed { system, plane } = view;
     let from = leg.checked_sub(1).map(|before| &scatterers[before]);
     let first = from.map_or(0, |from| from.number + 1);
@@ -136,26 +131,19 @@ fn map(
             Some(from) => from.ray(&system.surfaces[from.number], z)?,
         };
         let specular = &system.surfaces[first..last];
-        let ray = specular.iter().try_fold(start, |ray, surface| {
-            surface.turned(&ray, met(surface, &ray)?)
-        })?;
+        let ray = specular
+            .iter()
+            .try_fold(start, |ray, surface| surface.follow(&ray))?;
         match to {
             None => Some(plane.coordinates(&ray)?.0),
             Some(to) => {
                 let surface = &system.surfaces[to.number];
-                let point = met(surface, &ray)?;
+                let point = surface.met(&ray)?;
                 let normal = surface.lit_side(point, ray.direction)?;
                 Some(local(&to.frame, point, normal, -ray.direction))
             }
         }
     })
-}
-
-/// Returns the first point where a ray meets a surface.
-fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
-    let start = crate::obstacle::ROUNDING * ray.point.length();
-    let t = surface.first(ray, start)?;
-    Some(ray.point + t * ray.direction)
 }
 
 impl ScatteringSurface {
@@ -182,19 +170,18 @@ pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> D
     frame.turned_to(normal).vector_to_world(away)
 }
 
-fn steps(
-    view: &Observed<ReflectionSystem>,
-    scatterers: &[ScatteringSurface],
-) -> Option<Vec<String>> {
+fn steps(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Vec<String>> {
     let Observed { system, plane } = view;
-    let mut steps: Vec<String> = system.obstacles.iter().map(words::obstacle).collect();
+    let masks = system.masks.iter().map(|(_, mask)| words::mask("", mask));
+    let obstacles = system.obstacles.iter().map(words::obstacle);
+    let mut steps: Vec<String> = masks.chain(obstacles).collect();
     let (mut at, mut name) = (DVec3::ZERO, "light");
     let mut scatterers = scatterers.iter().peekable();
-    for (number, surface) in system.surfaces[..system.visited].iter().enumerate() {
+    for (number, surface) in system.before_plane().iter().enumerate() {
         let arriving = surface.hit - at;
         steps.push(words::travel(arriving.length(), name, &surface.name));
         let leg = Frame::IDENTITY.turned_to(arriving.normalize());
-        let incidence = Incidence::new(&leg, surface.normal(surface.hit)?);
+        let incidence = Incidence::new(&leg, normal(&surface.patch, surface.hit)?);
         let (angle, to) = (degrees(incidence.theta0), &surface.name);
         steps.push(format!("map  incidence {angle} onto {to}"));
         let shape: Matrix<2> = incidence.shape(&surface.patch, surface.hit);

@@ -6,12 +6,12 @@
 //! sampled by the angles of the lobe, independently of the next surface. This bounds the weights of
 //! all paths.
 
-use super::PathSurface;
 use super::aim::DirectionCoordinates;
 use super::chain::ScatteringSurface;
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use crate::geometry::AffineMap;
-use crate::obstacle::{LegRay, ROUNDING};
+use crate::obstacle::LegRay;
+use crate::path::PathSurface;
 use crate::scattering::local;
 use glam::DVec3;
 
@@ -124,8 +124,7 @@ impl OutgoingDirections<'_> {
             point: self.point,
             direction,
         };
-        let t = self.next?.first(&ray, ROUNDING * self.point.length())?;
-        let at = patch.frame.to_local(self.point + t * direction);
+        let at = patch.frame.to_local(self.next?.met(&ray)?);
         Some([at.x, at.y])
     }
 }

@@ -5,10 +5,9 @@ use super::chain::{ReflectionChain, ScatteringSurface, chain};
 use super::direction::OutgoingDirections;
 use super::guide::{Conditional, Gaussian, HeavyTailedGaussian};
 use super::sky::SkyRays;
-use super::{PathSurface, ReflectionSystem};
-use crate::model::Observed;
 use crate::nets::{DIMENSIONS, RayNode};
-use crate::obstacle::{LegRay, PreparedObstacles, ROUNDING};
+use crate::obstacle::LegRay;
+use crate::path::{Observed, PatchExtent, PathSurface, PreparedPath};
 use crate::rays::{emitted, point_of};
 use crate::scattering::local;
 use etendue_field::{Light, TwoPlane, Window};
@@ -18,9 +17,9 @@ use std::f64::consts::TAU;
 /// Paths of a light field.
 #[derive(Debug)]
 pub(super) struct FieldPaths<'a> {
-    view: &'a Observed<ReflectionSystem>,
+    view: &'a Observed,
     window: &'a Window,
-    obstacles: PreparedObstacles<'a>,
+    occluders: PreparedPath<'a>,
     chain: ReflectionChain,
     start: PathStart<'a>,
     /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
@@ -45,7 +44,7 @@ impl<'a> PathStart<'a> {
     /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
     /// window. `aim` contains the coordinates of the leg from the light.
     fn new(
-        view: &'a Observed<ReflectionSystem>,
+        view: &'a Observed,
         chain: &ReflectionChain,
         guide: &Gaussian<4>,
         aim: DirectionCoordinates,
@@ -90,7 +89,7 @@ struct PathState {
 impl<'a> FieldPaths<'a> {
     /// Returns the paths of a light field; `None` if the chain does not determine a guide. Rays of
     /// the last leg are aimed by angles.
-    pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
+    pub(super) fn new(view: &'a Observed, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
         let mut guide = Gaussian::of_window(window);
@@ -109,7 +108,7 @@ impl<'a> FieldPaths<'a> {
             view,
             window,
             aims,
-            obstacles: PreparedObstacles::new(&view.system.obstacles),
+            occluders: PreparedPath::new(&view.system),
             chain,
             start,
             guides,
@@ -144,7 +143,7 @@ impl<'a> FieldPaths<'a> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
         let mut scatterers = 0;
-        for (leg, surface) in system.surfaces[..system.visited].iter().enumerate() {
+        for (leg, surface) in system.before_plane().iter().enumerate() {
             let point = self.arrive(leg, &mut going)?;
             if surface.scatters() {
                 let r = [at[4 + 2 * scatterers], at[5 + 2 * scatterers]];
@@ -209,31 +208,16 @@ impl<'a> FieldPaths<'a> {
     /// light misses this surface.
     fn arrive(&self, leg: usize, going: &mut PathState) -> Option<DVec3> {
         let PathState { ray, .. } = going;
-        let surfaces = &self.view.system.surfaces;
-        let start = ROUNDING * ray.point.length();
-        let end = surfaces[leg].first(ray, start)?;
-        if self.is_hidden(leg, ray, [start, end * (1.0 - ROUNDING)]) {
-            return None;
-        }
-        let passes = self.obstacles.passes(leg, ray, end * (1.0 - ROUNDING));
+        let end = self.view.system.surfaces[leg].first(ray, ray.start())?;
+        let passes = self.occluders.passes(leg, ray, end);
         going.flux *= passes;
         going.radiance *= passes;
-        let point = ray.point + end * ray.direction;
+        let point = ray.at(end);
         // If a ray meets the surface at two points, the ray counts only if it was aimed at the
         // first point.
         let target = going.target.take();
         let is_second = target.is_some_and(|target| is_beside(target, point, end));
         (passes > 0.0 && !is_second).then_some(point)
-    }
-
-    /// Checks whether a surface of the path, except the surface that ends the leg, occludes a ray
-    /// of the leg.
-    fn is_hidden(&self, leg: usize, ray: &LegRay, [start, end]: [f64; 2]) -> bool {
-        let surfaces = &self.view.system.surfaces;
-        let ends = surfaces.get(leg).map(|surface| surface.patch);
-        let others = surfaces.iter().filter(|other| Some(other.patch) != ends);
-        let mut met = others.flat_map(|other| other.distances(ray, start));
-        met.any(|t| t < end)
     }
 
     /// Samples a direction away from a scatterer, and updates the weight.
@@ -300,19 +284,15 @@ impl<'a> FieldPaths<'a> {
             at,
             target,
         } = going;
-        let Observed { system, plane } = self.view;
-        let start = ROUNDING * ray.point.length();
+        let plane = &self.view.plane;
         let length = plane.along(ray)?;
-        let point = ray.point + length * ray.direction;
-        if target.is_some_and(|target| is_beside(target, point, length)) {
+        if target.is_some_and(|target| is_beside(target, ray.at(length), length)) {
             return None;
         }
-        let leaves = system.visited.checked_sub(1);
-        let again = leaves.is_some_and(|last| system.surfaces[last].first(ray, start).is_some());
-        if again || self.is_hidden(system.visited, ray, [start, length]) {
+        let passes = self.occluders.leaves(ray, length);
+        if passes == 0.0 {
             return None;
         }
-        let passes = self.obstacles.passes(system.visited, ray, length);
         let exact = plane.coordinates(ray).map(|(z, per_flux)| RayNode {
             z,
             weight: passes * flux * per_flux * self.seen(z),
@@ -351,9 +331,11 @@ fn on_surface(
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
     // This is the variance of positions along an axis of a rectangle or a disc.
-    let variance = match surface.outline {
-        Some([x, y]) => (x * x + y * y) / 24.0,
-        None => 0.25 * surface.patch.aperture * surface.patch.aperture,
+    let variance = match surface.extent {
+        PatchExtent::Rectangle([x, y]) => (x * x + y * y) / 24.0,
+        PatchExtent::Whole | PatchExtent::Osculating => {
+            0.25 * surface.patch.aperture * surface.patch.aperture
+        }
     };
     let middle = scatterer.frame.to_local(surface.patch.frame.origin);
     let front = 1.0 / (FRONT * FRONT);

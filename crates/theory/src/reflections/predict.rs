@@ -1,11 +1,11 @@
 //! Predicts the slices of light that several surfaces reflect in turn, by sums over scrambled nets
 //! of paths.
 
-use super::ReflectionSystem;
 use super::aim::DirectionCoordinates;
 use super::path::FieldPaths;
-use crate::model::{Observed, Over, ShiftedModels};
+use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
+use crate::path::Observed;
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
@@ -16,8 +16,8 @@ use etendue_field::Slices;
 /// paths. The derivatives are also such sums. These sums are accurate to about a per cent of their
 /// values.
 pub(crate) fn predict(
-    view: &Observed<ReflectionSystem>,
-    moved: &[ShiftedModels<Observed<ReflectionSystem>>],
+    view: &Observed,
+    moved: &[ShiftedModels<Observed>],
     over: Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
@@ -49,9 +49,17 @@ pub(crate) fn predict(
     }
 }
 
+/// Returns the prediction by paths from the light, also where
+/// [`Model::predict`](crate::Model::predict) follows rays back from the plane. The exact sum and the
+/// chain are then sums over the same paths.
+#[must_use]
+pub fn by_paths(view: &Observed, over: Over<'_>, budget: RayBudget) -> Predicted {
+    predict(view, &[], over, budget)
+}
+
 /// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
 pub(crate) fn with_rays(
-    view: &Observed<ReflectionSystem>,
+    view: &Observed,
     over: Over<'_>,
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
@@ -64,7 +72,7 @@ pub(crate) fn with_rays(
 /// Returns the paths whose last leg is aimed in the better way, at positions or by angles. Angles
 /// are better for narrow slopes, and positions for a narrow window close to a wide surface.
 fn best<'a>(
-    view: &'a Observed<ReflectionSystem>,
+    view: &'a Observed,
     (window, grid, _): Over<'a>,
     budget: RayBudget,
 ) -> Option<FieldPaths<'a>> {
@@ -81,10 +89,7 @@ fn best<'a>(
 }
 
 /// Returns the prediction for the case in which the chain does not lead light to the plane.
-fn dark(
-    moved: &[ShiftedModels<Observed<ReflectionSystem>>],
-    (_, grid, picture): Over<'_>,
-) -> Predicted {
+fn dark(moved: &[ShiftedModels<Observed>], (_, grid, picture): Over<'_>) -> Predicted {
     Predicted {
         derivatives: vec![Slices::zeros(*grid); moved.len()],
         ..Predicted::dark(grid, picture)

@@ -2,33 +2,51 @@
 //! sums.
 
 use super::*;
-use crate::obstacle::ObstacleForm;
-use crate::rays::Plane;
+use crate::model::Over;
+use crate::obstacle::{Obstacle, ObstacleForm};
+use crate::path::{Interaction, PathSurface, PathSystem};
 use crate::testing::window;
-use crate::{Model, Observed, Parameter, Predicted, RayBudget, scattering};
+use crate::{Model, Observed, Parameter, Plane, Predicted, RayBudget};
 use etendue_field::{
     Brdf, Environment, EnvironmentMap, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, LatLong,
-    Lobe, Mask, Orientation, Profile, ProjectionGrid, Rectangle, Shape, SliceGrid,
-    SphericalGaussian, Window,
+    Light, Lobe, Mask, Orientation, Patch, Profile, ProjectionGrid, Rectangle, Reflectance, Shape,
+    SliceGrid, Specular, SphericalGaussian, Window,
 };
+use glam::DVec3;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::Arc;
 
 const BUDGET: RayBudget = RayBudget::new(2e6, 1e-4);
 
-fn predicted<S>(system: &S, plane: &Plane, window: &Window) -> Predicted
-where
-    S: Clone,
-    Observed<S>: Model,
-{
+/// Predicts the light at a plane by paths from the light, for any number of surfaces.
+fn predicted(system: &PathSystem, plane: &Plane, window: &Window) -> Predicted {
     predicted_over(BUDGET, system, plane, window)
 }
 
-fn predicted_over<S>(budget: RayBudget, system: &S, plane: &Plane, window: &Window) -> Predicted
-where
-    S: Clone,
-    Observed<S>: Model,
-{
+fn predicted_over(
+    budget: RayBudget,
+    system: &PathSystem,
+    plane: &Plane,
+    window: &Window,
+) -> Predicted {
+    summed(system, plane, window, |view, over| {
+        predict(view, &[], over, budget)
+    })
+}
+
+/// Predicts the light at a plane behind one surface by rays that start at the plane.
+fn by_plane(system: &PathSystem, plane: &Plane, window: &Window) -> Predicted {
+    summed(system, plane, window, |view, over| {
+        view.predict(&[], over, BUDGET)
+    })
+}
+
+fn summed(
+    system: &PathSystem,
+    plane: &Plane,
+    window: &Window,
+    predict: impl Fn(&Observed, Over<'_>) -> Predicted,
+) -> Predicted {
     let [x, u] = [window.x, window.u].map(|profile| profile.half_width());
     let axis = |half: f64| FrequencyAxis {
         half: 6,
@@ -44,7 +62,7 @@ where
         plane: *plane,
     };
     let picture = ProjectionGrid::new(window, 8);
-    view.predict(&[], (window, &grid, &picture), budget)
+    predict(&view, (window, &grid, &picture))
 }
 
 fn lamp(side: f64) -> Light {
@@ -95,22 +113,7 @@ fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
 }
 
 fn surface(patch: Patch, interaction: Interaction) -> PathSurface {
-    PathSurface {
-        name: "surface".into(),
-        patch,
-        outline: None,
-        hit: patch.frame.origin,
-        interaction,
-    }
-}
-
-fn system(light: Light, surfaces: Vec<PathSurface>) -> ReflectionSystem {
-    ReflectionSystem {
-        light,
-        obstacles: vec![],
-        visited: surfaces.len(),
-        surfaces,
-    }
+    PathSurface::new("surface", patch, interaction)
 }
 
 /// Returns a plane through a point, perpendicular to a ray.
@@ -152,30 +155,11 @@ fn one_surface_is_that_of_scattering() {
                 above: true,
             }],
         };
-        let scattering = scattering::ScatteringSystem {
-            light: light.clone(),
-            layers: vec![(0.5, mask.clone())],
-            obstacles: vec![],
-            name: String::new(),
-            patch,
-            reflectance: reflectance(lobe),
-        };
         let interaction = Interaction::Reflects(Box::new(reflectance(lobe)));
         let is_sky = matches!(light, Light::Environment { .. });
-        let mut reflections = system(light, vec![surface(patch, interaction)]);
-        reflections.obstacles.push(Obstacle {
-            name: "edge".into(),
-            form: ObstacleForm::Mask {
-                from: 0,
-                distance: 0.5,
-                mask,
-            },
-            until: None,
-        });
-        let [one, other] = [
-            predicted(&scattering, &plane, &window),
-            predicted(&reflections, &plane, &window),
-        ];
+        let mut system = PathSystem::new(light, vec![surface(patch, interaction)]);
+        system.masks.push((0.5, mask));
+        let [one, other] = [by_plane, predicted].map(|by| by(&system, &plane, &window));
         // These are the errors of 2·10⁶ paths; the error for a sky is larger, because the sky has a
         // narrow lobe.
         let most = if is_sky { 0.04 } else { 0.02 };
@@ -205,20 +189,9 @@ fn rays_of_a_wide_surface_find_a_narrow_window() {
     let at = DVec3::new(0.5, 0.0, 1.0);
     let in_air = across(at, DVec3::X, DVec3::NEG_Z);
     let window = window(Profile::Hann(1e-4), Profile::Hann(0.15));
-    let by_plane = predicted(
-        &scattering::ScatteringSystem {
-            light: lamp(0.2),
-            layers: vec![],
-            obstacles: vec![],
-            name: String::new(),
-            patch: floor,
-            reflectance: reflectance(Lobe::Lambertian),
-        },
-        &in_air,
-        &window,
-    );
     let diffuse = || Interaction::Reflects(Box::new(reflectance(Lobe::Lambertian)));
-    let mut system = system(lamp(0.2), vec![surface(floor, diffuse())]);
+    let mut system = PathSystem::new(lamp(0.2), vec![surface(floor, diffuse())]);
+    let by_plane = by_plane(&system, &in_air, &window);
     let by_path = predicted(&system, &in_air, &window);
     let off = apart(&by_plane, &by_path);
     assert!(off < CLOSE, "{off}");
@@ -258,23 +231,23 @@ fn flat_mirrors_unfold() {
     let skies = [sky(false, 1.0), sky(false, -1.0)];
     for ([light, mirrored], before) in [([lamp(0.2), lamp(0.2)], before), (skies, wide)] {
         let folded = vec![surface(before, mirror()), gloss_after.clone()];
-        let folded = system(light, folded);
+        let folded = PathSystem::new(light, folded);
         let plane = across(at - 0.5 * z, -z, x);
         let found = predicted(&folded, &plane, &window);
         let straight = surface(patch(2.0 * z, -x - z, 0.0), gloss());
         let plane = across(2.0 * z - 0.5 * x, -x, z);
-        let wanted = predicted(&system(mirrored, vec![straight]), &plane, &window);
+        let wanted = predicted(&PathSystem::new(mirrored, vec![straight]), &plane, &window);
         let off = apart(&found, &wanted);
         assert!(off < CLOSE, "before: {off}");
     }
 
     let first = || surface(patch(z, x - z, 0.0), gloss());
-    let folded = system(
+    let folded = PathSystem::new(
         lamp(0.2),
         vec![first(), surface(patch(at, -x - z, 0.0), mirror())],
     );
     let found = predicted(&folded, &across(at - 0.5 * z, -z, x), &window);
-    let straight = system(lamp(0.2), vec![first()]);
+    let straight = PathSystem::new(lamp(0.2), vec![first()]);
     let wanted = predicted(&straight, &across(at + 0.5 * x, x, -z), &window);
     let off = apart(&found, &wanted);
     assert!(off < CLOSE, "behind: {off}");
@@ -296,7 +269,7 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     let diffuse = |albedo| Interaction::Diffuse { albedo };
     let (wall, floor) = (patch(z, x - z, 0.0), patch(z + x, -x, 0.0));
     let both = vec![surface(wall, diffuse(0.8)), surface(floor, diffuse(0.5))];
-    let system = system(light.clone(), both);
+    let system = PathSystem::new(light.clone(), both);
     let small = 0.002;
     let tiny = window(Profile::Box(small), Profile::Box(small));
     let plane = across(z + 0.9 * x, -x, DVec3::Y);
@@ -346,7 +319,7 @@ fn a_corner_has_no_heavy_paths() {
         surface(floor, gloss),
         surface(wall, Interaction::Diffuse { albedo: 0.8 }),
     ];
-    let system = system(light, both);
+    let system = PathSystem::new(light, both);
     let away = (-x - z).normalize();
     let plane = across(z + 0.1 * x + 0.2 * away, away, DVec3::Y);
     let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
@@ -361,7 +334,7 @@ fn surfaces_and_masks_hide_later_legs() {
     let (x, z) = (DVec3::X, DVec3::Z);
     let diffuse = || Interaction::Diffuse { albedo: 0.5 };
     let (wall, floor) = (patch(z, x - z, 0.0), patch(z + x, -x, 0.0));
-    let mut open = system(
+    let mut open = PathSystem::new(
         lamp(0.2),
         vec![surface(wall, diffuse()), surface(floor, diffuse())],
     );
@@ -391,7 +364,7 @@ fn a_wrong_map_is_a_defect() {
     let first = surface(patch(z, x - z, 0.2), gloss());
     let second = surface(patch(z + x, -x - z, -0.3), gloss());
     let view = Observed {
-        system: system(lamp(0.1), vec![first, second]),
+        system: PathSystem::new(lamp(0.1), vec![first, second]),
         plane: across(z + x - 0.5 * z, -z, x),
     };
     let mut tried = chain(&view).unwrap();

@@ -1,11 +1,12 @@
 //! The first-order chain, which consists of an affine map onto the surface, the lobe, and an affine
 //! map off the surface.
 
-use super::ScatteringSystem;
 use crate::geometry::{AffineMap, Matrix};
-use crate::model::Observed;
 use crate::obstacle::LegRay;
-use crate::rays::{Incidence, Plane};
+use crate::path::Observed;
+use crate::path::PathSystem;
+use crate::plane::Plane;
+use crate::rays::Incidence;
 use crate::words::{self, degrees, number};
 use etendue_field::{
     AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance, Term, Weight,
@@ -46,13 +47,14 @@ pub struct ScatteringChain {
 /// maps equal the corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section
 /// 7), as the tests verify.
 #[must_use]
-pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
+pub fn chain(view: &Observed) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;
     let central = LegRay {
         point: DVec3::ZERO,
         direction: DVec3::Z,
     };
-    let (distance, normal) = central.met(&system.patch)?;
+    let (patch, _) = system.scatterer();
+    let (distance, normal) = central.met(patch)?;
     let arriving = Frame::IDENTITY.travelled(distance);
     let incidence = Incidence::new(&arriving, normal);
     let frame = Frame {
@@ -63,7 +65,7 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     };
     let arrives = |[x, y, u, v]: [f64; 4]| {
         let ray = LegRay::new([x, y, u, v]);
-        let (distance, normal) = ray.met(&system.patch)?;
+        let (distance, normal) = ray.met(patch)?;
         let point = ray.point + ray.direction * distance;
         Some(local(&frame, point, normal, -ray.direction))
     };
@@ -80,7 +82,7 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let off = AffineMap::touching(leaves)?.inverse()?;
     let [.., longitude, latitude] = leaves([0.0; 4])?;
     let outgoing = [longitude, latitude];
-    let curvature = incidence.shape(&system.patch, arriving.origin);
+    let curvature = incidence.shape(patch, arriving.origin);
     let mut steps = steps(system, plane, &incidence, distance, outgoing);
     if plane.quantity == Quantity::DifferentialIrradiance {
         let cosine = match plane.orientation {
@@ -104,7 +106,7 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
 /// Returns the largest difference between the maps of the chain `tried` and the derivatives of the
 /// exact rays. The difference is zero for the chain that [`chain`] returns.
 #[must_use]
-pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
+pub fn defect(view: &Observed, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
     let onto = tried.onto.apart(&traced.onto, &[1.0; 4]);
     Some(onto.max(tried.off.apart(&traced.off, &[1.0; 4])))
@@ -133,13 +135,14 @@ pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> 
 }
 
 fn steps(
-    system: &ScatteringSystem,
+    system: &PathSystem,
     plane: &Plane,
     incidence: &Incidence,
     distance: f64,
     [theta, phi]: [f64; 2],
 ) -> Vec<String> {
-    let name = &system.name;
+    let (patch, reflectance) = system.scatterer();
+    let name = &system.surfaces[0].name;
     let mut steps = Vec::new();
     let mut at = ("light", 0.0);
     let travel = |from: &str, to: &str, d: f64| {
@@ -149,7 +152,7 @@ fn steps(
             number(d)
         )
     };
-    for (next, mask) in &system.layers {
+    for (next, mask) in system.masks.iter().filter(|(at, _)| *at < distance) {
         steps.push(travel(at.0, "mask", next - at.1));
         steps.push(words::mask("", mask));
         at = ("mask", *next);
@@ -159,12 +162,12 @@ fn steps(
         "map  incidence {} onto {name}",
         degrees(incidence.theta0)
     ));
-    let shape = incidence.shape(&system.patch, DVec3::Z * distance);
+    let shape = incidence.shape(patch, DVec3::Z * distance);
     let curved = words::curvature(shape);
     steps.push(format!("map  curvature {curved}"));
     steps.push("multiply  by the cosine, cos⁺ θ cos² φ".to_owned());
     steps.push("map  mirror: ℓ̂(Ωx, −Ωθ)".to_owned());
-    steps.extend(reflection(&system.reflectance));
+    steps.extend(reflection(reflectance));
     steps.extend(system.obstacles.iter().map(words::obstacle));
     if plane.orientation.is_local() {
         return steps;

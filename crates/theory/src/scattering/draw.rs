@@ -6,12 +6,13 @@
 //! the rays are sampled from each, and all rays are weighted by the mixture of both densities (the
 //! balance heuristic, Veach and Guibas 1995).
 
+use super::ScatteringChain;
 use super::brdf::narrowest;
 use super::exact::Leaving;
 use super::incoming::{LightPart, secant};
-use super::{ScatteringChain, ScatteringSystem};
 use crate::geometry::{AffineMap, Matrix, product, times};
 use crate::nets::LinearDensity;
+use crate::path::PathSystem;
 use crate::sky::SkyDensity;
 use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
@@ -50,7 +51,7 @@ impl LightStrategy {
     }
 
     /// Returns this strategy without the choices that have no effect for a system.
-    pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
+    pub(super) fn in_effect(self, system: &PathSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
         let has_center = !matches!(system.light, Light::Environment { .. });
@@ -97,7 +98,7 @@ const BROADENED: f64 = 1.5;
 
 impl PlaneRaySampler {
     pub(super) fn new(
-        system: &ScatteringSystem,
+        system: &PathSystem,
         window: &Window,
         chain: Option<&ScatteringChain>,
         strategy: LightStrategy,
@@ -133,7 +134,7 @@ impl PlaneRaySampler {
 impl Mirrored {
     /// Returns `None` if light comes from all directions, or if the slopes at the plane do not
     /// determine the angles on the surface.
-    fn new(system: &ScatteringSystem, chain: &ScatteringChain) -> Option<Self> {
+    fn new(system: &PathSystem, chain: &ScatteringChain) -> Option<Self> {
         let off = chain.off.inverse()?;
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
@@ -195,7 +196,7 @@ impl Mirrored {
 /// Samples parts of the light.
 #[derive(Clone, Debug)]
 pub(super) struct Lights<'a> {
-    system: &'a ScatteringSystem,
+    system: &'a PathSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
     /// Whether half of the sampled parts of the light follow the lobe.
     by_lobe: bool,
@@ -207,11 +208,7 @@ pub(super) struct Lights<'a> {
 impl<'a> Lights<'a> {
     /// Builds the sampler for a surface. `normal` is the surface's normal at the point that the
     /// central ray hits.
-    pub(super) fn new(
-        system: &'a ScatteringSystem,
-        normal: DVec3,
-        strategy: LightStrategy,
-    ) -> Self {
+    pub(super) fn new(system: &'a PathSystem, normal: DVec3, strategy: LightStrategy) -> Self {
         let sky = match &system.light {
             Light::Environment { environment } => {
                 SkyDensity::new(environment, normal).map(Arc::new)
@@ -222,16 +219,12 @@ impl<'a> Lights<'a> {
     }
 
     /// Builds the sampler for a changed system in the same environment.
-    pub(super) fn of<'b>(
-        &'b self,
-        system: &'b ScatteringSystem,
-        strategy: LightStrategy,
-    ) -> Lights<'b> {
+    pub(super) fn of<'b>(&'b self, system: &'b PathSystem, strategy: LightStrategy) -> Lights<'b> {
         Lights::under(system, self.sky.clone(), strategy)
     }
 
     fn under(
-        system: &'a ScatteringSystem,
+        system: &'a PathSystem,
         sky: Option<Arc<SkyDensity<'a>>>,
         strategy: LightStrategy,
     ) -> Self {
@@ -365,9 +358,10 @@ struct LobeDensity {
 }
 
 impl LobeDensity {
-    fn new(system: &ScatteringSystem, leaving: &Leaving) -> Self {
-        let at = system.patch.frame.to_local(leaving.point);
-        let brdfs = system.reflectance.at(at.x, at.y).weighted();
+    fn new(system: &PathSystem, leaving: &Leaving) -> Self {
+        let (patch, reflectance) = system.scatterer();
+        let at = patch.frame.to_local(leaving.point);
+        let brdfs = reflectance.at(at.x, at.y).weighted();
         let local = Frame::IDENTITY.turned_to(leaving.normal);
         Self {
             wo: local.vector_to_local(leaving.direction),
@@ -401,8 +395,8 @@ impl LobeDensity {
 
 /// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
 /// this width is sampled by the densities of the window and the light.
-fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
-    narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
+fn narrowest_of(system: &PathSystem) -> Option<f64> {
+    narrowest(system.scatterer().1.terms.iter().map(|term| &term.brdf))
 }
 
 /// Returns the distance from the light's axis to the farthest point of a shape.

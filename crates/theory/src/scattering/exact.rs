@@ -1,11 +1,10 @@
 //! The exact radiance of a ray at a plane.
 
-use super::ScatteringSystem;
 use super::brdf;
 use super::incoming::{IncomingLight, LightPart, secant};
-use crate::mask::Masks;
 use crate::obstacle::LegRay;
-use crate::rays::Plane;
+use crate::path::{PathSystem, PreparedPath};
+use crate::plane::Plane;
 use etendue_field::Orientation;
 use glam::DVec3;
 
@@ -19,7 +18,7 @@ pub(super) struct Leaving {
     pub(super) direction: DVec3,
 }
 
-impl ScatteringSystem {
+impl PathSystem {
     /// Returns the point of the surface from which the ray (x, y, u, v) of a plane comes, or
     /// `None` if the ray does not come from the surface.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
@@ -49,20 +48,24 @@ impl ScatteringSystem {
     /// Returns the point where a line leaves through the front of the surface, the normal at this
     /// point, and the direction of the line.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
-        let ray = LegRay::back(&self.patch, at, direction);
-        let (distance, normal) = ray.met(&self.patch)?;
+        let (patch, _) = self.scatterer();
+        let ray = LegRay::back(patch, at, direction);
+        let (distance, normal) = ray.met(patch)?;
         Some((ray.point - direction * distance, normal, direction))
     }
+}
 
+impl PreparedPath<'_> {
     /// Returns the radiance that leaves the surface due to a part of the light, per unit of the
     /// part's measure.
-    pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
+    pub(super) fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
         let Leaving {
             point,
             normal,
             direction,
         } = *leaving;
-        let IncomingLight { slopes, weight } = masks.incoming(&self.light, point, part);
+        let passes = |ray: &LegRay, length| self.reaches(0, ray, length);
+        let IncomingLight { slopes, weight } = self.incoming(point, part, passes);
         let [u, v] = slopes;
         let secant = secant(slopes);
         let wi = DVec3::new(-u, -v, -1.0) / secant;
@@ -70,8 +73,9 @@ impl ScatteringSystem {
         if weight <= 0.0 || cosine <= 0.0 {
             return 0.0;
         }
-        let at = self.patch.frame.to_local(point);
-        let brdf = self.reflectance.at(at.x, at.y);
+        let (patch, reflectance) = self.system.scatterer();
+        let at = patch.frame.to_local(point);
+        let brdf = reflectance.at(at.x, at.y);
         // dω = du dv cos³.
         weight * cosine / secant.powi(3) * brdf::sum(&brdf, normal, wi, direction)
     }

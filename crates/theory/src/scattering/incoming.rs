@@ -1,9 +1,8 @@
 //! The light that is incident on a point of a surface from one part of a light.
 
-use crate::mask::Masks;
 use crate::obstacle::LegRay;
+use crate::path::PreparedPath;
 use crate::rays::emitted;
-use etendue_field::Light;
 use glam::DVec3;
 
 /// A sampled part of the light.
@@ -32,10 +31,16 @@ pub(super) struct IncomingLight {
     pub(super) weight: f64,
 }
 
-impl Masks<'_> {
-    /// Returns the light that a point receives from a part of a light; the point is in the frame
-    /// at the light.
-    pub(super) fn incoming(&self, light: &Light, point: DVec3, part: LightPart) -> IncomingLight {
+impl PreparedPath<'_> {
+    /// Returns the light that a point receives from a part of the light; the point is in the frame
+    /// at the light. `passes` gives the fraction of a ray that arrives, for the ray and its length.
+    pub(super) fn incoming(
+        &self,
+        point: DVec3,
+        part: LightPart,
+        passes: impl Fn(&LegRay, f64) -> f64,
+    ) -> IncomingLight {
+        let light = &self.system.light;
         let DVec3 { x, y, z } = point;
         // The point where the ray leaves the light's plane, and its slopes.
         let ([a, b], [u, v]) = match part {
@@ -54,7 +59,12 @@ impl Masks<'_> {
         };
         // All light starts in the plane z = 0, including light from an environment.
         let passes = if weight > 0.0 && z > 0.0 {
-            self.transmittance(point, slopes) * self.past_obstacles(point, slopes)
+            let along = DVec3::new(u, v, 1.0);
+            let ray = LegRay {
+                point: point - along * z,
+                direction: along.normalize(),
+            };
+            passes(&ray, z * along.length())
         } else {
             0.0
         };
@@ -64,24 +74,6 @@ impl Masks<'_> {
         }
     }
 }
-
-impl Masks<'_> {
-    /// Returns the fraction of the light with slopes (u, v) that passes obstacles before it
-    /// arrives at a point.
-    fn past_obstacles(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
-        let along = DVec3::new(u, v, 1.0);
-        let ray = LegRay {
-            point: point - along * point.z,
-            direction: along.normalize(),
-        };
-        let length = point.z * along.length();
-        self.obstacles.passes(0, &ray, length * (1.0 - ROUNDING))
-    }
-}
-
-/// Relative rounding error of a distance. If an occluder's distance from the point is within this
-/// error, the occluder is ignored.
-const ROUNDING: f64 = 1e-9;
 
 /// Returns 1/cos of the angle between the central ray and a ray with slopes (u, v).
 pub(super) fn secant([u, v]: [f64; 2]) -> f64 {

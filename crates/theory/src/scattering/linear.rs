@@ -1,19 +1,19 @@
 //! The radiance of a ray at a plane in the first-order chain.
 
-use super::ScatteringSystem;
 use super::brdf;
 use super::chain::ScatteringChain;
 use super::incoming::{IncomingLight, LightPart};
 use crate::geometry::{AffineMap, Matrix};
-use crate::mask::Masks;
-use etendue_field::{Brdf, Frame, Lobe};
+use crate::obstacle::LegRay;
+use crate::path::{PathSystem, PreparedPath};
+use etendue_field::{Brdf, Frame, Lobe, Reflectance};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// The first-order chain, prepared for the evaluation of radiance.
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
-    pub(super) system: &'a ScatteringSystem,
+    reflectance: &'a Reflectance,
     chain: &'a ScatteringChain,
     /// The map from the plane to local coordinates of the outgoing direction.
     off: AffineMap<4>,
@@ -28,7 +28,7 @@ pub(super) struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a ScatteringSystem, chain: &'a ScatteringChain) -> Option<Self> {
+    pub(super) fn new(system: &'a PathSystem, chain: &'a ScatteringChain) -> Option<Self> {
         let m = &chain.onto.matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
@@ -38,12 +38,12 @@ impl<'a> Linear<'a> {
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
         Some(Self {
-            system,
+            reflectance: system.scatterer().1,
             chain,
             off: chain.off.inverse()?,
             across,
             angles: [[slope(2, 0), slope(2, 1)], [slope(3, 0), slope(3, 1)]],
-            frame: system.patch.frame.decompose(&chain.frame),
+            frame: system.scatterer().0.frame.decompose(&chain.frame),
         })
     }
 
@@ -59,10 +59,11 @@ impl<'a> Linear<'a> {
     /// Returns the radiance that a part of the light causes along the ray with coordinates z at the
     /// plane, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the
     /// mirror direction about the normal (docs/theory.md (41)).
-    pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
+    pub(super) fn radiance(&self, path: &PreparedPath<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);
-        let IncomingLight { slopes, weight } = masks.incoming(&self.system.light, point, part);
+        let passes = |ray: &LegRay, length| path.passes_beside(0, ray, length);
+        let IncomingLight { slopes, weight } = path.incoming(point, part, passes);
         if weight <= 0.0 {
             return 0.0;
         }
@@ -84,7 +85,7 @@ impl<'a> Linear<'a> {
         let irradiance = weight * per_angle * (a * d - b * c).abs() * cosine;
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
-        let mixture = self.system.reflectance.at(at.x, at.y);
+        let mixture = self.reflectance.at(at.x, at.y);
         let incidence = self.chain.incidence;
         let sum = mixture.weighted().map(|(weight, brdf)| {
             weight * kernel(brdf, incidence, [theta, phi], [to_theta, to_phi])

@@ -1,10 +1,8 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
-//! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
-//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over the
-//! surface. The plane is on the surface or perpendicular to the path of light that leaves the
-//! surface. A system and a plane together are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets. For each ray, the
+//! The only surface that light leaves before the plane has a BRDF, which may vary over the surface.
+//! The plane is on the surface or perpendicular to the path of light that leaves the surface. The
+//! model of such a [path](crate::path) sums rays of the plane over scrambled nets. For each ray, the
 //! model also samples a part of the light that shines on the point where the ray leaves the
 //! surface:
 //!
@@ -24,7 +22,6 @@ mod draw;
 mod exact;
 mod incoming;
 mod linear;
-mod model;
 mod operator;
 mod predict;
 #[cfg(test)]
@@ -39,23 +36,3 @@ pub(crate) use chain::{local, reflection};
 pub(crate) use draw::{bell, bell_density};
 pub(crate) use linear::kernel;
 pub(crate) use predict::{predict, with_rays};
-
-use crate::obstacle::Obstacle;
-use etendue_field::{Light, Mask, Patch, Reflectance};
-
-/// A light and the surface that its central ray meets, in the frame at the light.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ScatteringSystem {
-    /// The light, which emits from the plane z = 0, along Z.
-    pub light: Light,
-    /// Masks between the light and the surface, with their distances from the light, metres.
-    pub layers: Vec<(f64, Mask)>,
-    /// Occluders other than the masks, on the paths before and after the surface.
-    pub obstacles: Vec<Obstacle>,
-    /// The name of the surface, which messages use.
-    pub name: String,
-    /// The shape of the surface, which faces along D of its frame and is black on the other side.
-    pub patch: Patch,
-    /// The reflectance of the surface.
-    pub reflectance: Reflectance,
-}

@@ -1,16 +1,18 @@
 //! Predicts the slices of scattered light by sums over scrambled nets of rays.
 
+use super::ScatteringChain;
 use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
 use super::incoming::LightPart;
 use super::linear::Linear;
-use super::{ScatteringChain, ScatteringSystem};
-use crate::mask::Masks;
-use crate::model::{Observed, Over, ShiftedModels};
+use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
+use crate::path::Observed;
+use crate::path::PathSystem;
+use crate::path::PreparedPath;
+use crate::plane::Plane;
 use crate::predicted::Predicted;
-use crate::rays::Plane;
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
@@ -29,9 +31,9 @@ use glam::DVec3;
 /// the shadows of masks. Therefore points that are lit in only one of the two radiances add noise.
 /// A larger step of the difference reduces this noise.
 pub(crate) fn predict(
-    view: &Observed<ScatteringSystem>,
+    view: &Observed,
     chain: Option<&ScatteringChain>,
-    moved: &[ShiftedModels<Observed<ScatteringSystem>>],
+    moved: &[ShiftedModels<Observed>],
     (window, grid, picture): Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
@@ -50,7 +52,7 @@ pub(crate) fn predict(
 
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
-    view: &Observed<ScatteringSystem>,
+    view: &Observed,
     chain: Option<&ScatteringChain>,
     (window, grid, _): Over<'_>,
     budget: RayBudget,
@@ -64,7 +66,7 @@ pub(crate) fn with_rays(
 
 /// Returns the strategy that has the smallest error for the same computing time.
 fn fastest(
-    view: &Observed<ScatteringSystem>,
+    view: &Observed,
     chain: Option<&ScatteringChain>,
     (window, grid): (&Window, &SliceGrid),
     budget: RayBudget,
@@ -77,7 +79,7 @@ fn fastest(
 
 /// Returns a reduced budget that takes as much time for this system as `budget` takes for an
 /// environment of few lobes.
-fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
+fn affordable(system: &PathSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),
         ..budget
@@ -88,7 +90,7 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
 /// chain may differ from the result of [`chain`](super::chain()).
 #[must_use]
 pub fn compare_chain(
-    view: &Observed<ScatteringSystem>,
+    view: &Observed,
     chain: &ScatteringChain,
     over: Over<'_>,
     budget: RayBudget,
@@ -97,7 +99,7 @@ pub fn compare_chain(
 }
 
 /// Returns the computing time of a ray, relative to a ray in an environment of few lobes.
-fn cost(system: &ScatteringSystem) -> f64 {
+fn cost(system: &PathSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {
         Light::Environment { environment } => match &environment.map {
@@ -110,7 +112,7 @@ fn cost(system: &ScatteringSystem) -> f64 {
 
 /// Returns the strategy with the smallest cost. The search is greedy and tries each of the choices
 /// once.
-fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
+fn best(system: &PathSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
     let mut least = cost(best);
     for choice in 0..best.neighbours().len() {
@@ -128,16 +130,16 @@ fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> Light
 
 /// The exact light field of a scattering surface, with the densities that sample it.
 struct ScatteredField<'a> {
-    view: &'a Observed<ScatteringSystem>,
+    view: &'a Observed,
     window: &'a Window,
-    masks: Masks<'a>,
+    path: PreparedPath<'a>,
     rays: PlaneRaySampler,
     lights: Lights<'a>,
 }
 
 impl<'a> ScatteredField<'a> {
     fn new(
-        view: &'a Observed<ScatteringSystem>,
+        view: &'a Observed,
         window: &'a Window,
         chain: Option<&ScatteringChain>,
         strategy: LightStrategy,
@@ -147,7 +149,7 @@ impl<'a> ScatteredField<'a> {
         Self {
             view,
             window,
-            masks: Masks::new(&system.layers, &system.obstacles),
+            path: PreparedPath::new(system),
             rays: PlaneRaySampler::new(system, window, chain, strategy),
             lights: Lights::new(system, normal, strategy),
         }
@@ -168,7 +170,7 @@ impl<'a> ScatteredField<'a> {
 
     /// Returns the radiance of a ray due to a part of the light.
     fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
-        radiance(self.view, &self.masks, leaving, part)
+        radiance(&self.view.plane, &self.path, leaving, part)
     }
 }
 
@@ -183,16 +185,10 @@ fn over(radiance: f64, density: f64) -> f64 {
 
 /// Returns the radiance of a ray at a plane due to a part of the light, per unit of the part's
 /// measure.
-fn radiance(
-    view: &Observed<ScatteringSystem>,
-    masks: &Masks<'_>,
-    leaving: &Leaving,
-    part: LightPart,
-) -> f64 {
-    let Observed { system, plane } = view;
-    let passes = past_obstacles(plane, masks, leaving);
+fn radiance(plane: &Plane, path: &PreparedPath<'_>, leaving: &Leaving, part: LightPart) -> f64 {
+    let passes = past_obstacles(plane, path, leaving);
     let radiance = if passes > 0.0 {
-        passes * system.radiance(masks, leaving, part)
+        passes * path.radiance(leaving, part)
     } else {
         0.0
     };
@@ -205,15 +201,14 @@ fn radiance(
     }
 }
 
-/// Returns the fraction of a ray's radiance that passes obstacles between the surface and the
-/// plane.
-fn past_obstacles(plane: &Plane, masks: &Masks<'_>, leaving: &Leaving) -> f64 {
+/// Returns the fraction of a ray's radiance that passes between the surface and the plane.
+fn past_obstacles(plane: &Plane, path: &PreparedPath<'_>, leaving: &Leaving) -> f64 {
     let ray = LegRay {
         point: leaving.point,
         direction: leaving.direction,
     };
     let along = plane.along(&ray);
-    along.map_or(0.0, |length| masks.obstacles.passes(1, &ray, length))
+    along.map_or(0.0, |length| path.leaves(&ray, length))
 }
 
 impl Integrand for ScatteredField<'_> {
@@ -243,27 +238,23 @@ type DrawnPart = Option<(LightPart, f64)>;
 /// If the change does not affect rays or the light, their values are taken from the original light
 /// field.
 struct VariedField<'a> {
-    view: &'a Observed<ScatteringSystem>,
+    view: &'a Observed,
     moves_surface: bool,
     moves_light: bool,
-    masks: Masks<'a>,
+    path: PreparedPath<'a>,
     lights: Lights<'a>,
 }
 
 impl<'a> VariedField<'a> {
-    fn new(
-        view: &'a Observed<ScatteringSystem>,
-        field: &'a ScatteredField<'a>,
-        strategy: LightStrategy,
-    ) -> Self {
+    fn new(view: &'a Observed, field: &'a ScatteredField<'a>, strategy: LightStrategy) -> Self {
         let Observed { system, plane } = field.view;
-        let moves_surface = view.system.patch != system.patch || view.plane != *plane;
+        let moves_surface = view.system.surfaces != system.surfaces || view.plane != *plane;
         Self {
             view,
             moves_surface,
             moves_light: view.system.light != system.light
                 || moves_surface && field.lights.is_by_lobe(),
-            masks: Masks::new(&view.system.layers, &view.system.obstacles),
+            path: PreparedPath::new(&view.system),
             lights: field.lights.of(&view.system, strategy),
         }
     }
@@ -281,7 +272,7 @@ impl<'a> VariedField<'a> {
             drawn = self.lights.draw(&leaving, at);
         }
         let (part, density) = drawn?;
-        let radiance = radiance(self.view, &self.masks, &leaving, part);
+        let radiance = radiance(plane, &self.path, &leaving, part);
         Some(over(radiance, density))
     }
 }
@@ -298,7 +289,7 @@ impl<'a> VariedFields<'a> {
     fn new(
         field: &'a ScatteredField<'a>,
         chain: Option<&'a ScatteringChain>,
-        moved: &'a [ShiftedModels<Observed<ScatteringSystem>>],
+        moved: &'a [ShiftedModels<Observed>],
         strategy: LightStrategy,
     ) -> Self {
         let side = |view| VariedField::new(view, field, strategy);
@@ -340,8 +331,8 @@ impl Integrand for VariedFields<'_> {
             put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
                 // The chain treats obstacles between the surface and the plane exactly.
-                let passes = past_obstacles(&field.view.plane, &field.masks, &leaving);
-                let first_order = passes * linear.radiance(&field.masks, z, part);
+                let passes = past_obstacles(&field.view.plane, &field.path, &leaving);
+                let first_order = passes * linear.radiance(&field.path, z, part);
                 over(first_order - exact, density)
             }));
         }

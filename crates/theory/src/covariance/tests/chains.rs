@@ -4,7 +4,9 @@ use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
-use crate::rays::{self, Plane, SpecularSurface};
+use crate::path::{Interaction, PathSurface, PathSystem};
+use crate::plane::Plane;
+use crate::rays;
 use crate::testing::{chain_of, opaque};
 use crate::{Chain, Observed, Operator, scattering};
 use etendue_field::{
@@ -107,22 +109,17 @@ fn beyond() -> Plane {
     Plane::orthogonal(frame.travelled(0.7))
 }
 
-fn layers() -> Vec<(f64, Mask)> {
+fn masks() -> Vec<(f64, Mask)> {
     vec![(0.4, opaque(vec![disc(-0.5, 0.2)]))]
 }
 
 #[test]
 fn behind_a_curved_mirror() {
+    let mirror = Interaction::Specular(Specular::Mirror);
     let view = Observed {
-        system: rays::SpecularSystem {
-            light: lamp(),
-            layers: layers(),
-            obstacles: vec![],
-            elements: vec![SpecularSurface {
-                name: "mirror".into(),
-                patch: patch(),
-                event: Specular::Mirror,
-            }],
+        system: PathSystem {
+            masks: masks(),
+            ..PathSystem::new(lamp(), vec![PathSurface::new("mirror", patch(), mirror)])
         },
         plane: beyond(),
     };
@@ -142,25 +139,24 @@ fn behind_a_textured_lobe() {
         modulation: 0.9,
         phase: 0.0,
     };
-    let view = |texture: Option<Pattern>| Observed {
-        system: scattering::ScatteringSystem {
-            light: Light::Projector {
-                intensity: 1.0,
-                image: Image {
-                    width: [0.15, 0.2],
-                    grating: None,
-                },
-            },
-            layers: vec![],
-            obstacles: vec![],
-            name: "sphere".into(),
-            patch: patch(),
-            reflectance: Reflectance {
-                texture,
-                ..Brdf::new(Lobe::Phong { exponent: 100.0 }, 1.0, Fresnel::White).into()
-            },
+    let light = Light::Projector {
+        intensity: 1.0,
+        image: Image {
+            width: [0.15, 0.2],
+            grating: None,
         },
-        plane: beyond(),
+    };
+    let view = |texture: Option<Pattern>| {
+        let reflectance = Reflectance {
+            texture,
+            ..Brdf::new(Lobe::Phong { exponent: 100.0 }, 1.0, Fresnel::White).into()
+        };
+        let interaction = Interaction::Reflects(Box::new(reflectance));
+        let sphere = PathSurface::new("sphere", patch(), interaction);
+        Observed {
+            system: PathSystem::new(light.clone(), vec![sphere]),
+            plane: beyond(),
+        }
     };
     let chain = scattering::chain(&view(None)).unwrap();
     let light = [0.15, 0.2].map(|width: f64| width * width / TAU);

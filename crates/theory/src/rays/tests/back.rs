@@ -6,7 +6,7 @@ use crate::geometry::{AffineMap, from_fn};
 use etendue_field::Side;
 
 /// Builds an area light, and surfaces at oblique incidence.
-fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> SpecularSystem {
+fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> PathSystem {
     let light = Light::Area {
         shape: Shape::Rectangle(Rectangle {
             center: [0.0; 2],
@@ -15,14 +15,14 @@ fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> SpecularSystem {
         radiance: 1.0,
         exponent: 0.0,
     };
-    let mut system = system(light, vec![]);
+    let mut system = PathSystem::new(light, vec![]);
     for (name, event, theta0, curvature) in surfaces {
         let leg = after(&system, 0.0).frame;
         let patch = Patch {
             aperture: 1.0,
             ..placed(&leg, 0.8, *theta0, [0.3, 0.2], *curvature)
         };
-        system.elements.push(element(name, patch, *event));
+        visit(&mut system, element(name, patch, *event));
     }
     system
 }
@@ -41,7 +41,7 @@ const MIRROR: (&str, Specular, f64, [f64; 3]) =
 
 /// Checks that rays followed forward land where they were sampled, and that |∂z/∂ray| agrees with
 /// finite differences.
-fn come_back(system: &SpecularSystem, plane: &Plane) {
+fn come_back(system: &PathSystem, plane: &Plane) {
     let back = Back::new(system, plane);
     for z in [
         [0.0; 4],
@@ -87,7 +87,7 @@ fn rays_come_back_from_surfaces() {
     let before = bent(&[MIRROR]);
     for arriving in [false, true] {
         let incidence = through.hits().unwrap()[1].incidence;
-        let patch = through.elements[1].patch;
+        let patch = through.surfaces[1].patch;
         let side = if arriving { 1.0 } else { -1.0 };
         let normal = side * patch.frame.d;
         let origin = patch.frame.origin;

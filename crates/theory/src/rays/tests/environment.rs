@@ -48,9 +48,9 @@ fn map() -> Environment {
     }
 }
 
-fn under(environment: &Environment, elements: Vec<SpecularSurface>) -> SpecularSystem {
+fn under(environment: &Environment, elements: Vec<PathSurface>) -> PathSystem {
     let environment = environment.clone();
-    system(Light::Environment { environment }, elements)
+    PathSystem::new(Light::Environment { environment }, elements)
 }
 
 /// Builds a plane for arriving light on a sphere 1 m from the light; the angle `tilt` is between
@@ -208,7 +208,7 @@ fn the_sky_past_a_grating() {
         phase: 0.4,
     };
     let mut system = under(&environment, vec![]);
-    system.layers = vec![(0.4, Mask::Grating(grating))];
+    system.masks = vec![(0.4, Mask::Grating(grating))];
     let tangent = on_sphere(0.3, Orientation::Tangent, Quantity::Radiance);
     for plane in [after(&system, 1.0), tangent] {
         let found = exact(&system, &plane, &window, &grid);

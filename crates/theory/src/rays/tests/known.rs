@@ -65,7 +65,7 @@ fn projector_over_a_distance() {
         window(gaussian(0.2, 0.45), gaussian(0.2, 0.4)),
     ];
     for window in windows {
-        let system = system(projector([0.3, 0.3]), vec![]);
+        let system = PathSystem::new(projector([0.3, 0.3]), vec![]);
         let grid = grid(3, [0.3, 0.25]);
         let got = exact(&system, &after(&system, d), &window, &grid);
         let expected = at_distance(d, 0.3, &window, &grid, true);
@@ -82,7 +82,7 @@ fn projector_over_a_distance() {
 fn beam_over_a_distance() {
     // A beam does not change with distance, and its spectrum is constant in Ωu and Ωv.
     let (width, cut) = (0.2, 0.7);
-    let system = system(beam([width, 0.3]), vec![]);
+    let system = PathSystem::new(beam([width, 0.3]), vec![]);
     let window = window(Profile::Gaussian { width: 0.4, cut }, Profile::Hann(0.1));
     let grid = grid(4, [0.3, 0.1]);
     let got = exact(&system, &after(&system, 2.0), &window, &grid);
@@ -117,18 +117,18 @@ fn area_lights_agree_with_polygons() {
     ];
     for light in lights {
         let expected = crate::slices(&chain_of(light.clone(), steps()), &window, &grid);
-        let mut system = system(light, vec![]);
+        let mut system = PathSystem::new(light, vec![]);
         let Some(Mask::Grating(grating)) = steps()[0].1 else {
             unreachable!()
         };
-        system.layers = vec![(0.6, Mask::Grating(grating))];
+        system.masks = vec![(0.6, Mask::Grating(grating))];
         let got = exact(&system, &after(&system, 1.5), &window, &grid);
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
         // A prediction for a grating that is one centimetre farther from the light differs
         // detectably.
-        system.layers = vec![(0.61, Mask::Grating(grating))];
+        system.masks = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);
         assert!(told > 3.0 * said, "{told}");
@@ -158,8 +158,8 @@ fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let grid = grid(2, [0.3, 0.3]);
     let steps = [(0.6, Some(mask.clone())), (0.9, None)];
     let expected = crate::slices(&chain_of(light.clone(), steps), &window, &grid);
-    let mut system = system(light, vec![]);
-    system.layers = vec![(0.6, mask)];
+    let mut system = PathSystem::new(light, vec![]);
+    system.masks = vec![(0.6, mask)];
     let got = exact(&system, &after(&system, 1.5), &window, &grid);
     (
         got.slices.relative_difference(&expected),
@@ -189,7 +189,7 @@ fn plane_mirror_is_a_travel() {
         [0.0, 0.0],
         [0.0; 3],
     );
-    let straight = system(light, vec![]);
+    let straight = PathSystem::new(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
     // The mirror reverses the x axis of the frame (x' = −x, y' = y), so azimuths φ become π − φ
     // and (ρ, ν) become (−ρ, −ν).
@@ -218,11 +218,11 @@ fn lens_images_a_slide() {
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
     let lens = Specular::ThinLens { focal_length: f };
-    let mut system = system(
+    let mut system = PathSystem::new(
         lambertian(square([0.0; 2], 0.02)),
         vec![element("lens", patch, lens)],
     );
-    system.layers = vec![(0.0, crate::testing::grating(0, 200.0, 0.0))];
+    system.masks = vec![(1e-6, crate::testing::grating(0, 200.0, 0.0))];
     let window = window(Profile::Hann(0.02), Profile::Hann(0.05));
     let rho = 200.0 * a / b;
     let axis = |spacing| FrequencyAxis { half: 1, spacing };

@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
-use crate::{Model, Observed, Predicted, RayBudget};
+use crate::path::{Interaction, PathSurface, PathSystem};
+use crate::{Model, Observed, Plane, Predicted, RayBudget};
 use etendue_field::{
-    Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
-    Rectangle, Shape, SliceGrid, Slices, Window,
+    Complex, Frame, FrequencyAxis, Image, Light, Orientation, Patch, Profile, ProjectionGrid,
+    Quantity, Rectangle, Shape, SliceGrid, Slices, Specular, Window,
 };
 use glam::DVec3;
 
@@ -13,20 +14,20 @@ use glam::DVec3;
 /// detect.
 const BUDGET: RayBudget = RayBudget::new(2e6, 1e-5);
 
-fn view(system: &SpecularSystem, plane: &Plane) -> Observed<SpecularSystem> {
+fn view(system: &PathSystem, plane: &Plane) -> Observed {
     Observed {
         system: system.clone(),
         plane: *plane,
     }
 }
 
-fn exact(system: &SpecularSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
+fn exact(system: &PathSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     let picture = ProjectionGrid::new(window, 32);
     view(system, plane).predict(&[], (window, grid, &picture), BUDGET)
 }
 
 fn linear(
-    system: &SpecularSystem,
+    system: &PathSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -83,16 +84,18 @@ fn projector(width: [f64; 2]) -> Light {
     }
 }
 
-fn element(name: &str, patch: Patch, event: Specular) -> SpecularSurface {
-    SpecularSurface {
-        name: name.into(),
-        patch,
-        event,
-    }
+fn element(name: &str, patch: Patch, event: Specular) -> PathSurface {
+    PathSurface::new(name, patch, Interaction::Specular(event))
+}
+
+/// Appends a surface to a path.
+fn visit(system: &mut PathSystem, surface: PathSurface) {
+    system.surfaces.push(surface);
+    system.visited += 1;
 }
 
 /// Returns the plane at the end of the last leg.
-fn after(system: &SpecularSystem, distance: f64) -> Plane {
+fn after(system: &PathSystem, distance: f64) -> Plane {
     let last = system
         .hits()
         .unwrap()
@@ -124,17 +127,9 @@ fn placed(
     }
 }
 
-fn system(light: Light, elements: Vec<SpecularSurface>) -> SpecularSystem {
-    SpecularSystem {
-        light,
-        layers: vec![],
-        obstacles: vec![],
-        elements,
-    }
-}
-
-/// A single mirror 1 m from the light.
-fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> SpecularSystem {
-    let patch = placed(&Frame::IDENTITY, 1.0, theta0, turns, curvature);
-    system(light, vec![element("mirror", patch, Specular::Mirror)])
+/// A single mirror 1 m from the light. It is so small that no light meets it twice.
+fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> PathSystem {
+    let mut patch = placed(&Frame::IDENTITY, 1.0, theta0, turns, curvature);
+    patch.aperture = 1.0;
+    PathSystem::new(light, vec![element("mirror", patch, Specular::Mirror)])
 }

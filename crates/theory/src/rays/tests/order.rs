@@ -5,10 +5,10 @@ use super::*;
 
 /// Returns ‖linear − exact‖/‖exact‖ at a size e, where windows and light are e times as wide, and
 /// frequencies are 1/e times as high.
-fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
+fn error(system: &PathSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));
-    let system = system.shrunk(e);
+    let system = system.shrunk(e, false).unwrap();
     let right = exact(&system, plane, &window, &grid);
     // Most of the error of nets is common to the first-order and the exact prediction.
     assert!(right.error < Some(3e-3), "{:?}", right.error);
@@ -19,7 +19,7 @@ fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print
 }
 
 /// Returns the power of e with which the error falls.
-fn order(system: &SpecularSystem, plane: &Plane, widths: [f64; 2]) -> f64 {
+fn order(system: &PathSystem, plane: &Plane, widths: [f64; 2]) -> f64 {
     let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");
     libm::log2(wide / narrow)
@@ -47,13 +47,12 @@ fn beams_refraction_and_two_mirrors_converge() {
     let mut two = oblique.clone();
     let leg = after(&two, 0.0).frame;
     let patch = placed(&leg, 0.4, -0.5, [1.0, 0.0], [0.3; 3]);
-    two.elements
-        .push(element("second", patch, Specular::Mirror));
+    visit(&mut two, element("second", patch, Specular::Mirror));
     let mut glass = oblique.clone();
-    glass.elements[0].event = Specular::Refraction {
+    glass.surfaces[0].interaction = Interaction::Specular(Specular::Refraction {
         front: 1.0,
         back: 1.5,
-    };
+    });
     for system in [oblique, two, glass] {
         let found = order(&system, &after(&system, 0.3), [0.5, 0.5]);
         assert!((found - 1.0).abs() < 0.25, "{found}"); // the next power of e

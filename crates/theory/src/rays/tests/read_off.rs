@@ -5,13 +5,13 @@ use crate::rays::central::Incidence;
 use etendue_field::Side;
 
 /// Returns the coordinates at the plane of a ray that leaves the light.
-fn lands(system: &SpecularSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
+fn lands(system: &PathSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
     Some(plane.coordinates(&system.follow(ray)?)?.0)
 }
 
 /// Returns the derivative ∂z'/∂z of a ray's coordinates at the plane with respect to its
 /// coordinates at the light, by central differences of traced rays.
-fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
+fn traced(system: &PathSystem, plane: &Plane) -> [[f64; 4]; 4] {
     const STEP: f64 = 1e-5;
     let mut rows = [[0.0; 4]; 4];
     for column in 0..4 {
@@ -30,7 +30,7 @@ fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
 
 /// Returns the largest difference between the matrix and offset of the chain's map and the matrix
 /// and offset of traced rays.
-fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
+fn off(system: &PathSystem, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
     let rays = first.map.rays();
@@ -50,7 +50,7 @@ fn light() -> Light {
 }
 
 /// Returns the frame of leg `i`, at its start.
-fn leg(system: &SpecularSystem) -> Frame {
+fn leg(system: &PathSystem) -> Frame {
     system
         .hits()
         .unwrap()
@@ -58,12 +58,12 @@ fn leg(system: &SpecularSystem) -> Frame {
         .map_or(Frame::IDENTITY, |hit| hit.leaving)
 }
 
-fn with(mut system: SpecularSystem, name: &str, patch: Patch, event: Specular) -> SpecularSystem {
-    system.elements.push(element(name, patch, event));
+fn with(mut system: PathSystem, name: &str, patch: Patch, event: Specular) -> PathSystem {
+    visit(&mut system, element(name, patch, event));
     system
 }
 
-fn systems() -> Vec<SpecularSystem> {
+fn systems() -> Vec<PathSystem> {
     let glass = |front, back| Specular::Refraction { front, back };
     let shapes = [
         [-0.5; 3],         // hollow sphere
@@ -78,7 +78,7 @@ fn systems() -> Vec<SpecularSystem> {
             for turns in [[0.0, 0.0], [0.0, 0.5], [0.6, 0.5], [1.9, -0.3]] {
                 all.push(mirror(light(), theta0, turns, shape));
                 let patch = placed(&Frame::IDENTITY, 0.8, theta0, turns, shape);
-                all.push(system(
+                all.push(PathSystem::new(
                     light(),
                     vec![element("glass", patch, glass(1.0, 1.5))],
                 ));
@@ -89,7 +89,7 @@ fn systems() -> Vec<SpecularSystem> {
                     frame: flipped.unwrap(),
                     ..patch
                 };
-                all.push(system(
+                all.push(PathSystem::new(
                     light(),
                     vec![element("glass", patch, glass(1.3, 1.1))],
                 ));
@@ -110,8 +110,8 @@ fn systems() -> Vec<SpecularSystem> {
     }
     // A sphere that the central ray meets away from the vertex of the sphere's patch.
     let mut aside = mirror(light(), 0.3, [0.2, 0.0], [-0.7; 3]);
-    let x = aside.elements[0].patch.frame.x;
-    aside.elements[0].patch.frame.origin += x * 0.2;
+    let x = aside.surfaces[0].patch.frame.x;
+    aside.surfaces[0].patch.frame.origin += x * 0.2;
     all.push(aside);
     all
 }
@@ -123,7 +123,7 @@ fn chain_is_the_derivative_of_the_rays() {
     for system in systems {
         let mut plane = after(&system, 0.65);
         let off_by = off(&system, &plane, Edition::Corrected);
-        assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
+        assert!(off_by < CLOSE, "{off_by:e} {:?}", system.surfaces);
         // The plane is rotated about the ray, and its origin is displaced.
         let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
         let origin = plane.frame.origin + x * 0.01;
@@ -167,7 +167,7 @@ fn on_surface(
     }
 }
 
-pub(super) fn surface_planes() -> Vec<(SpecularSystem, Plane)> {
+pub(super) fn surface_planes() -> Vec<(PathSystem, Plane)> {
     let glass = Specular::Refraction {
         front: 1.0,
         back: 1.5,
@@ -181,7 +181,7 @@ pub(super) fn surface_planes() -> Vec<(SpecularSystem, Plane)> {
         ] {
             for orientation in [Orientation::Tangent, Orientation::LocalNormals] {
                 let patch = placed(&Frame::IDENTITY, 0.8, theta0, [0.4, 0.5], curvature);
-                let onto = system(projector([0.1, 0.1]), vec![]);
+                let onto = PathSystem::new(projector([0.1, 0.1]), vec![]);
                 let hit = Incidence::new(&Frame::IDENTITY.travelled(0.8), patch.frame.d);
                 let frame = |t: DVec3, d: DVec3| Frame::new(patch.frame.origin, d, t).unwrap();
                 for t in [hit.t, -hit.t] {
@@ -259,7 +259,7 @@ fn focus_of_a_ball_lens() {
         front: n,
         back: 1.0,
     };
-    let ball = system(
+    let ball = PathSystem::new(
         beam([0.001, 0.001]),
         vec![
             element("front", half(1.0, 1.0 / radius), entering),

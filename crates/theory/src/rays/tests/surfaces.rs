@@ -45,7 +45,7 @@ fn projection_of_an_area_light() {
     let light = crate::testing::lambertian(crate::testing::square([0.0; 2], 0.2));
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let cells = ProjectionGrid::new(&window, 32);
-    let straight = system(light.clone(), vec![]);
+    let straight = PathSystem::new(light.clone(), vec![]);
     let got = exact(
         &straight,
         &after(&straight, 1.0),
@@ -76,7 +76,7 @@ fn derivatives_by_every_parameter() {
     let mut system = mirror(projector([0.2, 0.2]), 0.5, [0.2, 0.1], [-0.5, -0.3, 0.0]);
     for (event, theta0, shape) in [(glass, 0.3, [0.4; 3]), (lens, 0.0, [0.0; 3])] {
         let patch = placed(&after(&system, 0.0).frame, 0.3, theta0, [0.0; 2], shape);
-        system.elements.push(element("next", patch, event));
+        visit(&mut system, element("next", patch, event));
     }
     let plane = after(&system, 0.2);
     let window = window(Profile::Hann(0.1), Profile::Hann(0.1));
@@ -116,7 +116,7 @@ fn derivatives_by_every_parameter() {
 fn rays_are_lost() {
     let system = mirror(beam([0.1, 0.1]), 0.0, [0.0; 2], [-2.0; 3]);
     let plane = after(&system, 0.1);
-    let lands = |system: &SpecularSystem, ray| {
+    let lands = |system: &PathSystem, ray| {
         let ray = system.follow(ray)?;
         plane.coordinates(&ray)
     };
@@ -124,7 +124,7 @@ fn rays_are_lost() {
     assert!(arrives([0.3, 0.0, 0.0, 0.0]));
     assert!(!arrives([0.6, 0.0, 0.0, 0.0])); // beside a sphere of radius 0.5
     let mut small = system.clone();
-    small.elements[0].patch.aperture = 0.2;
+    small.surfaces[0].patch.aperture = 0.2;
     assert!(lands(&small, [0.3, 0.0, 0.0, 0.0]).is_none());
     // Total reflection begins at 0.73 rad.
     let glass = Specular::Refraction {
@@ -133,13 +133,13 @@ fn rays_are_lost() {
     };
     for (theta0, passes) in [(0.72, true), (0.74, false)] {
         let mut system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [0.0; 3]);
-        system.elements[0].event = glass;
+        system.surfaces[0].interaction = Interaction::Specular(glass);
         assert_eq!(system.follow([0.0; 4]).is_some(), passes);
         assert_eq!(system.hits().is_some(), passes);
     }
     // The added surface is behind the light.
     let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
-    let behind = self::system(
+    let behind = PathSystem::new(
         beam([0.1, 0.1]),
         vec![element("behind", patch, Specular::Mirror)],
     );

@@ -3,12 +3,13 @@
 use super::*;
 use crate::RayBudget;
 use crate::geometry::AffineMap;
-use crate::rays::Plane;
+use crate::path::{Interaction, PathSurface, PathSystem, PreparedPath};
 use crate::testing::{chain_of, opaque, window};
-use crate::{Model, Observed, Operator, Parameter, Predicted, slices};
+use crate::{Model, Observed, Operator, Parameter, Plane, Predicted, slices};
 use etendue_field::{
-    AngleTable, Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Grating, Image, LatLong, Lobe,
-    Orientation, Pattern, Profile, ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
+    AngleTable, Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Grating, Image, LatLong,
+    Light, Lobe, Orientation, Patch, Pattern, Profile, ProjectionGrid, Quantity, Rectangle,
+    Reflectance, Shape, SliceGrid, Window,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -18,7 +19,7 @@ const DISTANCE: f64 = 1.0;
 
 /// Predicts with two million nodes, so errors are far below the deviations that these tests
 /// detect.
-fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
+fn exact(system: &PathSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
         plane,
@@ -30,7 +31,7 @@ fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &Slice
 
 /// Returns ‖first order − exact‖/‖exact‖ of the two predictions of a system.
 fn linearised(
-    system: &ScatteringSystem,
+    system: &PathSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -42,7 +43,7 @@ fn linearised(
     near.relative_difference(&right.slices)
 }
 
-fn view(system: &ScatteringSystem, plane: &Plane) -> Observed<ScatteringSystem> {
+fn view(system: &PathSystem, plane: &Plane) -> Observed {
     Observed {
         system: system.clone(),
         plane: *plane,
@@ -50,7 +51,7 @@ fn view(system: &ScatteringSystem, plane: &Plane) -> Observed<ScatteringSystem> 
 }
 
 fn by(
-    system: &ScatteringSystem,
+    system: &PathSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -92,25 +93,15 @@ fn white(lobe: Lobe) -> Reflectance {
 
 /// Builds a surface 1 m from the light. The central ray meets the surface at the angle θ₀ in the
 /// plane of X and the ray.
-fn system(
-    light: Light,
-    theta0: f64,
-    curvature: [f64; 3],
-    reflectance: Reflectance,
-) -> ScatteringSystem {
+fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectance) -> PathSystem {
     let d = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
-    ScatteringSystem {
-        light,
-        layers: vec![],
-        obstacles: vec![],
-        name: "surface".into(),
-        patch: Patch {
-            frame: Frame::new(DVec3::Z * DISTANCE, d, DVec3::X).unwrap(),
-            curvature,
-            aperture: 1.5,
-        },
-        reflectance,
-    }
+    let patch = Patch {
+        frame: Frame::new(DVec3::Z * DISTANCE, d, DVec3::X).unwrap(),
+        curvature,
+        aperture: 1.5,
+    };
+    let interaction = Interaction::Reflects(Box::new(reflectance));
+    PathSystem::new(light, vec![PathSurface::new("surface", patch, interaction)])
 }
 
 /// Returns a plane perpendicular to the mirrored central ray, at the distance `after` from the
@@ -135,9 +126,9 @@ fn across(theta0: f64, after: f64) -> Plane {
 }
 
 /// Returns a plane on the surface, for light leaving it.
-fn on(system: &ScatteringSystem, theta0: f64, orientation: Orientation) -> Plane {
+fn on(system: &PathSystem, theta0: f64, orientation: Orientation) -> Plane {
     let t = DVec3::new(-libm::cos(theta0), 0.0, -libm::sin(theta0));
-    let n = system.patch.frame.d;
+    let n = system.surfaces[0].patch.frame.d;
     Plane {
         frame: Frame {
             origin: DVec3::Z * DISTANCE,
@@ -147,7 +138,7 @@ fn on(system: &ScatteringSystem, theta0: f64, orientation: Orientation) -> Plane
         },
         orientation,
         longitude: -theta0,
-        patch: Some(system.patch),
+        patch: Some(system.surfaces[0].patch),
         ..across(theta0, 0.0)
     }
 }
@@ -200,7 +191,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     let grid = grid([0.2, 0.3]);
     let known = slices(&chain, &window, &grid);
     let mut system = system(area(0.3), 0.0, [0.0; 3], white(Lobe::Lambertian));
-    system.layers = vec![(0.6, opaque(blocker))];
+    system.masks = vec![(0.6, opaque(blocker))];
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
@@ -211,7 +202,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
     assert!(error < 6e-3, "{error:e}"); // the error of a million nodes
     // If the mask is removed, the prediction differs detectably.
-    system.layers.clear();
+    system.masks.clear();
     let open = exact(&system, &plane, &window, &grid);
     assert!(open.slices.relative_difference(&known) > 0.05);
 }
@@ -358,7 +349,7 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&view(&system, &plane)).unwrap();
-    let error = |system: &ScatteringSystem, chain: &ScatteringChain| {
+    let error = |system: &PathSystem, chain: &ScatteringChain| {
         linearised(system, &plane, &window, &grid, chain)
     };
     let least = error(&system, &sound);
@@ -370,7 +361,7 @@ fn wrong_operators_are_seen() {
     let mut sheared = sound;
     sheared.onto.matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
-    let exact_error = |other: &ScatteringSystem| {
+    let exact_error = |other: &PathSystem| {
         exact(other, &plane, &window, &grid)
             .slices
             .relative_difference(&right.slices)
@@ -440,7 +431,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let light = Light::Environment { environment };
         system(light, 0.0, [0.8; 3], white(Lobe::Lambertian))
     };
-    let on_it = |system: &ScatteringSystem| Plane {
+    let on_it = |system: &PathSystem| Plane {
         longitude: 0.0,
         ..on(system, 0.0, Orientation::LocalNormals)
     };
@@ -460,7 +451,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     ] {
         let system = under(map);
         let plane = on_it(&system);
-        let masks = crate::mask::Masks::new(&[], &[]);
+        let path = PreparedPath::new(&system);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
             let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());
@@ -469,7 +460,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
             let points = (0..count).filter_map(|_| {
                 let [a, b, ..] = net.point();
                 let (part, density) = lights.draw(&leaving, [a, b])?;
-                Some(system.radiance(&masks, &leaving, part) / density)
+                Some(path.radiance(&leaving, part) / density)
             });
             let radiance = points.sum::<f64>() / f64::from(count);
             let gamma = libm::acos(leaving.normal.dot(from));

@@ -1,62 +1,78 @@
 //! One surface of the path: intersection and reflection.
 
-use super::{Interaction, PathSurface};
-use crate::obstacle::{LegRay, on_patch};
+use super::{Interaction, PatchExtent, PathSurface};
+use crate::obstacle::{LegRay, normal};
 use crate::rays::bent;
 use crate::scattering::{brdf, kernel, narrowest};
-use etendue_field::{Brdf, Fresnel, Lobe};
+use etendue_field::{Brdf, Fresnel, Lobe, Specular};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 impl PathSurface {
+    /// Returns the event at a specular surface.
+    #[must_use]
+    pub fn event(&self) -> Option<Specular> {
+        match self.interaction {
+            Interaction::Specular(event) => Some(event),
+            Interaction::Reflects(_) | Interaction::Diffuse { .. } => None,
+        }
+    }
+
     /// Checks whether the surface scatters light in a sampled direction.
     #[must_use]
     pub fn scatters(&self) -> bool {
-        !matches!(self.interaction, Interaction::Specular(_))
+        self.event().is_none()
+    }
+
+    /// Checks whether the surface occludes light that it does not deflect.
+    pub(crate) fn occludes(&self) -> bool {
+        self.extent != PatchExtent::Osculating
     }
 
     /// Returns the distances beyond `start` at which a ray meets the surface.
-    pub(super) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
-        let distances = on_patch(&self.patch, ray).into_iter().flatten();
-        let inside = move |t: &f64| *t > start && self.holds(ray.point + *t * ray.direction);
-        distances.filter(inside)
+    pub(crate) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
+        let ray = *ray;
+        let inside = move |t: &f64| *t > start && self.holds(ray.at(*t));
+        ray.hits(&self.patch).filter(inside)
     }
 
     /// Returns the first distance beyond `start` at which a ray meets the surface.
-    pub(super) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
+    pub(crate) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
 
-    /// Checks whether a point of the patch lies within the outline.
+    /// Checks whether a point of the patch lies within the extent.
     fn holds(&self, point: DVec3) -> bool {
-        self.outline.is_none_or(|size| {
-            let at = self.patch.frame.to_local(point);
-            2.0 * at.x.abs() <= size[0] && 2.0 * at.y.abs() <= size[1]
-        })
+        let PatchExtent::Rectangle(size) = self.extent else {
+            return true;
+        };
+        let at = self.patch.frame.to_local(point);
+        2.0 * at.x.abs() <= size[0] && 2.0 * at.y.abs() <= size[1]
     }
 
-    /// Returns the unit normal at a point, on the side that the patch faces.
-    pub(super) fn normal(&self, point: DVec3) -> Option<DVec3> {
-        let frame = &self.patch.frame;
-        let gradient = self.patch.gradient(frame.to_local(point)).try_normalize()?;
-        Some(frame.vector_to_world(gradient))
+    /// Returns the first point where a ray meets the surface.
+    pub(crate) fn met(&self, ray: &LegRay) -> Option<DVec3> {
+        Some(ray.at(self.first(ray, ray.start())?))
+    }
+
+    /// Returns the continuation of a ray after the surface; `None` if the ray is lost.
+    pub(crate) fn follow(&self, ray: &LegRay) -> Option<LegRay> {
+        self.turned(ray, self.met(ray)?)
     }
 
     /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
     /// surface scatters light, or if a refracting surface totally reflects the ray.
-    pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
-        let Interaction::Specular(event) = self.interaction else {
-            return None;
-        };
-        let normal = self.normal(point)?;
+    pub(crate) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
+        let event = self.event()?;
+        let normal = normal(&self.patch, point)?;
         let direction = bent(event, &self.patch.frame, [ray.direction, point, normal])?;
         Some(LegRay { point, direction })
     }
 
     /// Returns the normal on the side where light arrives along a direction and is scattered.
     /// Returns `None` if this side is black.
-    pub(super) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
-        let normal = self.normal(point)?;
+    pub(crate) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
+        let normal = normal(&self.patch, point)?;
         let faces = normal.dot(direction) < 0.0;
         match self.interaction {
             Interaction::Diffuse { .. } => Some(if faces { normal } else { -normal }),
@@ -81,21 +97,21 @@ impl PathSurface {
 
     /// Returns the BRDF in sr⁻¹ for light that arrives from `from` and leaves towards `to`. Both
     /// are unit vectors away from the surface.
-    pub(super) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
+    pub(crate) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
     /// Returns the BRDF that the chain uses. `angles` contains the longitude and latitude of two
     /// directions: first of the direction from which light arrives, then of the direction towards
     /// which it leaves.
-    pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
+    pub(crate) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
         let [from, to] = angles;
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))
     }
 
     /// Returns the standard deviation of the narrowest lobe at a point, in radians; `None` for a
     /// diffuse surface.
-    pub(super) fn width(&self, point: DVec3) -> Option<f64> {
+    pub(crate) fn width(&self, point: DVec3) -> Option<f64> {
         let Interaction::Reflects(reflectance) = &self.interaction else {
             return None;
         };

@@ -1,0 +1,377 @@
+//! The parameters and the prediction of a path.
+
+use super::{Interaction, Observed, PathKind, PathSurface, PathSystem};
+use crate::model::{Model, Over, ShiftedModels};
+use crate::nets::{RayBudget, RayNets, work_of_nets};
+use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
+use crate::predicted::Predicted;
+use crate::rays::CentralHit;
+use crate::work::PredictionWork;
+use crate::{rays, reflections, scattering};
+use etendue_field::{
+    Complex, Disc, Frame, Light, Orientation, Pattern, Rectangle, Reflectance, Shape, Specular,
+    Weight,
+};
+use glam::{DQuat, DVec3};
+
+/// Values below this threshold, in metres or in the unit of a parameter, are treated as zero,
+/// because they may be rounding errors.
+const ROUNDING_OF_ZERO: f64 = 1e-9;
+
+/// Behind surfaces that scatter, the parameters albedo and lobe belong to the last of them. Other
+/// albedos are not parameters, because the light field determines only the product of all albedos.
+/// For a sum of BRDFs, albedo and lobe belong to the first BRDF.
+impl Model for Observed {
+    fn light(&self) -> &Light {
+        &self.system.light
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut all = Parameter::of_light(&self.system.light);
+        let Some(last) = self.system.last_scatterer() else {
+            all.extend(self.specular_parameters());
+            all.retain(|parameter| self.is_parameter(*parameter));
+            return all;
+        };
+        for (number, surface) in self.system.before_plane().iter().enumerate() {
+            let patch = &surface.patch;
+            let axes = curvatures(patch).into_iter();
+            let curved = axes.filter(|axis| patch.curvature[*axis] != 0.0);
+            all.extend(curved.map(|axis| Parameter::Curvature(number, axis)));
+        }
+        all.push(Parameter::Albedo);
+        if self.system.surfaces[last].clone().lobe_mut().is_some() {
+            all.push(Parameter::Lobe);
+        }
+        all
+    }
+
+    fn name(&self, parameter: Parameter) -> String {
+        let surfaces = self.system.before_plane();
+        let name = |i: usize| surfaces.get(i).map_or("plane", |s| s.name.as_str());
+        let last = self.system.last_scatterer();
+        match (parameter, last) {
+            (Parameter::Albedo, Some(last)) => format!("albedo of {}", name(last)),
+            (Parameter::Lobe, Some(last)) => {
+                let mut surface = surfaces[last].clone();
+                let number = surface.lobe_mut().map_or("number", |(number, _)| number);
+                format!("{number} of {}", name(last))
+            }
+            (Parameter::Travel(0), _) => format!("travel light to {}", name(0)),
+            (Parameter::Travel(i), _) => format!("travel {} to {}", name(i - 1), name(i)),
+            (Parameter::Incidence(i), _) => format!("incidence on {}", name(i)),
+            (Parameter::Curvature(i, axis), _) => format!("curvature {} of {}", axis + 1, name(i)),
+            (Parameter::Index(i), _) => format!("index of {}", name(i)),
+            (Parameter::FocalLength(i), _) => format!("focal length of {}", name(i)),
+            _ => {
+                let of_light = parameter.name_of_light(self.light(), "light");
+                of_light.unwrap_or_else(|| panic!("this path has no parameter {parameter:?}"))
+            }
+        }
+    }
+
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
+        let last = self.system.last_scatterer();
+        match parameter {
+            Parameter::Albedo => {
+                let albedo = self.system.surfaces[last?].albedo_mut()?;
+                *albedo = new(*albedo);
+            }
+            Parameter::Lobe => {
+                let (_, number) = self.system.surfaces[last?].lobe_mut()?;
+                *number = new(*number);
+            }
+            Parameter::Travel(leg) => self.travel(leg, new)?,
+            Parameter::Incidence(i) => {
+                let hit = *self.system.hits()?.get(i)?;
+                let by = new(hit.incidence.theta0) - hit.incidence.theta0;
+                let frame = &mut self.system.surfaces.get_mut(i)?.patch.frame;
+                *frame = tilted(frame, &hit, by);
+            }
+            Parameter::Curvature(i, axis) => self.curve(i, axis, new)?,
+            Parameter::Index(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
+                Interaction::Specular(Specular::Refraction { front, back }) => {
+                    let denser = if *front > *back { front } else { back };
+                    *denser = new(*denser);
+                }
+                _ => return None,
+            },
+            Parameter::FocalLength(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
+                Interaction::Specular(Specular::ThinLens { focal_length }) => {
+                    *focal_length = new(*focal_length);
+                }
+                _ => return None,
+            },
+            _ => parameter.change_light(&mut self.system.light, new)?,
+        }
+        Some(())
+    }
+
+    /// Returns a prediction. Where surfaces scatter, it includes the difference between the
+    /// first-order chain and the exact slices. If the last of these surfaces has a single BRDF, all
+    /// light is proportional to its albedo, so the derivative with respect to the albedo is exact.
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
+        let last = self.system.last_scatterer();
+        let surface = last.map(|last| self.system.surfaces[last].clone());
+        let albedo = surface.filter(PathSurface::is_in_proportion);
+        let albedo = albedo.and_then(|mut surface| surface.albedo_mut().copied());
+        let albedo = albedo.filter(|albedo| *albedo > 0.0);
+        let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
+        let others = parameters.iter().filter(|parameter| !is_factor(parameter));
+        let moved: Option<Vec<_>> = others
+            .map(|other| ShiftedModels::nearby(self, *other))
+            .collect();
+        let moved = moved.expect("parameters of the path");
+        let mut found = self.predicted(&moved, over, budget);
+        let factor = parameters.iter().position(is_factor);
+        if let Some((albedo, i)) = albedo.zip(factor) {
+            let mut derivative = found.slices.clone();
+            derivative.half /= Complex::from(albedo);
+            found.derivatives.insert(i, derivative);
+        }
+        found
+    }
+
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
+        match self.kind() {
+            PathKind::Specular => rays::with_rays(self, over, budget, then),
+            PathKind::Scattered => {
+                scattering::with_rays(self, scattering::chain(self).as_ref(), over, budget, then);
+            }
+            PathKind::Several => reflections::with_rays(self, over, budget, then),
+        }
+    }
+
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
+        work_of_nets(over.1, budget)
+    }
+}
+
+impl Observed {
+    /// Returns the prediction, with the derivatives between pairs of changed models.
+    pub(crate) fn predicted(
+        &self,
+        moved: &[ShiftedModels<Self>],
+        over: Over<'_>,
+        budget: RayBudget,
+    ) -> Predicted {
+        match self.kind() {
+            PathKind::Specular => rays::predict(self, moved, over, budget),
+            PathKind::Scattered => {
+                let chain = scattering::chain(self);
+                scattering::predict(self, chain.as_ref(), moved, over, budget)
+            }
+            PathKind::Several => reflections::predict(self, moved, over, budget),
+        }
+    }
+
+    /// Returns what a path of specular surfaces has as parameters, apart from those of its light.
+    fn specular_parameters(&self) -> Vec<Parameter> {
+        let Self { system, plane } = self;
+        let mut all = Vec::new();
+        for (i, surface) in system.before_plane().iter().enumerate() {
+            all.push(Parameter::Travel(i));
+            match surface.event() {
+                Some(Specular::ThinLens { .. }) => {
+                    all.push(Parameter::FocalLength(i));
+                    continue;
+                }
+                Some(Specular::Refraction { .. }) => all.push(Parameter::Index(i)),
+                Some(Specular::Mirror) | None => {}
+            }
+            all.push(Parameter::Incidence(i));
+            let axes = curvatures(&surface.patch).into_iter();
+            all.extend(axes.map(|axis| Parameter::Curvature(i, axis)));
+        }
+        if plane.orientation == Orientation::Orthogonal || plane.is_arriving() {
+            all.push(Parameter::Travel(system.visited));
+        }
+        all
+    }
+
+    /// Checks whether a parameter has a value from which it can change. Distances of zero are not
+    /// parameters. For example, light does not travel from a surface to a plane on this surface. If
+    /// an environment is unobstructed, the distance to the plane is not a parameter either, because
+    /// the light of the environment is the same everywhere.
+    fn is_parameter(&self, parameter: Parameter) -> bool {
+        if parameter == Parameter::Travel(0) && self.system.is_alike_everywhere() {
+            return false;
+        }
+        let value = self.value(parameter);
+        value.is_some_and(|value| value.abs() > ROUNDING_OF_ZERO)
+            && ShiftedModels::nearby(self, parameter).is_some()
+    }
+
+    /// Changes the length of a leg, and moves the plane and all surfaces after the leg.
+    fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
+        let (from, along) = self.system.leg(leg)?;
+        let to = match self.system.hits()?.get(leg) {
+            Some(hit) => hit.arriving.origin,
+            None => self.plane.frame.origin,
+        };
+        let distance = (to - from).dot(along);
+        let by = along * (new(distance) - distance);
+        for surface in self.system.surfaces.iter_mut().skip(leg) {
+            surface.patch.frame.origin += by;
+            surface.hit += by;
+        }
+        self.plane.frame.origin += by;
+        if let Some(patch) = &mut self.plane.patch {
+            patch.frame.origin += by;
+        }
+        Some(())
+    }
+
+    /// Changes one curvature of the patch of surface `i`.
+    fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
+        let is_last = i + 1 == self.system.visited;
+        let patch = &mut self.system.surfaces.get_mut(i)?.patch;
+        change_curvature(patch, axis, new)?;
+        // A plane with local normals that light leaves is on the surface itself.
+        if is_last && !self.plane.is_arriving() && self.plane.patch.is_some() {
+            self.plane.patch = Some(*patch);
+        }
+        Some(())
+    }
+}
+
+impl PathSystem {
+    /// Returns the system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
+    /// wide. A Lambertian lobe has no width and stays as it is. Returns `None` if a lobe stays as it
+    /// is and the light that it receives does not become narrower, which is so for an environment
+    /// and between several surfaces.
+    ///
+    /// If windows become narrower and frequencies higher by the same factor, the error of
+    /// first-order maps falls with the factor.
+    #[must_use]
+    pub fn shrunk(&self, factor: f64, keeps_lobes: bool) -> Option<Self> {
+        let is_environment = matches!(self.light, Light::Environment { .. });
+        let is_lit_narrowly = self.visited == 1 && !is_environment;
+        let mut system = self.clone();
+        system.light = shrunk_light(&self.light, factor);
+        for surface in &mut system.surfaces[..self.visited] {
+            match &mut surface.interaction {
+                Interaction::Specular(_) => {}
+                Interaction::Diffuse { .. } if is_lit_narrowly => {}
+                Interaction::Diffuse { .. } => return None,
+                Interaction::Reflects(reflectance) => {
+                    let lobes = if keeps_lobes { 1.0 } else { factor };
+                    let have_width = shrink(reflectance, factor, lobes);
+                    if (keeps_lobes || !have_width) && !is_lit_narrowly {
+                        return None;
+                    }
+                }
+            }
+        }
+        Some(system)
+    }
+
+    /// Checks whether the light field is the same at all distances from the light.
+    fn is_alike_everywhere(&self) -> bool {
+        let is_environment = matches!(self.light, Light::Environment { .. });
+        is_environment && self.masks.is_empty() && self.obstacles.is_empty()
+    }
+
+    /// Returns the start and the direction of the central ray's leg with the given index.
+    fn leg(&self, leg: usize) -> Option<(DVec3, DVec3)> {
+        if leg == 0 {
+            return Some((DVec3::ZERO, DVec3::Z));
+        }
+        let hit = *self.hits()?.get(leg - 1)?;
+        Some((hit.leaving.origin, hit.leaving.d))
+    }
+
+    /// Returns the last surface that scatters light before the plane.
+    fn last_scatterer(&self) -> Option<usize> {
+        self.before_plane().iter().rposition(PathSurface::scatters)
+    }
+}
+
+/// Makes the patterns of a reflectance `factor` times as wide, and its lobes `lobes` times as wide.
+/// Returns whether all lobes have a width.
+fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
+    let Reflectance { terms, texture } = reflectance;
+    let mut have_width = true;
+    for term in &mut *terms {
+        match term.brdf.lobe.number_mut() {
+            Some(("exponent", exponent)) => *exponent /= lobes * lobes,
+            Some((_, roughness)) => *roughness *= lobes,
+            None => have_width = false,
+        }
+    }
+    let weights = terms.iter_mut().filter_map(|term| match &mut term.weight {
+        Weight::One => None,
+        Weight::Pattern(pattern) | Weight::Rest(pattern) => Some(pattern),
+    });
+    for pattern in weights.chain(texture) {
+        match pattern {
+            Pattern::Cosine(grating) => grating.frequency /= factor,
+            Pattern::Checkerboard { period } => *period *= factor,
+            Pattern::Picture(picture) => picture.size = picture.size.map(|side| side * factor),
+        }
+    }
+    have_width
+}
+
+impl PathSurface {
+    /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
+    /// is the albedo of the first BRDF.
+    fn albedo_mut(&mut self) -> Option<&mut f64> {
+        match &mut self.interaction {
+            Interaction::Specular(_) => None,
+            Interaction::Diffuse { albedo } => Some(albedo),
+            Interaction::Reflects(reflectance) => Some(&mut reflectance.first_mut().albedo),
+        }
+    }
+
+    /// Returns the exponent or the roughness of the surface's lobe, with the name of that
+    /// parameter.
+    fn lobe_mut(&mut self) -> Option<(&'static str, &mut f64)> {
+        match &mut self.interaction {
+            Interaction::Reflects(reflectance) => reflectance.first_mut().lobe.number_mut(),
+            Interaction::Specular(_) | Interaction::Diffuse { .. } => None,
+        }
+    }
+
+    /// Checks whether all light that the surface scatters is proportional to the surface's albedo.
+    fn is_in_proportion(&self) -> bool {
+        match &self.interaction {
+            Interaction::Reflects(reflectance) => reflectance.only().is_some(),
+            Interaction::Specular(_) | Interaction::Diffuse { .. } => true,
+        }
+    }
+}
+
+/// Returns a light `factor` times as large, about the central ray.
+fn shrunk_light(light: &Light, factor: f64) -> Light {
+    let mut light = light.clone();
+    match &mut light {
+        Light::Projector { image, .. } | Light::Beam { image, .. } => {
+            image.width = image.width.map(|w| w * factor);
+            if let Some(grating) = &mut image.grating {
+                grating.frequency /= factor;
+            }
+        }
+        Light::Area { shape, .. } => {
+            resize(std::slice::from_mut(shape), &mut |size| size * factor);
+            let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
+                shape;
+            *center = center.map(|c| c * factor);
+        }
+        _ => {}
+    }
+    light
+}
+
+/// Returns a patch's frame after a turn about B at the central ray's hit point. The turn increases
+/// the angle of incidence θ₀ by `by`.
+fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
+    let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
+    let center = hit.arriving.origin;
+    Frame {
+        origin: center + turn * (frame.origin - center),
+        x: turn * frame.x,
+        y: turn * frame.y,
+        d: turn * frame.d,
+    }
+}
