@@ -2,8 +2,8 @@
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::scattering::{self, ScatteringChain};
-use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
+use etendue_theory::path::PathChain;
+use etendue_theory::{Model, Observed, Predicted, RayBudget, rays, scattering};
 
 /// Budget of rays. With this budget, the error of a prediction is a fifth of the noise of the
 /// photons.
@@ -27,11 +27,7 @@ pub(crate) fn linear(
 }
 
 /// Predicts the slices behind a surface with a BRDF, both exactly and by a first-order chain.
-pub(crate) fn scattered(
-    view: &Observed,
-    plane: &VirtualPlane,
-    chain: &ScatteringChain,
-) -> [Slices; 2] {
+pub(crate) fn scattered(view: &Observed, plane: &VirtualPlane, chain: &PathChain) -> [Slices; 2] {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
     let found = scattering::compare_chain(view, chain, over, BUDGET);

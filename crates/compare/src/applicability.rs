@@ -9,7 +9,7 @@ use crate::theory_input::{path, print, too_fine};
 use crate::unlit;
 use etendue_field::{VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Observed, PathKind, rays, reflections, scattering};
+use etendue_theory::{Observed, PathKind, rays};
 
 /// The theory that applies to a plane, or the reasons why none does.
 #[derive(Clone, Debug)]
@@ -201,10 +201,9 @@ impl Applicability {
 
     /// Describes the maps of the first-order chain along a path.
     fn maps(&self, scene: &Scene, view: &Observed) -> Option<Vec<String>> {
-        Some(match view.kind() {
-            PathKind::Specular => self.affine_chain(scene)?.steps,
-            PathKind::Scattered => scattering::chain(view)?.steps,
-            PathKind::Several => reflections::chain(view)?.steps,
-        })
+        if view.kind() == PathKind::Specular {
+            return Some(self.affine_chain(scene)?.steps);
+        }
+        Some(etendue_theory::path::chain(view)?.steps)
     }
 }

@@ -9,7 +9,7 @@ use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
-use etendue_theory::{Model, PathKind, scattering};
+use etendue_theory::{Model, PathKind, path};
 
 /// Returns the criterion for a plane behind a surface with a BRDF, perpendicular to the ray that
 /// leaves this surface. Returns `None` for any other plane. The share [`BANDWIDTH_FRACTION`] of a
@@ -28,20 +28,22 @@ pub fn criterion(
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
-    let chain = scattering::chain(view)?;
+    let chain = path::chain(view)?;
+    let surface = &chain.scatterers[0];
+    let from_light = surface.frame.origin.z;
     let mut before = system.masks.iter().map(|(distance, _)| *distance);
-    let last = before.rfind(|distance| *distance < chain.distance);
+    let last = before.rfind(|distance| *distance < from_light);
     let edge = if system.light.is_distant() {
         last
     } else {
         Some(last.unwrap_or(0.0))
     };
     Some(Criterion {
-        curvature: chain.curvature[0][0],
-        incidence: chain.incidence,
-        outgoing: chain.outgoing[0],
+        curvature: surface.curvature[0][0],
+        incidence: surface.incidence,
+        outgoing: surface.outgoing[0],
         distance: scene.path.along(plane),
-        blocker_distance: edge.map(|distance| chain.distance - distance),
+        blocker_distance: edge.map(|distance| from_light - distance),
         lobe_cutoff: sharpest_cutoff(system.scatterer().1),
         environment_cutoff: f64::INFINITY,
     })

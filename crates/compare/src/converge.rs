@@ -6,7 +6,7 @@ use crate::theory_input::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{
-    Model, NetMean, Observed, Over, PathKind, Predicted, RayBudget, rays, reflections,
+    Model, NetMean, Observed, Over, PathKind, Predicted, RayBudget, path, rays, reflections,
 };
 use serde::Serialize;
 
@@ -170,7 +170,7 @@ fn by_paths(
 /// Checks whether the central ray leaves a scattering surface beside the mirror direction. A lobe
 /// that becomes narrower would then no longer reach the window.
 fn are_beside_peaks(view: &Observed) -> Option<bool> {
-    let scatterers = reflections::chain(view)?.scatterers;
+    let scatterers = path::chain(view)?.scatterers;
     let mut angles = scatterers.iter().map(|scatterer| {
         let [longitude, latitude] = scatterer.outgoing;
         libm::hypot(longitude + scatterer.incidence, latitude)

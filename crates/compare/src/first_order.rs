@@ -7,10 +7,8 @@ use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
-use etendue_theory::path::PathSystem;
-use etendue_theory::{
-    Observed, Over, PathKind, Predicted, RayBudget, rays, reflections, scattering,
-};
+use etendue_theory::path::{self, PathSystem};
+use etendue_theory::{Observed, Over, PathKind, Predicted, RayBudget, rays};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -116,19 +114,12 @@ impl FirstOrder {
         over: Over<'_>,
         (exact, budget): (&Predicted, RayBudget),
     ) -> Option<Self> {
-        match view.kind() {
-            PathKind::Specular => Self::of_specular(scene, view, over, (exact, budget)),
-            PathKind::Scattered => {
-                let chain = scattering::chain(view)?;
-                let defect = scattering::defect(view, &chain)?;
-                Self::of_reflection(exact, defect, chain.rays().matrix)
-            }
-            PathKind::Several => {
-                let chain = reflections::chain(view)?;
-                let defect = reflections::defect(view, &chain)?;
-                Self::of_reflection(exact, defect, chain.rays().matrix)
-            }
+        if view.kind() == PathKind::Specular {
+            return Self::of_specular(scene, view, over, (exact, budget));
         }
+        let chain = path::chain(view)?;
+        let defect = path::defect(view, &chain)?;
+        Self::of_reflection(exact, defect, chain.rays().matrix)
     }
 
     fn of_specular(

@@ -2,7 +2,9 @@
 
 use crate::geometry::Matrix;
 use crate::obstacle::Obstacle;
-use etendue_field::{Grating, Hole, Mask, Shape, tidy};
+use etendue_field::{
+    AngleTable, Fresnel, Grating, Hole, Lobe, Mask, Pattern, Reflectance, Shape, Term, Weight, tidy,
+};
 
 /// Formats a number to six decimals, without trailing zeros.
 pub(crate) fn number(x: f64) -> String {
@@ -72,6 +74,94 @@ pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
         None => "any leg",
     };
     format!("multiply  by the visibility of {name} on {legs}")
+}
+
+/// Describes the angles of the central ray away from a surface. The latitude is the angle out of the
+/// plane of incidence.
+pub(crate) fn outgoing([longitude, latitude]: [f64; 2]) -> String {
+    let angle = degrees(longitude);
+    if latitude.abs() > 1e-9 {
+        let aside = degrees(latitude);
+        format!("map  outgoing angle {angle}, {aside} out of the plane of incidence")
+    } else {
+        format!("map  outgoing angle {angle}")
+    }
+}
+
+/// Describes the BRDFs as text. A single BRDF has a line for each step, and a sum of BRDFs has a
+/// line for each term.
+pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
+    let terms = &reflectance.terms;
+    let sum = terms.iter().enumerate().map(|(i, term)| {
+        let steps = term_in_words(term)
+            .map(|[_, what]| what)
+            .collect::<Vec<_>>();
+        let (i, count) = (i + 1, terms.len());
+        format!("convolve  with term {i} of {count}: {}", steps.join(", "))
+    });
+    let mut words: Vec<String> = match &terms[..] {
+        [one] => term_in_words(one)
+            .map(|[verb, what]| format!("{verb} {what}"))
+            .collect(),
+        _ => sum.collect(),
+    };
+    if let Some(texture) = &reflectance.texture {
+        words.push(format!("multiply  by the texture {}", varies(texture)));
+    }
+    words
+}
+
+/// Describes a term as text: the factor of the angle of incidence, the lobe, and the factor of the
+/// outgoing angle. Each description begins with a verb.
+fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
+    let brdf = &term.brdf;
+    let lobe = match brdf.lobe {
+        Lobe::Lambertian => "Lambertian".to_owned(),
+        Lobe::Phong { exponent } => format!("Phong, exponent {}", number(exponent)),
+        Lobe::Beckmann { roughness } => format!("Beckmann, roughness {}", number(roughness)),
+        Lobe::Ggx { roughness } => format!("GGX, roughness {}", number(roughness)),
+    };
+    let fresnel = match brdf.fresnel {
+        Fresnel::White => None,
+        Fresnel::Dielectric { index } => Some(number(index)),
+        Fresnel::Conductor { n, k } => Some(format!("{} + {} i", number(n), number(k))),
+    };
+    let weight = match &term.weight {
+        Weight::One => String::new(),
+        Weight::Pattern(pattern) => format!(", weighted by {}", varies(pattern)),
+        Weight::Rest(pattern) => format!(", weighted by 1 − ({})", varies(pattern)),
+    };
+    let table = |angle: &str, table: &AngleTable| {
+        let values = table.values.len();
+        [
+            "multiply  by the".to_owned(),
+            format!("factor of {angle}, {values} values"),
+        ]
+    };
+    let fresnel = fresnel.map(|index| {
+        [
+            "multiply  by the".to_owned(),
+            format!("Fresnel factor of index {index}"),
+        ]
+    });
+    let incoming = brdf.incoming.as_ref().map(|f| table("θi", f));
+    let lobe = format!("BRDF {lobe}, albedo {}{weight}", number(brdf.albedo));
+    let outgoing = brdf.outgoing.as_ref().map(|h| table("θo", h));
+    let convolved = Some(["convolve  with the".to_owned(), lobe]);
+    [fresnel, incoming, convolved, outgoing]
+        .into_iter()
+        .flatten()
+}
+
+fn varies(pattern: &Pattern) -> String {
+    match pattern {
+        Pattern::Cosine(grating) => formula(grating, ["s", "t"]),
+        Pattern::Picture(picture) => {
+            let [w, h] = picture.size;
+            format!("picture of {} x {} m", number(w), number(h))
+        }
+        Pattern::Checkerboard { period } => format!("checkerboard of period {} m", number(*period)),
+    }
 }
 
 /// Describes opaque shapes, e.g. "4 opaque rectangles, 1 half-plane".

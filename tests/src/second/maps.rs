@@ -13,8 +13,8 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Side, Specular,
 };
 use etendue_theory::geometry::{AffineMap, Edition};
-use etendue_theory::path::{Interaction, PathSurface, PathSystem};
-use etendue_theory::{Observed, Plane, rays, scattering};
+use etendue_theory::path::{self, Interaction, PathSurface, PathSystem};
+use etendue_theory::{Observed, Plane, rays};
 use std::path::Path;
 
 /// Half of the step between the two rays of a finite difference, in metres or radians.
@@ -180,10 +180,10 @@ fn onto(dice: &mut Dice, fault: &str) -> f64 {
     let smooth = met.smooth.wrong(fault);
     let looking = Looking::new(&smooth, &met.legs, ("", true, View::Local));
     let leaving = Looking::new(&smooth, &met.legs, ("", false, View::Across));
-    let Some(chain) = scattering::chain(&met.scattering(met.plane(&leaving))) else {
+    let Some(chain) = path::chain(&met.scattering(met.plane(&leaving))) else {
         return f64::NAN;
     };
-    apart(&chain.onto, [0.0; 4], |z| {
+    apart(&chain.maps[0], [0.0; 4], |z| {
         let (start, along) = met.emitted(z);
         looking.seen(start, along, fault)
     })
@@ -195,20 +195,17 @@ fn off(dice: &mut Dice, fault: &str) -> f64 {
     let met = Met::new(dice);
     let leaving = *dice.pick(&PLANES[4..]);
     let looking = Looking::new(&met.smooth, &met.legs, leaving);
-    let Some(chain) = scattering::chain(&met.scattering(met.plane(&looking))) else {
+    let Some(chain) = path::chain(&met.scattering(met.plane(&looking))) else {
         return f64::NAN;
     };
     let (axes, longitude) = met.legs.leaving;
-    apart(
-        &chain.off,
-        [0.0, 0.0, longitude, 0.0],
-        |[s, t, theta, phi]| {
-            let [p, q, _] = met.smooth.axes.coordinates(axes.point([s, t, 0.0]));
-            let point = met.smooth.point(p, q);
-            let normal = met.smooth.normal(point);
-            let local = [phi.cos() * theta.sin(), phi.sin(), phi.cos() * theta.cos()];
-            let along = turned_along(axes.vector(local), axes.d, normal);
-            looking.seen(point, along, fault)
-        },
-    )
+    apart(&chain.maps[1], [0.0; 4], |[s, t, theta, phi]| {
+        let theta = longitude + theta;
+        let [p, q, _] = met.smooth.axes.coordinates(axes.point([s, t, 0.0]));
+        let point = met.smooth.point(p, q);
+        let normal = met.smooth.normal(point);
+        let local = [phi.cos() * theta.sin(), phi.sin(), phi.cos() * theta.cos()];
+        let along = turned_along(axes.vector(local), axes.d, normal);
+        looking.seen(point, along, fault)
+    })
 }

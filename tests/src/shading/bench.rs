@@ -7,8 +7,7 @@ use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Reflectance, Slices
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
 use etendue_theory::Observed;
-use etendue_theory::path::Interaction;
-use etendue_theory::scattering::chain;
+use etendue_theory::path::{Interaction, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
 

@@ -12,7 +12,7 @@ use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::scattering::{ScatteringChain, chain, defect};
+use etendue_theory::path::{PathChain, ScatteringSurface, chain, defect};
 
 /// Significance level of the test of the exact prediction; the result of this test is not used
 /// for chains.
@@ -21,33 +21,44 @@ const LEVEL: f64 = 0.01;
 const PHOTONS: u64 = 1 << 22;
 const SCENE: &str = "textured_glossy";
 
-type Change = fn(&mut ScatteringChain);
+type Change = fn(&mut PathChain);
 
 fn faults() -> Vec<(&'static str, Change)> {
     vec![
         ("none", |_| ()),
         ("onto: curvature left out", |c| {
-            c.onto = c.onto.then(&AffineMap::<4>::back(c.curvature, c.incidence));
+            let back = AffineMap::<4>::back(surface(c).curvature, surface(c).incidence);
+            c.maps[0] = c.maps[0].then(&back);
         }),
         ("onto: 1/cos θ₀ beside x left out", |c| {
-            row(&mut c.onto, 0, c.incidence.cos());
+            let cos = surface(c).incidence.cos();
+            row(&mut c.maps[0], 0, cos);
         }),
         ("onto: 1/cos θ₀ beside x counted twice", |c| {
-            row(&mut c.onto, 0, 1.0 / c.incidence.cos());
+            let cos = surface(c).incidence.cos();
+            row(&mut c.maps[0], 0, 1.0 / cos);
         }),
         ("off: curvature left out", |c| {
-            let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
-            c.off = forth.then(&c.off);
+            c.maps[1] = forth(c).then(&c.maps[1]);
         }),
         ("off: wrong sign of curvature", |c| {
-            let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
-            c.off = forth.then(&forth).then(&c.off);
+            c.maps[1] = forth(c).then(&forth(c)).then(&c.maps[1]);
         }),
         ("off: cos θ₁ beside x left out", |c| {
-            row(&mut c.off, 0, 1.0 / c.outgoing[0].cos());
+            let cos = surface(c).outgoing[0].cos();
+            row(&mut c.maps[1], 0, 1.0 / cos);
         }),
-        ("off: wrong sign of y", |c| row(&mut c.off, 1, -1.0)),
+        ("off: wrong sign of y", |c| row(&mut c.maps[1], 1, -1.0)),
     ]
+}
+
+fn surface(chain: &PathChain) -> &ScatteringSurface {
+    &chain.scatterers[0]
+}
+
+/// Returns the map into local normals, for light that leaves the surface.
+fn forth(chain: &PathChain) -> AffineMap<4> {
+    AffineMap::<4>::curvature(surface(chain).curvature, surface(chain).outgoing[0])
 }
 
 fn row(map: &mut AffineMap<4>, row: usize, by: f64) {
@@ -133,7 +144,7 @@ fn judged(
     scene: &Scene,
     measurement: &Measurement,
     sound: &Prediction,
-    tampered: &ScatteringChain,
+    tampered: &PathChain,
     slices: Slices,
 ) -> FirstOrderReport {
     let view = path(scene, &scene.planes[0]).expect("a plane behind a BRDF");

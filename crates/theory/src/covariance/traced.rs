@@ -4,9 +4,9 @@ use super::factors;
 use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
 use crate::parallel::{Chain, Operator};
-use crate::path::{Observed, PathKind, PathSystem};
+use crate::path::{self, Observed, PathKind, PathSystem};
 use crate::plane::Plane;
-use crate::{rays, scattering};
+use crate::rays;
 use etendue_field::{
     Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
 };
@@ -102,17 +102,18 @@ fn after_specular(view: &Observed) -> Result<SpectralCovariance, Untraced> {
 }
 
 fn after_scatterer(view: &Observed) -> Result<SpectralCovariance, Untraced> {
-    let chain = scattering::chain(view).ok_or(Untraced::Lost)?;
+    let chain = path::chain(view).ok_or(Untraced::Lost)?;
+    let scatterer = &chain.scatterers[0];
     let (patch, reflectance) = view.system.scatterer();
     let brdf = reflectance.only().ok_or(Untraced::Reflectance)?;
     if brdf.incoming.is_some() || brdf.outgoing.is_some() {
         return Err(Untraced::Reflectance);
     }
-    let (light, travelled) = past_masks(view, chain.distance)?;
-    let onto = AffineMap::travel(-travelled).then(&chain.onto);
+    let (light, travelled) = past_masks(view, scatterer.frame.origin.z)?;
+    let onto = AffineMap::travel(-travelled).then(&chain.maps[0]);
     let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
     let turned = moved(&arriving, &AffineMap::mirror())?;
-    let mut leaving = match factors::lobe(&brdf.lobe, chain.incidence) {
+    let mut leaving = match factors::lobe(&brdf.lobe, scatterer.incidence) {
         Some(lobe) => turned.convolved(&lobe),
         None => turned.diffused(),
     };
@@ -121,10 +122,10 @@ fn after_scatterer(view: &Observed) -> Result<SpectralCovariance, Untraced> {
             return Err(Untraced::Reflectance);
         };
         let axis = [patch.frame.x, patch.frame.y][lines.axis];
-        let along = [chain.frame.x, chain.frame.y].map(|t| axis.dot(t));
+        let along = [scatterer.frame.x, scatterer.frame.y].map(|t| axis.dot(t));
         leaving = leaving.multiplied(&along_line(along, factors::grating(lines)));
     }
-    moved(&leaving, &chain.off)
+    moved(&leaving, &chain.maps[1])
 }
 
 /// Returns the covariance of light at the source. The light is replaced by a Gaussian that has the

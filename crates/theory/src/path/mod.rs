@@ -16,10 +16,14 @@
 //!
 //! The theory of a path shares no intersection, BRDF evaluation or sampling code with the tracers.
 
+mod chain;
 mod model;
 mod prepared;
 mod surface;
 
+pub use chain::{PathChain, ScatteringSurface, chain, defect};
+
+pub(crate) use chain::{local, towards};
 pub(crate) use prepared::PreparedPath;
 
 use crate::obstacle::Obstacle;

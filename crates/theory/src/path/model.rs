@@ -1,6 +1,6 @@
 //! The parameters and the prediction of a path.
 
-use super::{Interaction, Observed, PathKind, PathSurface, PathSystem};
+use super::{Interaction, Observed, PathKind, PathSurface, PathSystem, chain};
 use crate::model::{Model, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
@@ -136,7 +136,7 @@ impl Model for Observed {
         match self.kind() {
             PathKind::Specular => rays::with_rays(self, over, budget, then),
             PathKind::Scattered => {
-                scattering::with_rays(self, scattering::chain(self).as_ref(), over, budget, then);
+                scattering::with_rays(self, chain(self).as_ref(), over, budget, then);
             }
             PathKind::Several => reflections::with_rays(self, over, budget, then),
         }
@@ -158,8 +158,7 @@ impl Observed {
         match self.kind() {
             PathKind::Specular => rays::predict(self, moved, over, budget),
             PathKind::Scattered => {
-                let chain = scattering::chain(self);
-                scattering::predict(self, chain.as_ref(), moved, over, budget)
+                scattering::predict(self, chain(self).as_ref(), moved, over, budget)
             }
             PathKind::Several => reflections::predict(self, moved, over, budget),
         }

@@ -6,10 +6,10 @@
 //! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
 //! first order.
 
-use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::path::{Observed, PathSystem};
+use crate::path::{ScatteringSurface, towards};
 use etendue_field::{Frame, Light, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;

@@ -7,12 +7,12 @@
 //! all paths.
 
 use super::aim::DirectionCoordinates;
-use super::chain::ScatteringSurface;
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use crate::geometry::AffineMap;
 use crate::obstacle::LegRay;
 use crate::path::PathSurface;
-use crate::scattering::local;
+use crate::path::ScatteringSurface;
+use crate::path::local;
 use glam::DVec3;
 
 /// The share of directions that are sampled by the angles of the lobe, if the other directions are

@@ -16,7 +16,6 @@
 //! is computed as a sum over the paths of the exact prediction.
 
 mod aim;
-mod chain;
 mod direction;
 mod guide;
 mod path;
@@ -25,7 +24,6 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{ReflectionChain, chain, defect};
 pub use predict::by_paths;
 
 pub(crate) use predict::{predict, with_rays};

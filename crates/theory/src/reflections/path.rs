@@ -1,15 +1,16 @@
 //! Samples a path from the light to the plane, for a point of the unit cube.
 
 use super::aim::DirectionCoordinates;
-use super::chain::{ReflectionChain, ScatteringSurface, chain};
 use super::direction::OutgoingDirections;
 use super::guide::{Conditional, Gaussian, HeavyTailedGaussian};
 use super::sky::SkyRays;
 use crate::nets::{DIMENSIONS, RayNode};
 use crate::obstacle::LegRay;
-use crate::path::{Observed, PatchExtent, PathSurface, PreparedPath};
+use crate::path::local;
+use crate::path::{
+    Observed, PatchExtent, PathChain, PathSurface, PreparedPath, ScatteringSurface, chain,
+};
 use crate::rays::{emitted, point_of};
-use crate::scattering::local;
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -20,7 +21,7 @@ pub(super) struct FieldPaths<'a> {
     view: &'a Observed,
     window: &'a Window,
     occluders: PreparedPath<'a>,
-    chain: ReflectionChain,
+    chain: PathChain,
     start: PathStart<'a>,
     /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
     guides: Vec<Conditional>,
@@ -45,7 +46,7 @@ impl<'a> PathStart<'a> {
     /// window. `aim` contains the coordinates of the leg from the light.
     fn new(
         view: &'a Observed,
-        chain: &ReflectionChain,
+        chain: &PathChain,
         guide: &Gaussian<4>,
         aim: DirectionCoordinates,
     ) -> Option<Self> {

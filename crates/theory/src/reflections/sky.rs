@@ -6,10 +6,10 @@
 //! directions are sampled by the guide, so no narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
-use super::chain::{ScatteringSurface, towards};
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
+use crate::path::local;
+use crate::path::{ScatteringSurface, towards};
 use crate::rays::AT_LIGHT;
-use crate::scattering::local;
 use crate::sky::SkyDensity;
 use etendue_field::{Environment, Frame};
 use glam::DVec3;

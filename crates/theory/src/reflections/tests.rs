@@ -4,7 +4,7 @@
 use super::*;
 use crate::model::Over;
 use crate::obstacle::{Obstacle, ObstacleForm};
-use crate::path::{Interaction, PathSurface, PathSystem};
+use crate::path::{Interaction, PathSurface, PathSystem, chain, defect};
 use crate::testing::window;
 use crate::{Model, Observed, Parameter, Plane, Predicted, RayBudget};
 use etendue_field::{

@@ -6,13 +6,12 @@
 //! the rays are sampled from each, and all rays are weighted by the mixture of both densities (the
 //! balance heuristic, Veach and Guibas 1995).
 
-use super::ScatteringChain;
 use super::brdf::narrowest;
 use super::exact::Leaving;
 use super::incoming::{LightPart, secant};
 use crate::geometry::{AffineMap, Matrix, product, times};
 use crate::nets::LinearDensity;
-use crate::path::PathSystem;
+use crate::path::{PathChain, PathSystem};
 use crate::sky::SkyDensity;
 use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
@@ -100,7 +99,7 @@ impl PlaneRaySampler {
     pub(super) fn new(
         system: &PathSystem,
         window: &Window,
-        chain: Option<&ScatteringChain>,
+        chain: Option<&PathChain>,
         strategy: LightStrategy,
     ) -> Self {
         let profiles = [window.x, window.y, window.u, window.v];
@@ -134,8 +133,8 @@ impl PlaneRaySampler {
 impl Mirrored {
     /// Returns `None` if light comes from all directions, or if the slopes at the plane do not
     /// determine the angles on the surface.
-    fn new(system: &PathSystem, chain: &ScatteringChain) -> Option<Self> {
-        let off = chain.off.inverse()?;
+    fn new(system: &PathSystem, chain: &PathChain) -> Option<Self> {
+        let off = super::back(chain)?;
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
@@ -146,7 +145,7 @@ impl Mirrored {
             Light::Beam { .. } => 0,
             _ => 2,
         };
-        let onto = &chain.onto;
+        let onto = &chain.maps[0];
         let (places, _) = inverted(&block(onto, 0, free))?;
         // `per_place` is the change of the angles of incidence per change of position on the
         // surface.
@@ -168,7 +167,9 @@ impl Mirrored {
         ];
         let (inverse, determinant) = inverted(&by(2))?;
         let shape = system.light.shape();
-        let light = shape.map_or(0.0, |shape| radius(shape) / chain.distance);
+        let light = shape.map_or(0.0, |shape| {
+            radius(shape) / chain.scatterers[0].frame.origin.z
+        });
         Some(Self {
             first,
             at: by(0),

@@ -1,11 +1,10 @@
 //! The radiance of a ray at a plane in the first-order chain.
 
-use super::brdf;
-use super::chain::ScatteringChain;
 use super::incoming::{IncomingLight, LightPart};
+use super::{back, brdf};
 use crate::geometry::{AffineMap, Matrix};
 use crate::obstacle::LegRay;
-use crate::path::{PathSystem, PreparedPath};
+use crate::path::{PathChain, PathSystem, PreparedPath, ScatteringSurface};
 use etendue_field::{Brdf, Frame, Lobe, Reflectance};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -14,9 +13,11 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
     reflectance: &'a Reflectance,
-    chain: &'a ScatteringChain,
+    scatterer: &'a ScatteringSurface,
+    /// The map from the light to local coordinates of the direction of incidence.
+    onto: AffineMap<4>,
     /// The map from the plane to local coordinates of the outgoing direction.
-    off: AffineMap<4>,
+    back: AffineMap<4>,
     /// The matrix that converts positions on the surface to positions in a plane. This plane is
     /// perpendicular to the light's axis and as far from the light as the surface.
     across: [[f64; 2]; 2],
@@ -28,39 +29,41 @@ pub(super) struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a PathSystem, chain: &'a ScatteringChain) -> Option<Self> {
-        let m = &chain.onto.matrix;
+    pub(super) fn new(system: &'a PathSystem, chain: &'a PathChain) -> Option<Self> {
+        let scatterer = &chain.scatterers[0];
+        let distance = scatterer.frame.origin.z;
+        let m = &chain.maps[0].matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
         let across = [[d / det, -b / det], [-c / det, a / det]];
         // At a fixed position on the surface, a change of the slope u changes the position at the
         // light by −u times the distance.
-        let slope =
-            |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
+        let slope = |row: usize, column: usize| m[row][2 + column] - distance * m[row][column];
         Some(Self {
             reflectance: system.scatterer().1,
-            chain,
-            off: chain.off.inverse()?,
+            scatterer,
+            onto: chain.maps[0],
+            back: back(chain)?,
             across,
             angles: [[slope(2, 0), slope(2, 1)], [slope(3, 0), slope(3, 1)]],
-            frame: system.scatterer().0.frame.decompose(&chain.frame),
+            frame: system.scatterer().0.frame.decompose(&scatterer.frame),
         })
     }
 
     /// Returns the point that represents a position (s, t) on the surface. The point is in the
     /// plane perpendicular to the light's axis.
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
-        let [offset_s, offset_t, ..] = self.chain.onto.offset;
+        let [offset_s, offset_t, ..] = self.onto.offset;
         let (s, t) = (s - offset_s, t - offset_t);
         let [[a, b], [c, d]] = self.across;
-        DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
+        DVec3::new(a * s + b * t, c * s + d * t, self.scatterer.frame.origin.z)
     }
 
     /// Returns the radiance that a part of the light causes along the ray with coordinates z at the
     /// plane, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the
     /// mirror direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, path: &PreparedPath<'_>, z: [f64; 4], part: LightPart) -> f64 {
-        let local = self.off.apply(z);
+        let local = self.back.apply(z);
         let point = self.point(local);
         let passes = |ray: &LegRay, length| path.passes_beside(0, ray, length);
         let IncomingLight { slopes, weight } = path.incoming(point, part, passes);
@@ -75,7 +78,7 @@ impl<'a> Linear<'a> {
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
         // The local angles of a ray that is parallel to the light's axis and hits the surface at
         // this position.
-        let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
+        let [_, _, theta, phi] = self.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (
             theta + a * longitude + b * latitude,
@@ -86,7 +89,7 @@ impl<'a> Linear<'a> {
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
         let mixture = self.reflectance.at(at.x, at.y);
-        let incidence = self.chain.incidence;
+        let incidence = self.scatterer.incidence;
         let sum = mixture.weighted().map(|(weight, brdf)| {
             weight * kernel(brdf, incidence, [theta, phi], [to_theta, to_phi])
         });

@@ -8,16 +8,15 @@
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
-//! The function [`chain`](chain()) returns the chain of first-order operators (Durand et al. 2005,
-//! section 4). This chain consists of affine maps onto the surface and off the surface, a product
-//! with the clamped cosine, and a convolution with the lobe of the BRDF at the central ray. The
-//! error of the chain and the derivatives are computed as sums over the same rays.
+//! The [chain](crate::path::chain()) of first-order operators (Durand et al. 2005, section 4)
+//! consists of affine maps onto the surface and off the surface, a product with the clamped cosine,
+//! and a convolution with the lobe of the BRDF at the central ray. The error of the chain and the
+//! derivatives are computed as sums over the same rays.
 //!
 //! This module and the tracers share no code for intersection, BRDF evaluation or sampling. The
 //! theory and the tracers share only the variation of a BRDF over a surface, in `etendue_field`.
 
 pub mod brdf;
-mod chain;
 mod draw;
 mod exact;
 mod incoming;
@@ -27,12 +26,27 @@ mod predict;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{ScatteringChain, chain, defect};
 pub use operator::semi_convolution;
 pub use predict::compare_chain;
 
 pub(crate) use brdf::narrowest;
-pub(crate) use chain::{local, reflection};
 pub(crate) use draw::{bell, bell_density};
 pub(crate) use linear::kernel;
 pub(crate) use predict::{predict, with_rays};
+
+use crate::geometry::AffineMap;
+use crate::path::PathChain;
+
+/// Returns the map from coordinates of the plane to local coordinates, at the surface, of the
+/// direction in which a ray leaves.
+fn back(chain: &PathChain) -> Option<AffineMap<4>> {
+    let mut back = chain.maps[1].inverse()?;
+    // The chain's angles are relative to the central ray.
+    for (offset, angle) in back.offset[2..]
+        .iter_mut()
+        .zip(chain.scatterers[0].outgoing)
+    {
+        *offset += angle;
+    }
+    Some(back)
+}

@@ -1,6 +1,5 @@
 //! Predicts the slices of scattered light by sums over scrambled nets of rays.
 
-use super::ScatteringChain;
 use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
 use super::incoming::LightPart;
@@ -8,9 +7,7 @@ use super::linear::Linear;
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
-use crate::path::Observed;
-use crate::path::PathSystem;
-use crate::path::PreparedPath;
+use crate::path::{Observed, PathChain, PathSystem, PreparedPath};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
@@ -21,7 +18,7 @@ use glam::DVec3;
 ///
 /// Rays are sampled at the plane. Each ray leaves the surface at a point, and one or four parts of
 /// the light that shine on this point are sampled (docs/theory.md (40)). `chain` guides the
-/// sampling; the function [`chain`](super::chain()) returns such a chain. The result is bitwise
+/// sampling; the function [`chain`](crate::path::chain()) returns such a chain. The result is bitwise
 /// identical on any number of threads.
 ///
 /// The difference between the chain and the exact prediction is a sum over rays of differences
@@ -32,7 +29,7 @@ use glam::DVec3;
 /// A larger step of the difference reduces this noise.
 pub(crate) fn predict(
     view: &Observed,
-    chain: Option<&ScatteringChain>,
+    chain: Option<&PathChain>,
     moved: &[ShiftedModels<Observed>],
     (window, grid, picture): Over<'_>,
     budget: RayBudget,
@@ -53,7 +50,7 @@ pub(crate) fn predict(
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
     view: &Observed,
-    chain: Option<&ScatteringChain>,
+    chain: Option<&PathChain>,
     (window, grid, _): Over<'_>,
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
@@ -67,7 +64,7 @@ pub(crate) fn with_rays(
 /// Returns the strategy that has the smallest error for the same computing time.
 fn fastest(
     view: &Observed,
-    chain: Option<&ScatteringChain>,
+    chain: Option<&PathChain>,
     (window, grid): (&Window, &SliceGrid),
     budget: RayBudget,
 ) -> LightStrategy {
@@ -87,11 +84,11 @@ fn affordable(system: &PathSystem, budget: RayBudget) -> RayBudget {
 }
 
 /// Returns the exact prediction, and the difference between a given chain and this prediction. The
-/// chain may differ from the result of [`chain`](super::chain()).
+/// chain may differ from the result of [`chain`](crate::path::chain()).
 #[must_use]
 pub fn compare_chain(
     view: &Observed,
-    chain: &ScatteringChain,
+    chain: &PathChain,
     over: Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
@@ -141,11 +138,11 @@ impl<'a> ScatteredField<'a> {
     fn new(
         view: &'a Observed,
         window: &'a Window,
-        chain: Option<&ScatteringChain>,
+        chain: Option<&PathChain>,
         strategy: LightStrategy,
     ) -> Self {
         let system = &view.system;
-        let normal = chain.map_or(DVec3::NEG_Z, |chain| chain.frame.d);
+        let normal = chain.map_or(DVec3::NEG_Z, |chain| chain.scatterers[0].frame.d);
         Self {
             view,
             window,
@@ -288,7 +285,7 @@ struct VariedFields<'a> {
 impl<'a> VariedFields<'a> {
     fn new(
         field: &'a ScatteredField<'a>,
-        chain: Option<&'a ScatteringChain>,
+        chain: Option<&'a PathChain>,
         moved: &'a [ShiftedModels<Observed>],
         strategy: LightStrategy,
     ) -> Self {

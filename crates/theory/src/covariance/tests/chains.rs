@@ -4,11 +4,11 @@ use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
-use crate::path::{Interaction, PathSurface, PathSystem};
+use crate::path::{self, Interaction, PathSurface, PathSystem};
 use crate::plane::Plane;
 use crate::rays;
 use crate::testing::{chain_of, opaque};
-use crate::{Chain, Observed, Operator, scattering};
+use crate::{Chain, Observed, Operator};
 use etendue_field::{
     Brdf, Disc, Frame, Fresnel, Grating, Image, Light, Lobe, Mask, Patch, Pattern, Profile,
     Reflectance, Shape, Specular, Window,
@@ -158,29 +158,30 @@ fn behind_a_textured_lobe() {
             plane: beyond(),
         }
     };
-    let chain = scattering::chain(&view(None)).unwrap();
+    let chain = path::chain(&view(None)).unwrap();
     let light = [0.15, 0.2].map(|width: f64| width * width / TAU);
     let light = diagonal([0.0, 0.0, light[0], light[1]]);
     // The cosine acts as a Gaussian window of variances ½ and ⅜ over the two angles.
     let endless = f64::INFINITY;
     let cosine = [endless, endless, 0.5_f64.sqrt(), 0.375_f64.sqrt()];
-    let lit = gaussian_window(&chain.onto.covariance(&light), cosine).unwrap();
+    let lit = gaussian_window(&chain.maps[0].covariance(&light), cosine).unwrap();
     let mirrored = AffineMap::<4>::mirror().covariance(&lit);
     let left = sum(&mirrored, &diagonal([0.0, 0.0, 0.01, 0.01]));
-    let expected = windowed(&chain.off.covariance(&left));
+    let expected = windowed(&chain.maps[1].covariance(&left));
     let plain = of(&view(None));
     assert!(apart(&plain, &expected) < 1e-10); // rounding; both have the same difference maps
     // The grating adds the variance of its spectral lines along the axis of the patch on which its
     // transmission varies.
     let textured = of(&view(Some(Pattern::Cosine(lines))));
     let mut along = [[0.0; 4]; 4];
-    let axis = [chain.frame.x, chain.frame.y].map(|t| t.dot(patch().frame.x));
+    let frame = chain.scatterers[0].frame;
+    let axis = [frame.x, frame.y].map(|t| t.dot(patch().frame.x));
     for (i, a) in axis.iter().enumerate() {
         for (j, b) in axis.iter().enumerate() {
             along[i][j] = a * b * 9.0 * 0.81 / 2.81;
         }
     }
-    let added = chain.off.spectral_covariance(&along).unwrap();
+    let added = chain.maps[1].spectral_covariance(&along).unwrap();
     assert!(apart(&textured, &sum(&plain, &added)) < 1e-10); // rounding
     let squares = Pattern::Checkerboard { period: 0.1 };
     let untraced = view(Some(squares)).spectral_covariance();

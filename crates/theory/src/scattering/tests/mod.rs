@@ -3,7 +3,7 @@
 use super::*;
 use crate::RayBudget;
 use crate::geometry::AffineMap;
-use crate::path::{Interaction, PathSurface, PathSystem, PreparedPath};
+use crate::path::{Interaction, PathChain, PathSurface, PathSystem, PreparedPath, chain};
 use crate::testing::{chain_of, opaque, window};
 use crate::{Model, Observed, Operator, Parameter, Plane, Predicted, slices};
 use etendue_field::{
@@ -35,7 +35,7 @@ fn linearised(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: &ScatteringChain,
+    chain: &PathChain,
 ) -> f64 {
     let right = by(system, plane, window, grid, Some(chain));
     let mut near = right.to_first_order.unwrap().slices;
@@ -55,7 +55,7 @@ fn by(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: Option<&ScatteringChain>,
+    chain: Option<&PathChain>,
 ) -> Predicted {
     let budget = RayBudget::new(2e6, 1e-4);
     let picture = ProjectionGrid::new(window, 8);
@@ -228,7 +228,12 @@ fn chain_is_the_product_of_operators() {
         let off = AffineMap::<4>::back(shape, -theta0)
             .then(&AffineMap::<4>::outgoing(-theta0))
             .then(&AffineMap::<4>::travel(0.7));
-        for (read, put) in [(&read.onto, onto), (&read.off, off)] {
+        // The chain's angles after the surface are relative to the central ray.
+        let off = AffineMap {
+            offset: off.apply([0.0, 0.0, -theta0, 0.0]),
+            ..off
+        };
+        for (read, put) in [(&read.maps[0], onto), (&read.maps[1], off)] {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -349,17 +354,16 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&view(&system, &plane)).unwrap();
-    let error = |system: &PathSystem, chain: &ScatteringChain| {
-        linearised(system, &plane, &window, &grid, chain)
-    };
+    let error =
+        |system: &PathSystem, chain: &PathChain| linearised(system, &plane, &window, &grid, chain);
     let least = error(&system, &sound);
     let mut turned = sound.clone();
     // In this wrong chain the central ray arrives along the normal, so the cosine is 1 and the
     // mirror direction is the normal.
-    turned.onto.offset[2] = 0.0;
+    turned.maps[0].offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
     let mut sheared = sound;
-    sheared.onto.matrix[2][0] *= -1.0;
+    sheared.maps[0].matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
     let exact_error = |other: &PathSystem| {
         exact(other, &plane, &window, &grid)

@@ -1,13 +1,12 @@
-//! The first-order chain, which consists of affine maps between scattering surfaces and the lobes
-//! of these surfaces.
+//! The first-order chain of a path on which surfaces scatter light. It consists of affine maps
+//! between these surfaces and of their lobes.
 
+use super::{Interaction, Observed, PathSurface};
 use crate::geometry::{AffineMap, Matrix};
 use crate::obstacle::{LegRay, normal};
-use crate::path::{Interaction, Observed, PathSurface};
 use crate::rays::Incidence;
-use crate::scattering::{local, reflection};
 use crate::words::{self, degrees};
-use etendue_field::{Frame, Specular};
+use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
 
 /// The path of the central ray, with first-order maps of the rays near the central ray.
@@ -16,7 +15,7 @@ use glam::DVec3;
 /// and two angles about the local normal. The angles are the longitude and latitude of a direction
 /// away from the surface. T lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReflectionChain {
+pub struct PathChain {
     /// The scattering surfaces, in the order in which light meets them.
     pub scatterers: Vec<ScatteringSurface>,
     /// The affine maps, one more than there are scatterers. The first map takes (x, y, u, v) at the
@@ -37,6 +36,8 @@ pub struct ScatteringSurface {
     /// The axes (T, B, N) at the central ray's hit, with N on the side from which light is
     /// scattered.
     pub frame: Frame,
+    /// The surface's shape operator along (T, B), per metre. It is positive for convex surfaces.
+    pub curvature: Matrix<2>,
     /// Longitude of the direction from which the central ray comes.
     pub incidence: f64,
     /// Longitude and latitude of the direction in which the central ray leaves.
@@ -46,12 +47,14 @@ pub struct ScatteringSurface {
 /// Returns the chain of a system up to a plane; `None` if the central ray does not arrive at the
 /// plane.
 ///
-/// The maps of the chain are the derivatives of the exact rays.
+/// The maps of the chain are the derivatives of the exact rays. Apart from rotations of the axes, the
+/// maps equal the corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section
+/// 7), as the tests verify.
 #[must_use]
-pub fn chain(view: &Observed) -> Option<ReflectionChain> {
+pub fn chain(view: &Observed) -> Option<PathChain> {
     let scatterers = scatterers(view)?;
     let maps = (0..=scatterers.len()).map(|leg| map(view, &scatterers, leg));
-    Some(ReflectionChain {
+    Some(PathChain {
         maps: maps.collect::<Option<_>>()?,
         steps: steps(view, &scatterers)?,
         scatterers,
@@ -62,13 +65,13 @@ pub fn chain(view: &Observed) -> Option<ReflectionChain> {
 /// rays, in metres or radians, or as a ratio of these. The difference is zero for the chain that
 /// [`chain`] returns.
 #[must_use]
-pub fn defect(view: &Observed, tried: &ReflectionChain) -> Option<f64> {
+pub fn defect(view: &Observed, tried: &PathChain) -> Option<f64> {
     let traced = chain(view)?;
     let pairs = tried.maps.iter().zip(&traced.maps);
     Some(pairs.fold(0.0, |most, (a, b)| a.apart(b, &[1.0; 4]).max(most)))
 }
 
-impl ReflectionChain {
+impl PathChain {
     /// Returns the map z' = A z from the light to the plane, for rays that every scatterer reflects
     /// in the mirror direction.
     #[must_use]
@@ -79,6 +82,19 @@ impl ReflectionChain {
             rays.then(&AffineMap::<4>::mirror()).then(map)
         })
     }
+}
+
+/// Returns the local coordinates of a point of a surface and of a direction away from the surface.
+/// `frame` has the axes at the central ray's hit.
+pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
+    let at = frame.to_local(point);
+    let away = frame.turned_to(normal).vector_to_local(away);
+    [
+        at.x,
+        at.y,
+        libm::atan2(away.x, away.z),
+        libm::asin(away.y.clamp(-1.0, 1.0)),
+    ]
 }
 
 fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
@@ -111,6 +127,7 @@ fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
         found.push(ScatteringSurface {
             number,
             frame,
+            curvature: incidence.shape(&surface.patch, hit),
             incidence: incidence.theta0,
             outgoing: [longitude, latitude],
         });
@@ -164,7 +181,7 @@ impl ScatteringSurface {
 
 /// Returns the direction with a longitude and a latitude about a normal. The angles are measured in
 /// the axes of a frame after its D is turned to the normal.
-pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
+pub(crate) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
     let away = DVec3::new(across * sin, up, across * cos);
     frame.turned_to(normal).vector_to_world(away)
@@ -172,42 +189,62 @@ pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> D
 
 fn steps(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Vec<String>> {
     let Observed { system, plane } = view;
-    let masks = system.masks.iter().map(|(_, mask)| words::mask("", mask));
-    let obstacles = system.obstacles.iter().map(words::obstacle);
-    let mut steps: Vec<String> = masks.chain(obstacles).collect();
-    let (mut at, mut name) = (DVec3::ZERO, "light");
+    let visited = system.before_plane();
+    let mut steps = Vec::new();
+    let (mut name, mut travelled) = ("light", 0.0);
+    let first_leg = visited.first()?.hit.z;
+    for (distance, mask) in system.masks.iter().filter(|(at, _)| *at < first_leg) {
+        steps.push(words::travel(distance - travelled, name, "mask"));
+        steps.push(words::mask("", mask));
+        (name, travelled) = ("mask", *distance);
+    }
+    let mut at = DVec3::Z * travelled;
+    let is_on_last = plane.orientation != Orientation::Orthogonal && !plane.is_arriving();
     let mut scatterers = scatterers.iter().peekable();
-    for (number, surface) in system.before_plane().iter().enumerate() {
+    for (number, surface) in visited.iter().enumerate() {
         let arriving = surface.hit - at;
         steps.push(words::travel(arriving.length(), name, &surface.name));
         let leg = Frame::IDENTITY.turned_to(arriving.normalize());
         let incidence = Incidence::new(&leg, normal(&surface.patch, surface.hit)?);
         let (angle, to) = (degrees(incidence.theta0), &surface.name);
         steps.push(format!("map  incidence {angle} onto {to}"));
-        let shape: Matrix<2> = incidence.shape(&surface.patch, surface.hit);
-        let curved = words::curvature(shape);
+        let curved = words::curvature(incidence.shape(&surface.patch, surface.hit));
         steps.push(format!("map  curvature {curved}"));
         steps.extend(in_words(&surface.interaction));
-        if let Some(scatterer) = scatterers.next_if(|scatterer| scatterer.number == number) {
+        let is_last = number + 1 == visited.len();
+        if is_last {
+            steps.extend(system.obstacles.iter().map(words::obstacle));
+        }
+        let scatterer = scatterers.next_if(|scatterer| scatterer.number == number);
+        let is_local = is_last && is_on_last && plane.orientation.is_local();
+        if let Some(scatterer) = scatterer.filter(|_| !is_local) {
             steps.push(format!("map  back from local normals, {curved}"));
-            let [theta, phi] = scatterer.outgoing.map(degrees);
-            steps.push(format!("map  outgoing angles {theta} and {phi}"));
+            if !(is_last && is_on_last) {
+                steps.push(words::outgoing(scatterer.outgoing));
+            }
         }
         (at, name) = (surface.hit, &surface.name);
     }
     let beyond = (plane.frame.origin - at).length();
-    if beyond > 1e-9 {
+    if !is_on_last && beyond > 1e-9 {
         steps.push(words::travel(beyond, name, "plane"));
+    }
+    if plane.quantity == Quantity::DifferentialIrradiance {
+        let cosine = match plane.orientation {
+            Orientation::Orthogonal => "multiply  by the cosine, G = (1 + u² + v²)⁻²",
+            _ => COSINE,
+        };
+        steps.push(cosine.to_owned());
     }
     Some(steps)
 }
 
+const COSINE: &str = "multiply  by the cosine, cos⁺ θ cos² φ";
+
 fn in_words(interaction: &Interaction) -> Vec<String> {
-    const COSINE: &str = "multiply  by the cosine, cos⁺ θ cos² φ";
     const MIRROR: &str = "map  mirror: ℓ̂(Ωx, −Ωθ)";
-    let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
     match interaction {
-        Interaction::Specular(Specular::Mirror) => words(&[MIRROR]),
+        Interaction::Specular(Specular::Mirror) => vec![MIRROR.to_owned()],
         Interaction::Specular(Specular::Refraction { front, back }) => {
             vec![format!(
                 "map  refraction between indices {front} and {back}"
@@ -216,16 +253,13 @@ fn in_words(interaction: &Interaction) -> Vec<String> {
         Interaction::Specular(Specular::ThinLens { focal_length }) => {
             vec![format!("map  thin lens of focal length {focal_length} m")]
         }
-        Interaction::Diffuse { albedo } => {
-            let mut all: Vec<String> = words(&[COSINE]);
-            all.push(format!(
-                "convolve  with the diffuse reflection, albedo {albedo}"
-            ));
-            all
-        }
+        Interaction::Diffuse { albedo } => vec![
+            COSINE.to_owned(),
+            format!("convolve  with the diffuse reflection, albedo {albedo}"),
+        ],
         Interaction::Reflects(reflectance) => {
-            let mut all: Vec<String> = words(&[COSINE, MIRROR]);
-            all.extend(reflection(reflectance));
+            let mut all = vec![COSINE.to_owned(), MIRROR.to_owned()];
+            all.extend(words::reflection(reflectance));
             all
         }
     }
