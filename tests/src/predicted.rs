@@ -2,8 +2,8 @@
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::path::PathChain;
-use etendue_theory::{Model, Observed, Predicted, RayBudget, rays, scattering};
+use etendue_theory::path::{PathChain, rays, scattering};
+use etendue_theory::{Model, Observed, Predicted, RayBudget};
 
 /// Budget of rays. With this budget, the error of a prediction is a fifth of the noise of the
 /// photons.

@@ -4,8 +4,9 @@
 use etendue_compare::{Applicability, Class, FirstOrderChain, Prediction, Test, Verdict, compare};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
+use etendue_theory::PathKind;
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::{PathKind, rays};
+use etendue_theory::path::rays;
 use etendue_trace::Tracer;
 
 const FIG9B: &str = include_str!("../../scenes/fig9b.ron");

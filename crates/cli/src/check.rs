@@ -12,7 +12,7 @@ use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_store::file_seal::SealKind;
 use etendue_store::output::OutputFile;
-use etendue_theory::rays::AffineChain;
+use etendue_theory::path::rays::AffineChain;
 use serde_json::{Value, json};
 use std::num::NonZero;
 use std::thread::available_parallelism;

@@ -9,7 +9,8 @@ use crate::theory_input::{path, print, too_fine};
 use crate::unlit;
 use etendue_field::{VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Observed, PathKind, rays};
+use etendue_theory::path::rays;
+use etendue_theory::{Observed, PathKind};
 
 /// The theory that applies to a plane, or the reasons why none does.
 #[derive(Clone, Debug)]

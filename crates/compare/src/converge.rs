@@ -5,9 +5,8 @@ use crate::applicability::Applicability;
 use crate::theory_input::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{
-    Model, NetMean, Observed, Over, PathKind, Predicted, RayBudget, path, rays, reflections,
-};
+use etendue_theory::path::{rays, reflections};
+use etendue_theory::{Model, NetMean, Observed, Over, PathKind, Predicted, RayBudget, path};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in successively smaller neighbourhoods of the central

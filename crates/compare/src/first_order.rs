@@ -7,8 +7,8 @@ use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
-use etendue_theory::path::{self, PathSystem};
-use etendue_theory::{Observed, Over, PathKind, Predicted, RayBudget, rays};
+use etendue_theory::path::{self, PathSystem, rays};
+use etendue_theory::{Observed, Over, PathKind, Predicted, RayBudget};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 

@@ -7,7 +7,7 @@
 use etendue_field::{Complex, Profile, TwoPlane, VirtualPlane, interpolated_normal};
 use etendue_scene::{MeshObject, Object, Scene};
 use etendue_theory::Observed;
-use etendue_theory::rays::{LightRay, sampled};
+use etendue_theory::path::rays::{LightRay, sampled};
 use etendue_transform::SliceTransform;
 use glam::DVec3;
 use ndarray::Array3;

@@ -4,8 +4,8 @@ use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
-use etendue_theory::path::{Interaction, PatchExtent, PathSurface, PathSystem};
-use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane, reflections};
+use etendue_theory::path::{Interaction, PatchExtent, PathSurface, PathSystem, reflections};
+use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane};
 
 /// Returns a plane, the light, all masks and all surfaces of the path to it. Returns `None` where
 /// light comes from a ray file, where too many surfaces have scattered the light, or where some

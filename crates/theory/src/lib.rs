@@ -18,11 +18,10 @@
 //!
 //! [`geometry`] contains the steps that bend a light path (incidence, curvature, mirrors,
 //! refraction, lenses). Each step is an affine map of rays, with its effect on spectra and
-//! covariances. A [`Chain`] does not use these maps. [`rays`] predicts light behind mirrors,
-//! refracting surfaces and lenses in two ways. The exact prediction follows rays. The first-order
-//! prediction uses a chain of affine maps that are derived from the same surfaces. [`covariance`]
-//! follows second moments of spectra along the same paths. [`shading`] has cosines, BRDF lobes,
-//! Fresnel factors, textures and environments, in 2D.
+//! covariances. A [`Chain`] does not use these maps. A [`path`] predicts light in two ways: exactly,
+//! by rays, and to first order, by affine maps that are derived from the same surfaces.
+//! [`covariance`] follows second moments of spectra along the same paths. [`shading`] has cosines,
+//! BRDF lobes, Fresnel factors, textures and environments, in 2D.
 //!
 //! This crate has no access to scenes, photons or measured spectra, so the agreement of a
 //! prediction with a measurement is evidence that both are correct.
@@ -64,11 +63,8 @@ mod parameter;
 pub mod path;
 mod plane;
 mod predicted;
-pub mod rays;
 #[cfg(test)]
 mod reference;
-pub mod reflections;
-pub mod scattering;
 pub mod shading;
 mod sky;
 #[cfg(test)]

@@ -19,7 +19,7 @@ fn traced(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
 }
 
 fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
-    etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
+    etendue_theory::path::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
 }
 
 /// An implementation of a sum of BRDFs that is under test.
@@ -30,7 +30,7 @@ fn traced_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
 }
 
 fn predicted_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
-    etendue_theory::scattering::brdf::sum(mixture, DVec3::Z, from.into(), to.into())
+    etendue_theory::path::scattering::brdf::sum(mixture, DVec3::Z, from.into(), to.into())
 }
 
 const SEPARABLE: &[&str] = &[

@@ -13,8 +13,8 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Side, Specular,
 };
 use etendue_theory::geometry::{AffineMap, Edition};
-use etendue_theory::path::{self, Interaction, PathSurface, PathSystem};
-use etendue_theory::{Observed, Plane, rays};
+use etendue_theory::path::{self, Interaction, PathSurface, PathSystem, rays};
+use etendue_theory::{Observed, Plane};
 use std::path::Path;
 
 /// Half of the step between the two rays of a finite difference, in metres or radians.

@@ -11,7 +11,7 @@ use crate::scenes::{predicted, traced};
 use etendue_field::{Complex, FrequencyAxis, Grating, Lobe, Pattern, Reflectance, Slices, Weight};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate;
-use etendue_theory::scattering::semi_convolution;
+use etendue_theory::path::scattering::semi_convolution;
 use ndarray::Array3;
 
 const SCENE: &str = "semi_convolution";

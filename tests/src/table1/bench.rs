@@ -7,7 +7,8 @@ use crate::predicted;
 use crate::scenes::compared;
 use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction};
 use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
-use etendue_theory::{Model, Parameter, rays};
+use etendue_theory::path::rays;
+use etendue_theory::{Model, Parameter};
 
 /// Significance level of the test of the exact prediction; the result of this test is not used
 /// for chains.

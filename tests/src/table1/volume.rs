@@ -6,8 +6,7 @@ use crate::report::{Check, ReportSection, Row, worse};
 use etendue_field::{Frame, Orientation, Specular};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
-use etendue_theory::path::{PathSurface, PathSystem};
-use etendue_theory::rays;
+use etendue_theory::path::{PathSurface, PathSystem, rays};
 use glam::DVec3;
 
 /// Step of the finite differences, in metres or direction cosines; the error of these differences

@@ -4,9 +4,9 @@ use super::factors;
 use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
 use crate::parallel::{Chain, Operator};
+use crate::path::rays;
 use crate::path::{self, Observed, PathKind, PathSystem};
 use crate::plane::Plane;
-use crate::rays;
 use etendue_field::{
     Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
 };

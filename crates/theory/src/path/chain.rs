@@ -4,7 +4,7 @@
 use super::{Interaction, Observed, PathSurface};
 use crate::geometry::{AffineMap, Matrix};
 use crate::obstacle::{LegRay, normal};
-use crate::rays::Incidence;
+use crate::path::rays::Incidence;
 use crate::words::{self, degrees};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;

@@ -6,19 +6,22 @@
 //! a plane together are an [`Observed`], which is a [`Model`](crate::Model).
 //!
 //! Light follows the path if it meets each surface in turn, and no other surface, mask or obstacle
-//! before it. The module [`prepared`] tests every ray for this, so the surfaces may have any
+//! before it. Every ray is tested for this (`prepared.rs`), so the surfaces may have any
 //! positions. Like a photon, a ray is lost where it meets a surface out of order or twice.
 //!
 //! The model samples rays in one of three ways, which [`PathKind`] names. They share the system, its
-//! occluders, its parameters and its plane: [`rays`](crate::rays) follows rays through specular
-//! surfaces, [`scattering`](crate::scattering) follows rays of the plane back to one surface with a
-//! BRDF, and [`reflections`](crate::reflections) follows rays from the light over several surfaces.
+//! occluders, its parameters and its plane: [`rays`] follows rays through specular
+//! surfaces, [`scattering`] follows rays of the plane back to one surface with a
+//! BRDF, and [`reflections`] follows rays from the light over several surfaces.
 //!
 //! The theory of a path shares no intersection, BRDF evaluation or sampling code with the tracers.
 
 mod chain;
 mod model;
 mod prepared;
+pub mod rays;
+pub mod reflections;
+pub mod scattering;
 mod surface;
 
 pub use chain::{PathChain, ScatteringSurface, chain, defect};

@@ -1,13 +1,14 @@
 //! The parameters and the prediction of a path.
 
-use super::{Interaction, Observed, PathKind, PathSurface, PathSystem, chain};
+use super::rays::{self, CentralHit};
+use super::{
+    Interaction, Observed, PathKind, PathSurface, PathSystem, chain, reflections, scattering,
+};
 use crate::model::{Model, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use crate::predicted::Predicted;
-use crate::rays::CentralHit;
 use crate::work::PredictionWork;
-use crate::{rays, reflections, scattering};
 use etendue_field::{
     Complex, Disc, Frame, Light, Orientation, Pattern, Rectangle, Reflectance, Shape, Specular,
     Weight,

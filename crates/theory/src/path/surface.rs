@@ -2,8 +2,8 @@
 
 use super::{Interaction, PatchExtent, PathSurface};
 use crate::obstacle::{LegRay, normal};
-use crate::rays::bent;
-use crate::scattering::{brdf, kernel, narrowest};
+use crate::path::rays::bent;
+use crate::path::scattering::{brdf, kernel, narrowest};
 use etendue_field::{Brdf, Fresnel, Lobe, Specular};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;

@@ -4,9 +4,9 @@ use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
+use crate::path::rays;
 use crate::path::{self, Interaction, PathSurface, PathSystem};
 use crate::plane::Plane;
-use crate::rays;
 use crate::testing::{chain_of, opaque};
 use crate::{Chain, Observed, Operator};
 use etendue_field::{

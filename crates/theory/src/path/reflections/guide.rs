@@ -9,7 +9,7 @@
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
 };
-use crate::scattering::{bell, bell_density};
+use crate::path::scattering::{bell, bell_density};
 use etendue_field::{Profile, Window};
 use std::f64::consts::{PI, TAU};
 

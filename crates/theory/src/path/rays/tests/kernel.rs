@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::nets::RayNode;
-use crate::rays::sums::sums;
+use crate::path::rays::sums::sums;
 use std::f64::consts::TAU;
 
 fn nodes(count: usize) -> Vec<RayNode> {

@@ -24,7 +24,7 @@
 //! use etendue_theory::{RayBudget, Model, Observed, Plane};
 //! use etendue_theory::geometry::Edition;
 //! use etendue_theory::path::{Interaction, PathSurface, PathSystem};
-//! use etendue_theory::rays::{chain, linear};
+//! use etendue_theory::path::rays::{chain, linear};
 //! use glam::DVec3;
 //!
 //! // A beam along the axis of a concave mirror of radius 2 m; the plane is half-way to the focus.

@@ -8,8 +8,8 @@
 use super::aim::DirectionCoordinates;
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use crate::path::local;
+use crate::path::rays::AT_LIGHT;
 use crate::path::{ScatteringSurface, towards};
-use crate::rays::AT_LIGHT;
 use crate::sky::SkyDensity;
 use etendue_field::{Environment, Frame};
 use glam::DVec3;

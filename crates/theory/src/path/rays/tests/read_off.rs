@@ -1,7 +1,7 @@
 //! Tests of the chain derived from the geometry, against derivatives of traced rays and known foci.
 
 use super::*;
-use crate::rays::central::Incidence;
+use crate::path::rays::central::Incidence;
 use etendue_field::Side;
 
 /// Returns the coordinates at the plane of a ray that leaves the light.

@@ -2,7 +2,7 @@
 
 use crate::obstacle::LegRay;
 use crate::path::PreparedPath;
-use crate::rays::emitted;
+use crate::path::rays::emitted;
 use glam::DVec3;
 
 /// A sampled part of the light.

@@ -284,7 +284,7 @@ impl<'a> Lights<'a> {
     fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
-                let part = LightPart::Point(crate::rays::point_of(shape, at));
+                let part = LightPart::Point(crate::path::rays::point_of(shape, at));
                 Some((part, 1.0 / shape.area()))
             }
             Light::Environment { environment } => {

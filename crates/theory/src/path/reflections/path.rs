@@ -7,10 +7,10 @@ use super::sky::SkyRays;
 use crate::nets::{DIMENSIONS, RayNode};
 use crate::obstacle::LegRay;
 use crate::path::local;
+use crate::path::rays::{emitted, point_of};
 use crate::path::{
     Observed, PatchExtent, PathChain, PathSurface, PreparedPath, ScatteringSurface, chain,
 };
-use crate::rays::{emitted, point_of};
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
