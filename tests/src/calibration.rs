@@ -6,7 +6,8 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{named, predicted, sampled, traced, words};
 use crate::statistics::{mean, uniformity};
-use etendue_compare::{PlaneReport, Prediction, Test, compare};
+use etendue_compare::{PlaneReport, Prediction, compare};
+use etendue_predict::test_of;
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::{Batch, Measurement};
 use rayon::prelude::*;
@@ -145,7 +146,7 @@ fn reports(
 ) -> Vec<Vec<PlaneReport>> {
     scene.run.seed = seed;
     let sound = traced(&scene);
-    let test = Test::of(&scene);
+    let test = test_of(&scene);
     let with = |fault: &Option<DependenceFault>| {
         let planted = fault.map(|fault| planted(&sound, fault));
         let measurement = planted.as_ref().unwrap_or(&sound);

@@ -7,10 +7,11 @@ mod smallest;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, named, traced};
-use etendue_compare::{Residuals, TESTS, chain, radial, sidak};
+use etendue_compare::{Residuals, TESTS, radial, sidak};
 use etendue_field::{
     Complex, Crossing, Ledger, Mask, PhotonSource, Rectangle, Shape, Slices, VirtualPlane,
 };
+use etendue_predict::chain;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::{Chain, Model, Operator, Parameter};

@@ -6,8 +6,9 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::emit;
 use crate::statistics::{mean, uniformity};
-use etendue_compare::{Applicability, FullRadialComparison, FullRadialReport, PredictedField};
+use etendue_compare::{FullRadialComparison, FullRadialReport, PredictedField};
 use etendue_field::{FieldGrid, PhotonSource};
+use etendue_predict::{Applicability, predict_field};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use etendue_trace::{Backward, Tracer};
@@ -111,7 +112,7 @@ fn predicted(scene: &Scene) -> PredictedField {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);
     let over = (grid(scene), OPTIONS.assignment);
-    let found = PredictedField::new(scene, plane, &theory, over, OPTIONS.groups);
+    let found = predict_field(scene, plane, &theory, over, OPTIONS.groups);
     found.expect("a plane that theory predicts")
 }
 
@@ -294,7 +295,7 @@ fn faults(photons: u64) -> ReportSection {
 /// Predicts the continuous spectrum, without the aliasing of a grid. This prediction is a planted
 /// fault.
 fn alias_free(scene: &Scene) -> PredictedField {
-    use etendue_compare::Theory;
+    use etendue_predict::Theory;
     let plane = &scene.planes[0];
     let Theory::Parallel(chain) = Applicability::new(scene, plane).theory else {
         panic!("a plane between parallel planes");

@@ -4,7 +4,8 @@ use crate::SEED;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
-use etendue_compare::{PlaneReport, Test, Verdict, compare};
+use etendue_compare::{PlaneReport, Verdict, compare};
+use etendue_predict::test_of;
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::estimate;
 use ndarray::Array3;
@@ -219,7 +220,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     ];
     let passes = report.verdict == Verdict::Pass;
     let checks = vec![
-        Check::exact(report, Test::of(scene).level),
+        Check::exact(report, test_of(scene).level),
         Check::fact("verdict", passes, "judged as in a run"),
     ];
     Row::new(cells, checks)
@@ -231,7 +232,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// Panics if the scene has too few batches. Every resolved scene has enough batches.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
-    let test = Test::of(scene);
+    let test = test_of(scene);
     predicted(scene, None)
         .iter()
         .enumerate()

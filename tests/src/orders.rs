@@ -4,7 +4,7 @@ use crate::report::Bound::{AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row, worse};
 use crate::scenes::{read, sound};
 use KnownOrder::{Exact, First, Misprint, NoOrder, Second};
-use etendue_compare::{Applicability, Convergence, converge_to};
+use etendue_predict::{Applicability, Convergence, converge_to};
 use etendue_scene::Scene;
 
 /// Maximum deviation of a fitted order from the known order.

@@ -12,7 +12,8 @@ use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
 use crate::statistics::mean;
 use crate::{nets, wild};
-use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare, too_much_work};
+use etendue_compare::{Class, Prediction, Verdict, compare};
+use etendue_predict::{Applicability, predict, test_of, too_much_work};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::{Observed, PathKind};
 use std::collections::BTreeMap;
@@ -159,7 +160,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             continue;
         }
         let start = cpu_seconds()?;
-        let prediction = Prediction::new(scene, plane, theory);
+        let prediction = predict(scene, plane, theory);
         let seconds = cpu_seconds()? - start;
         cost.predicted += seconds;
         let kind = kind(theory, &prediction);
@@ -167,7 +168,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             slowest = seconds;
             cost.slowest = format!("{} ({kind}, {seconds:.1} s)", plane.name);
         }
-        let Ok(compared) = compare(&measurement, i, &prediction, &Test::of(scene)) else {
+        let Ok(compared) = compare(&measurement, i, &prediction, &test_of(scene)) else {
             continue;
         };
         let report = compared.report;

@@ -1,7 +1,8 @@
 //! The scenes used for validation, and functions that measure and predict them.
 
-use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
+use etendue_compare::{Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
+use etendue_predict::{Applicability, predict, predict_reference, test_of};
 use etendue_scene::{RunFile, Sampling, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::{AllLights, Backward, Tracer};
@@ -160,7 +161,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .map(|(i, plane)| {
             let theory = Applicability::new(scene, plane);
             match theory.class() {
-                Class::Exact | Class::FirstOrder => Prediction::new(scene, plane, &theory),
+                Class::Exact | Class::FirstOrder => predict(scene, plane, &theory),
                 Class::Reference => referred(scene, i, reference.expect("a reference")),
             }
         })
@@ -173,7 +174,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
 /// Panics if the reference measurement has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[index]);
-    let reference = Prediction::reference(scene, index, &theory, reference, index);
+    let reference = predict_reference(scene, index, &theory, reference, index);
     reference.expect("a scene has 32 batches")
 }
 
@@ -190,7 +191,7 @@ pub(crate) fn compared(
 ) -> PlaneComparison {
     let test = Test {
         level,
-        ..Test::of(scene)
+        ..test_of(scene)
     };
     compare(measurement, index, prediction, &test).expect("a scene has 32 batches")
 }

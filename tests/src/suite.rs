@@ -159,7 +159,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         (Some(one), Some(other), Some(both)) => {
             // The light without occluders, minus the light that each of the two occluders blocks,
             // is F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
-            let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
+            let open = etendue_predict::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),
                 ..open

@@ -3,8 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Residuals, path};
+use etendue_compare::Residuals;
 use etendue_field::{Light, Orientation, ProjectionGrid, Quantity, VirtualPlane};
+use etendue_predict::{Applicability, path};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_theory::{Model, Observed, Predicted, RayBudget};

@@ -1,8 +1,9 @@
 //! Mutated scene files. Test that reading any file as a scene gives a scene or an error, never a
 //! panic.
 
-use etendue_compare::{Applicability, Prediction, Test, compare};
+use etendue_compare::compare;
 use etendue_field::Mask;
+use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::{Scene, SceneFile, Triangles, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
@@ -170,9 +171,9 @@ fn whole_run(scene: &Scene) {
     let tracer = Tracer::new(scene);
     let batches = 0..scene.run.batches;
     let measurement = measure(&tracer, &scene.planes, batches, &|_| ());
-    let test = Test::of(scene);
+    let test = test_of(scene);
     for (i, plane) in scene.planes.iter().enumerate() {
-        let prediction = Prediction::new(scene, plane, &Applicability::new(scene, plane));
+        let prediction = predict(scene, plane, &Applicability::new(scene, plane));
         assert!(
             prediction.slices.half.iter().all(|s| s.is_finite()),
             "{plane:?}"

@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare};
+use etendue_compare::{Class, Verdict, compare};
 use etendue_field::PhotonSource;
+use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::AllLights;
@@ -29,11 +30,11 @@ fn resolved(text: &str) -> Scene {
 /// the verdict on each plane.
 fn verdicts(traced: &Scene, source: &dyn PhotonSource, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(source, &traced.planes, 0..traced.run.batches, &|_| ());
-    let test = Test::of(traced);
+    let test = test_of(traced);
     let planes = predicted.planes.iter().enumerate();
     let verdicts = planes.map(|(i, plane)| {
         let theory = Applicability::new(predicted, plane);
-        let prediction = Prediction::new(predicted, plane, &theory);
+        let prediction = predict(predicted, plane, &theory);
         let compared = compare(&measurement, i, &prediction, &test).unwrap();
         compared.report.verdict
     });

@@ -1,7 +1,8 @@
 //! Tests scenes that must pass and scenes that must fail, from the text of the scene to the
 //! verdict.
 
-use etendue_compare::{Applicability, Class, FirstOrderChain, Prediction, Test, Verdict, compare};
+use etendue_compare::{Class, FirstOrderChain, Verdict, compare};
+use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_theory::PathKind;
@@ -37,14 +38,13 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         0..traced.run.batches,
         &|_| (),
     );
-    let test = Test::of(traced);
+    let test = test_of(traced);
     predicted
         .planes
         .iter()
         .enumerate()
         .map(|(i, plane)| {
-            let prediction =
-                Prediction::new(predicted, plane, &Applicability::new(predicted, plane));
+            let prediction = predict(predicted, plane, &Applicability::new(predicted, plane));
             compare(&measurement, i, &prediction, &test)
                 .expect("a resolved scene has enough batches")
                 .report

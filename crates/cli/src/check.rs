@@ -3,9 +3,10 @@
 use crate::args::CheckArgs;
 use crate::print::{deliver, deliver_json, say};
 use crate::warnings;
-use etendue_compare::{Applicability, Class, Memory, seconds};
+use etendue_compare::Class;
 use etendue_field::{Orientation, tidy};
 use etendue_pipeline::{limits, load, method};
+use etendue_predict::{Applicability, Memory, seconds};
 use etendue_report::pictures;
 use etendue_scene::Scene;
 use etendue_store::Failure;

@@ -4,8 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common::{etendue, scene};
-use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
+use etendue_compare::{Verdict, compare};
 use etendue_field::Light;
+use etendue_predict::{Applicability, predict, test_of};
 use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use etendue_scene::{Scene, SceneError, SceneFile, resolve};
 use etendue_spectrum::measure;
@@ -102,8 +103,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     planes
         .map(|(i, plane)| {
             let theory = Applicability::new(predicted, plane);
-            let prediction = Prediction::new(predicted, plane, &theory);
-            let compared = compare(&measurement, i, &prediction, &Test::of(traced));
+            let prediction = predict(predicted, plane, &theory);
+            let compared = compare(&measurement, i, &prediction, &test_of(traced));
             compared.unwrap().report.verdict
         })
         .collect()

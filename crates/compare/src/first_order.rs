@@ -1,16 +1,11 @@
 //! Adds the paper's linearised chain to the exact ray-space prediction.
 
 use crate::residuals::Residuals;
-use crate::theory_input::print;
 use crate::verdict::Verdict;
-use etendue_field::{Light, Profile, Shape, Slices, Window};
-use etendue_scene::Scene;
+use etendue_field::Slices;
 use etendue_spectrum::Measurement;
-use etendue_theory::geometry::{AffineMap, Edition, Matrix};
-use etendue_theory::path::{self, PathSystem, rays};
-use etendue_theory::{Observed, Over, PathKind, Predicted, RayBudget};
+use etendue_theory::geometry::Matrix;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
 
 /// The prediction of the chain of affine maps.
 #[derive(Clone, Debug)]
@@ -31,7 +26,7 @@ pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
     /// The error that remains as the neighbourhood of the central ray shrinks. The defect is zero,
-    /// apart from rounding errors, if every map is right (see [`rays::defect`]). Where `slices`
+    /// apart from rounding errors, if every map is right (see [`defect`](etendue_theory::path::rays::defect)). Where `slices`
     /// come from the printed formulas, the defect is also the defect of the printed formulas.
     pub defect: f64,
     /// The relative error of the radiance that the chain assigns to the central ray. This error is
@@ -107,86 +102,6 @@ impl FirstOrderReport {
 }
 
 impl FirstOrder {
-    /// Returns the chain along a path, if the central ray arrives.
-    pub(crate) fn of_path(
-        scene: &Scene,
-        view: &Observed,
-        over: Over<'_>,
-        (exact, budget): (&Predicted, RayBudget),
-    ) -> Option<Self> {
-        if view.kind() == PathKind::Specular {
-            return Self::of_specular(scene, view, over, (exact, budget));
-        }
-        let chain = path::chain(view)?;
-        let defect = path::defect(view, &chain)?;
-        Self::of_reflection(exact, defect, chain.rays().matrix)
-    }
-
-    fn of_specular(
-        scene: &Scene,
-        view: &Observed,
-        over: Over<'_>,
-        (exact, budget): (&Predicted, RayBudget),
-    ) -> Option<Self> {
-        if exact.slices.is_dark() {
-            return None;
-        }
-        let by = |print| {
-            let chain = rays::chain(view, print)?;
-            let linear = rays::linear(view, over, &chain.map, budget);
-            Some((chain, linear))
-        };
-        let (corrected, mut linear) = by(Edition::Corrected)?;
-        let matrix = corrected.map.rays().matrix;
-        let mut chain = FirstOrderChain {
-            error: linear.slices.independent_relative_difference(&exact.slices),
-            defect: rays::defect(view, &corrected.map, over.0)?,
-            radiance_defect: rays::radiance_defect(view, &corrected.map)?,
-            matrix,
-            covariance: [exact.covariance, propagated(&view.system, &matrix, over.0)],
-            foci: corrected.foci,
-            as_printed: scene.file.as_printed,
-        };
-        if scene.file.as_printed {
-            let (printed, by_print) = by(print(scene))?;
-            linear = by_print;
-            chain.defect = rays::defect(view, &printed.map, over.0)?;
-            chain.radiance_defect = rays::radiance_defect(view, &printed.map)?;
-        }
-        Some(Self {
-            slices: linear.slices,
-            replicates: linear.replicates,
-            chain,
-        })
-    }
-
-    /// Returns the chain for light that surfaces scatter. `defect` is the defect of the chain, and
-    /// `matrix` is its matrix for rays along the mirror directions. The noise of the chain is the
-    /// noise of the exact prediction, because the difference between the chain and the exact
-    /// prediction has little noise.
-    fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
-        let difference = exact.to_first_order.as_ref();
-        let difference = difference.filter(|_| !exact.slices.is_dark())?;
-        let near = |slices: &Slices| Slices {
-            half: &slices.half + &difference.slices.half,
-            ..*slices
-        };
-        let slices = near(&exact.slices);
-        Some(Self {
-            chain: FirstOrderChain {
-                error: slices.independent_relative_difference(&exact.slices),
-                defect,
-                radiance_defect: 0.0,
-                matrix,
-                covariance: [exact.covariance, None],
-                foci: Vec::new(),
-                as_printed: false,
-            },
-            slices,
-            replicates: exact.replicates.iter().map(near).collect(),
-        })
-    }
-
     /// Compares a measurement with the chain. `exact` holds the exact ray-space prediction and the
     /// differences between the photons and this prediction.
     pub(crate) fn report(
@@ -215,53 +130,4 @@ impl FirstOrder {
             verdict: self.chain.verdict(),
         }
     }
-}
-
-/// Returns the covariance of a Gaussian that starts as wide as the light, after it has passed the
-/// chain and the window. Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹
-/// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment, which has no width.
-fn propagated(system: &PathSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
-    if matches!(system.light, Light::Environment { .. }) {
-        return None;
-    }
-    let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
-    // A zero width is replaced by a width that is much smaller than the window. An infinite width
-    // adds no inverse covariance.
-    let narrow = window.map(|v| 1e8 / v);
-    let picture = |w: f64| TAU / (w * w);
-    let light = &system.light;
-    let [a, b] = light
-        .image()
-        .map_or([0.0; 2], |image| image.width.map(picture));
-    let inverse = match light.shape() {
-        Some(Shape::Rectangle(r)) => {
-            let [x, y] = r.size.map(|side| 12.0 / (side * side));
-            [x, y, 0.0, 0.0]
-        }
-        Some(Shape::Disc(disc)) => {
-            let inverse = 4.0 / (disc.radius * disc.radius);
-            [inverse, inverse, 0.0, 0.0]
-        }
-        None if light.is_distant() => [a, b, narrow[2], narrow[3]],
-        None => [narrow[0], narrow[1], a, b],
-    };
-    let mut inverse = AffineMap::linear(*chain).spectral_covariance(&diagonal(inverse))?;
-    for (row, v) in window.iter().enumerate() {
-        inverse[row][row] += 1.0 / v;
-    }
-    Some(AffineMap::linear(inverse).inverse()?.matrix)
-}
-
-/// Returns the variance of the Gaussian that has the curvature of the profile at the centre. For a
-/// box, returns the variance of the box.
-fn variance(profile: &Profile) -> f64 {
-    match *profile {
-        Profile::Hann(h) => 2.0 * (h / PI).powi(2),
-        Profile::Box(h) => h * h / 3.0,
-        Profile::Gaussian { width, .. } => width * width / TAU,
-    }
-}
-
-fn diagonal(entries: [f64; 4]) -> Matrix<4> {
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { entries[i] } else { 0.0 }))
 }

@@ -52,9 +52,25 @@ impl FullRadialComparison {
     }
 }
 
+impl FullRadialReport {
+    /// Compares the groups of a measurement with a prediction on the same grid.
+    ///
+    /// # Panics
+    /// Panics as [`FullRadialComparison::new`] does.
+    #[must_use]
+    pub fn new(
+        bins: &RadialBins,
+        groups: &[FieldGroup],
+        predicted: &PredictedField,
+        seed: u64,
+    ) -> Self {
+        compared(bins, groups, predicted, seed).0
+    }
+}
+
 /// Returns the report, the predicted power and σ of the difference, for the groups of a
 /// measurement.
-pub(crate) fn compared(
+fn compared(
     bins: &RadialBins,
     groups: &[FieldGroup],
     predicted: &PredictedField,

@@ -1,8 +1,8 @@
 //! Adds the predictions of several lights.
 
+use crate::class::Class;
 use crate::first_order::{FirstOrder, FirstOrderChain};
 use crate::prediction::{PredictedParameter, Prediction};
-use crate::theories::Theory;
 use etendue_field::{Projection, Slices};
 
 impl Prediction {
@@ -11,7 +11,8 @@ impl Prediction {
     ///
     /// The sum has the largest defect of its lights, because no map may be wrong. The matrix and the
     /// foci are those of the first light with a first-order chain. The sum has no covariance.
-    pub(crate) fn chain_of_lights(each: &[Self], theories: &[&Theory]) -> Option<FirstOrder> {
+    #[must_use]
+    pub fn chain_of_lights(each: &[Self]) -> Option<FirstOrder> {
         let mut chains = each.iter().filter_map(|of| of.first_order.as_ref());
         let first = chains.next()?;
         let mut chain = FirstOrderChain {
@@ -24,12 +25,10 @@ impl Prediction {
         }
         let grid = first.slices.grid;
         let (mut slices, mut all) = (Slices::zeros(grid), Vec::new());
-        for (of, theory) in each.iter().zip(theories) {
+        for of in each {
             let linear = match &of.first_order {
                 Some(chain) => (&chain.slices, &chain.replicates[..]),
-                None if matches!(theory, Theory::Parallel(_)) || of.slices.is_dark() => {
-                    replicated(of)
-                }
+                None if of.class == Class::Exact || of.slices.is_dark() => replicated(of),
                 None => return None,
             };
             all = replicates((&slices, &all), linear);
@@ -56,7 +55,8 @@ impl Prediction {
 
     /// Adds the prediction of another light. Errors that no replicates show add up. Parameters
     /// with the same name are the same parameter, whose derivatives add up.
-    pub(crate) fn plus(self, other: Self) -> Self {
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
         let slices = sum(&self.slices, &other.slices);
         let all = slices.norm();
         let share = |of: &Self, error: f64| {

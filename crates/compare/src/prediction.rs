@@ -1,18 +1,10 @@
 //! Everything that a measurement of a plane is compared with.
 
-use crate::applicability::Applicability;
-use crate::budget::budget;
 use crate::class::Class;
-use crate::depth::depth;
 use crate::first_order::FirstOrder;
-use crate::off_patches::OffPatches;
-use crate::theories::Theory;
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
-use etendue_scene::Scene;
+use etendue_field::{Projection, Slices};
+use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
-use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Model, Over, Parameter, RayBudget};
-use ndarray::Array2;
 
 /// Everything that a measurement of a plane is compared with.
 #[derive(Clone, Debug)]
@@ -95,162 +87,6 @@ impl Prediction {
         )
     }
 
-    /// Returns the prediction of theory for a plane of a scene: the sum over all lights. Returns
-    /// darkness where no theory applies and [`Self::reference`] takes its place.
-    #[must_use]
-    pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
-        let each = Self::of_lights(scene, plane, applicability).map(|(_, of)| of);
-        let mut each: Vec<Self> = each.collect();
-        if each.len() == 1 {
-            return each.remove(0);
-        }
-        let theories = applicability.of_lights(scene, plane);
-        let theories: Vec<&Theory> = theories.map(|(_, _, of, _)| &of.theory).collect();
-        let first_order = Self::chain_of_lights(&each, &theories);
-        let sum = each.into_iter().reduce(Self::plus);
-        let sum = sum.unwrap_or_else(|| Self::darkness(scene, plane, applicability));
-        Self { first_order, ..sum }
-    }
-
-    /// Returns the prediction of theory for each light that may reach a plane, with the number of
-    /// the light, which begins at 1.
-    pub fn of_lights<'a>(
-        scene: &'a Scene,
-        plane: &'a VirtualPlane,
-        applicability: &'a Applicability,
-    ) -> impl Iterator<Item = (usize, Self)> + 'a {
-        let is_alone = scene.other_lights.is_empty();
-        let each = applicability.of_lights(scene, plane);
-        let mut budget = budget(scene);
-        each.map(move |(of, seen, theory, number)| {
-            let among = (!is_alone).then_some(number);
-            let (window, grid) = (plane.window, plane.grid);
-            let seen = VirtualPlane {
-                window,
-                grid,
-                ..seen.clone()
-            };
-            let found = Self::of_light((of, &seen, theory), budget, among);
-            budget.beside = libm::hypot(budget.beside, found.slices.norm());
-            (number, found)
-        })
-    }
-
-    /// Returns the prediction for one light. `number` is the number of the light if there are
-    /// others.
-    fn of_light(
-        (scene, plane, applicability): (&Scene, &VirtualPlane, &Applicability),
-        budget: RayBudget,
-        number: Option<usize>,
-    ) -> Self {
-        let empty = Self::darkness(scene, plane, applicability);
-        if applicability.dark.is_some() {
-            return empty;
-        }
-        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
-        let over = (&plane.window, &plane.grid, &cells);
-        match &applicability.theory {
-            Theory::Parallel(chain) => empty.by(chain, over, (budget, number), |_| None),
-            Theory::None => empty,
-            Theory::Path(view) => {
-                let found = empty.by(view.as_ref(), over, (budget, number), |exact| {
-                    FirstOrder::of_path(scene, view, over, (exact, budget))
-                });
-                let size = found.slices.norm();
-                let meshes = applicability.off_patches.filter(|_| size > 0.0);
-                let error = |off: OffPatches| off.change * found.slices.at_zero() / size;
-                Self {
-                    mesh_error: meshes.map(error),
-                    ..found
-                }
-            }
-        }
-    }
-
-    /// Returns the prediction of a model, with the first-order chain beside it.
-    fn by<M: Model>(
-        self,
-        model: &M,
-        over: Over<'_>,
-        (budget, number): (RayBudget, Option<usize>),
-        first_order: impl FnOnce(&etendue_theory::Predicted) -> Option<FirstOrder>,
-    ) -> Self {
-        let parameters = model.parameters();
-        let found = model.predict(&parameters, over, budget);
-        let first_order = first_order(&found);
-        let name = |parameter| match number.filter(|_| is_of_light(parameter, &parameters)) {
-            Some(number) => format!("{} (light {number})", model.name(parameter)),
-            None => model.name(parameter),
-        };
-        let derivatives = parameters.iter().copied().zip(found.derivatives);
-        let parameters = derivatives.filter_map(|(parameter, derivative)| {
-            Some(PredictedParameter {
-                name: name(parameter),
-                unit: model.unit(parameter).to_owned(),
-                value: model.value(parameter)?,
-                derivative,
-            })
-        });
-        Self {
-            slices: found.slices,
-            quadrature_error: found.error,
-            first_order,
-            replicates: found.replicates,
-            unblocked: found.unblocked,
-            projection: found.projection,
-            parameters: parameters.collect(),
-            ..self
-        }
-    }
-
-    /// Returns a prediction in which no light arrives.
-    fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
-        let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
-        let values = Array2::zeros((grid.bins, grid.bins));
-        let class = applicability.class();
-        Self {
-            class,
-            steps: applicability.steps(scene, plane),
-            slices: Slices::zeros(plane.grid),
-            quadrature_error: None,
-            mesh_error: None,
-            rule_error: None,
-            first_order: None,
-            replicates: Vec::new(),
-            unblocked: 0.0,
-            projection: Projection { grid, values },
-            parameters: Vec::new(),
-            depth: depth(scene, plane),
-            cuts: match class {
-                // For light that leaves a mirror or a lobe, no cut separates high frequencies.
-                Class::FirstOrder => Vec::new(),
-                Class::Exact | Class::Reference => cuts(scene, plane),
-            },
-        }
-    }
-
-    /// Returns a prediction that consists of another, independent measurement of plane `index`.
-    /// Such a prediction is used where no theory applies.
-    ///
-    /// # Errors
-    /// Returns an error if that measurement has too few batches.
-    pub fn reference(
-        scene: &Scene,
-        index: usize,
-        applicability: &Applicability,
-        measurement: &Measurement,
-        at: usize,
-    ) -> Result<Self, TooFewBatches> {
-        let plane = &scene.planes[index];
-        Ok(Self {
-            steps: applicability.steps(scene, plane),
-            mesh_error: scene.mesh_mismatch(plane),
-            depth: depth(scene, plane),
-            cuts: cuts(scene, plane),
-            ..Self::measured(measurement, at)?
-        })
-    }
-
     /// Returns a plane of a measurement in the form of a prediction. Another, independent
     /// measurement is compared with it.
     ///
@@ -276,34 +112,10 @@ impl Prediction {
     }
 }
 
-/// Returns whether a parameter belongs to a light, and not to an object that all lights share.
-/// `all` are the parameters of a model; the first travel begins at the light.
-fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
-    match parameter {
-        Parameter::SourceSize | Parameter::SpotExponent | Parameter::ImageWidth => true,
-        Parameter::Travel(_) => {
-            let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
-            all.iter().find(is_travel) == Some(&parameter)
-        }
-        _ => false,
-    }
-}
-
 /// Returns the root of the sum of squares of two errors.
 fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(libm::hypot(a, b)),
         (a, b) => a.or(b),
     }
-}
-
-/// Returns two cuts. The main lobe of the transform of a Hann window ends at the frequency
-/// 1/half-width. The first cut is twice this frequency. The second cut is 1.5 times the first, to
-/// show whether H depends on the cut. The list is empty where light does not leave a surface.
-fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
-    if plane.leg == 0 || scene.path.along(plane) > 0.0 {
-        return Vec::new();
-    }
-    let cut = 2.0 / plane.window.x.half_width();
-    vec![cut, 1.5 * cut]
 }

@@ -1,6 +1,5 @@
 //! The verdict of a comparison.
 
-use etendue_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of the test of each plane of a run.
@@ -19,24 +18,6 @@ pub struct Test {
 pub const TESTS: usize = 2;
 
 impl Test {
-    /// Returns the test of a scene, with the level α for all tests of its planes together.
-    #[must_use]
-    pub fn of(scene: &Scene) -> Self {
-        Self::each(scene, TESTS)
-    }
-
-    /// Returns the test of a scene in which each plane is tested `times` times, with the level α
-    /// for all tests together.
-    #[must_use]
-    pub fn each(scene: &Scene, times: usize) -> Self {
-        let run = &scene.run;
-        Self {
-            level: sidak(run.alpha, times * scene.planes.len()),
-            resolution: run.resolution,
-            seed: run.seed,
-        }
-    }
-
     /// Checks whether a p-value is not below the level. Residuals that are all zero agree, and have
     /// no p-value.
     pub(crate) fn accepts(&self, p_value: Option<f64>) -> bool {

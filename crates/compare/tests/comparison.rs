@@ -4,7 +4,7 @@
 
 use crate::made_up::{noise, plane};
 use etendue_compare::{
-    Applicability, Class, PredictedParameter, Prediction, Residuals, Test, Verdict, compare, sidak,
+    Class, PredictedParameter, Prediction, Residuals, Test, Verdict, compare, sidak,
 };
 use etendue_field::{Complex, Ledger, PlaneTally, Projection, ProjectionGrid, Slices};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
@@ -608,40 +608,4 @@ fn sidak_keeps_the_level_of_the_run() {
     let level = sidak(0.01, 4);
     assert!((1.0 - (1.0 - level).powi(4) - 0.01).abs() < 1e-15); // rounding
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
-}
-
-/// No theory describes light that leaves a mesh. If a smooth surface stands in the light, theory
-/// traces rays past it.
-#[test]
-fn what_has_no_theory_is_a_reference() {
-    let class = |surfaces: &str, visits: &str| {
-        let text = format!(
-            r#"(
-                light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
-                surfaces: [{surfaces}],
-                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
-                planes: [(name: "before", at: Distance(0.9)), (name: "after", at: After({visits}))],
-                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)),
-                run: (photons: 100),
-            )"#
-        );
-        let file = etendue_scene::SceneFile::parse(&text).expect("a scene");
-        let scene =
-            etendue_scene::resolve("t", file, ".".as_ref(), u64::MAX).expect("a sound scene");
-        [0, 1].map(|i| Applicability::new(&scene, &scene.planes[i]).class())
-    };
-    let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
-    let star = r#"Mesh(name: "star", center: (0, 0, 2),
-        mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
-    let beside = |x: f64| {
-        format!(
-            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0),
-            form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
-        )
-    };
-    let reference = Class::Reference;
-    assert_eq!(class(floor, "\"floor\""), [Class::Exact; 2]);
-    assert_eq!(class(star, "\"star\""), [Class::Exact, reference]);
-    assert_eq!(class(&beside(0.08), "\"floor\""), [Class::FirstOrder; 2]);
-    assert_eq!(class(&beside(2.0), "\"floor\""), [Class::Exact; 2]);
 }

@@ -146,7 +146,8 @@ fn bandwidths(seen: &Seen<'_>) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::recipe::named;
-    use etendue_compare::{Applicability, Prediction};
+    use etendue_predict::Applicability;
+    use etendue_predict::predict;
 
     /// The difference of the two planes is the error of the chain, which treats u as θ. The
     /// difference would be as large as the spectra if different frequencies of the two planes
@@ -157,7 +158,7 @@ mod tests {
         let scene = &subject.scenes[0];
         // The predictions of the scene's photons: with fewer, there are fewer rays.
         let theories = Applicability::of_planes(scene);
-        let predicted = |i: usize| Prediction::new(scene, &scene.planes[i], &theories[i]);
+        let predicted = |i: usize| predict(scene, &scene.planes[i], &theories[i]);
         let [slopes, angles] = [0, 1].map(predicted);
         let found = difference(&slopes.slices, &angles.slices).sum();
         let share = (found / slopes.slices.radial_power().sum()).sqrt();

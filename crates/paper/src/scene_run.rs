@@ -1,9 +1,10 @@
 //! Runs a scene for a figure.
 
 use crate::quality::Quality;
-use etendue_compare::{Applicability, PlaneComparison, TESTS, Test};
+use etendue_compare::{PlaneComparison, TESTS};
 use etendue_field::FrequencyAxis;
 use etendue_pipeline::{Job, Reporter, field, judged};
+use etendue_predict::{Applicability, test_each};
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -42,7 +43,7 @@ impl Shot {
         job.check_limits()?;
         let case = job.run(reporter)?;
         let tests = if full_radial { field::TESTS } else { TESTS };
-        let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
+        let mut planes = judged(&case, &test_each(&case.scene, tests))?;
         if full_radial {
             field::compare(None, &case, &mut planes, reporter)?;
         }

@@ -4,11 +4,11 @@
 use crate::rows::{Seen, compared, feet, letter_panels, lettered, row};
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
-use etendue_compare::{Applicability, Convergence, ConvergenceStep, converge};
 use etendue_field::percent;
 use etendue_figures::{
     AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Scale, stacked,
 };
+use etendue_predict::{Applicability, Convergence, ConvergenceStep, converge};
 use etendue_report::pictures::{across, across_axes, light_field_quantity};
 use etendue_store::Failure;
 use ndarray::Array2;

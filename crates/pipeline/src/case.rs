@@ -1,6 +1,7 @@
 //! A scene with its measurement and predictions.
 
-use etendue_compare::{Applicability, Prediction};
+use etendue_compare::Prediction;
+use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::Method;

@@ -3,8 +3,9 @@
 use crate::moments::{check_memory, fitting};
 use crate::reporter::{Reporter, Work};
 use crate::{Job, limits, measured, method};
-use etendue_compare::{AXES, Applicability, CovarianceReport, Prediction};
+use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
+use etendue_predict::{AXES, Applicability, CovarianceReport};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::field::measure_field;

@@ -2,8 +2,9 @@
 
 use crate::case::MeasuredScene;
 use crate::method::{judge_of, source};
-use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Prediction, Verdict};
+use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
 use etendue_field::{Crossing, PhotonSource, Window, percent};
+use etendue_predict::predict_lights;
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
 use etendue_trace::AllLights;
@@ -147,7 +148,7 @@ fn hidden_from_photons(
     }
     let all = compared.predicted.norm();
     let at = &case.scene.planes[plane];
-    let mut lights = Prediction::of_lights(&case.scene, at, &case.theories[plane]);
+    let mut lights = predict_lights(&case.scene, at, &case.theories[plane]);
     Ok(lights.find_map(|(number, light)| {
         let count = found.get(number - 1).filter(|count| is_rare(count))?;
         let share = light.slices.norm() / all;

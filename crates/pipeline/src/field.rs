@@ -4,8 +4,9 @@ use crate::case::MeasuredScene;
 use crate::limits;
 use crate::method::{judge_of, source};
 use crate::reporter::{Reporter, Work};
-use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
+use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
+use etendue_predict::{Theory, predict_field, test_each};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use etendue_store::Failure;
@@ -119,7 +120,7 @@ impl Field {
             Some(PredictedField::reference(reference.groups))
         } else {
             let over = (grid, options.assignment);
-            PredictedField::new(&case.scene, plane, theory, over, groups)
+            predict_field(&case.scene, plane, theory, over, groups)
         };
         let seed = case.scene.run.seed;
         let compared = predicted.map(|field| FullRadialComparison::new(&measured, &field, seed));
@@ -164,7 +165,7 @@ pub fn compare(
     reporter: &dyn Reporter,
 ) -> Result<(), Failure> {
     limits::check_one_light(&case.scene, "the full radial spectrum")?;
-    let test = Test::each(&case.scene, TESTS);
+    let test = test_each(&case.scene, TESTS);
     let each = case.scene.planes.iter().zip(planes).enumerate();
     for (index, (plane, comparison)) in each {
         let field = Field::new(case, index, reporter)?;

@@ -5,7 +5,8 @@ use crate::judge::Judge;
 use crate::reporter::Reporter;
 use crate::summary::Inquiry;
 use crate::table::percent;
-use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
+use etendue_compare::{Class, PlaneComparison, PlaneReport, Test, Verdict, compare};
+use etendue_predict::{predict_reference, test_of};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -21,7 +22,7 @@ pub(crate) fn inquire(
         .filter(|i| disagrees_with_theory(&planes[*i].report))
         .collect();
     let judges = Judge::all(&case.scene, &failed, case.method, reporter)?;
-    let test = Test::of(&case.scene);
+    let test = test_of(&case.scene);
     let judged = |i: usize| {
         let (judge, at) = Judge::of(&judges, i)?;
         let inquiry = Inquiry::of(case, (i, &planes[i].report), (judge, at), &test);
@@ -50,7 +51,7 @@ impl Inquiry {
         test: &Test,
     ) -> Result<Self, TooFewBatches> {
         let measured = &judge.measurement;
-        let reference = Prediction::reference(&case.scene, i, &case.theories[i], measured, at)?;
+        let reference = predict_reference(&case.scene, i, &case.theories[i], measured, at)?;
         let tracers = compare(&case.measurement, i, &reference, test)?.report;
         let theory = compare(measured, at, &case.predictions[i], test)?.report;
         let methods = [case.method, judge.method];
@@ -149,7 +150,8 @@ mod tests {
     use super::*;
     use crate::measure::measured;
     use crate::reporter::Silent;
-    use etendue_compare::Applicability;
+    use etendue_predict::Applicability;
+    use etendue_predict::predict;
     use etendue_scene::{Scene, SceneFile, resolve};
 
     fn scene(radiance: f64) -> Scene {
@@ -170,7 +172,7 @@ mod tests {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
             let theory = Applicability::new(scene, &scene.planes[0]);
-            Prediction::new(scene, &scene.planes[0], &theory)
+            predict(scene, &scene.planes[0], &theory)
         };
         let traced = of(photons);
         let batches = 0..traced.run.batches;
@@ -181,7 +183,7 @@ mod tests {
             scene: of(rays),
             method: Method::Photons,
         };
-        let test = Test::of(&case.scene);
+        let test = test_of(&case.scene);
         let compared = compare(&case.measurement, 0, &case.predictions[0], &test).unwrap();
         (case, compared)
     }

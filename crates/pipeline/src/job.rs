@@ -9,8 +9,9 @@ use crate::predict::predicted;
 use crate::reporter::{Reporter, Silent};
 use crate::workers::{Leader, Packing};
 use crate::{limits, load};
-use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
+use etendue_compare::{PlaneComparison, Prediction, Verdict};
 use etendue_field::PhotonSource;
+use etendue_predict::{Applicability, predict};
 use etendue_scene::{RunFile, Scene};
 use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
 use etendue_store::Failure;
@@ -125,7 +126,7 @@ impl Job {
         let number = plane as usize;
         let found = self.scene.planes.get(number).zip(self.theories.get(number));
         let (plane, theory) = found.ok_or_else(|| Failure::cannot_run("no such plane"))?;
-        let prediction = Prediction::new(&self.scene, plane, theory);
+        let prediction = predict(&self.scene, plane, theory);
         predictions::packed(plane, &prediction)
     }
 

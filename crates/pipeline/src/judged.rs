@@ -6,6 +6,7 @@ use crate::reporter::{Reporter, Work};
 use crate::summary::Summary;
 use crate::{enough_photons, field};
 use etendue_compare::{PlaneComparison, TESTS, Test, compare};
+use etendue_predict::test_each;
 use etendue_store::{Failure, Results};
 use rayon::prelude::*;
 
@@ -32,7 +33,7 @@ impl Judged {
         } else {
             TESTS
         };
-        let mut planes = judged(case, &Test::each(&case.scene, tests))?;
+        let mut planes = judged(case, &test_each(&case.scene, tests))?;
         if let Some(results) = fields {
             field::compare(Some(results), case, &mut planes, reporter)?;
         }

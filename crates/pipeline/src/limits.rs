@@ -1,8 +1,8 @@
 //! Compares the work and the memory that a command needs with the available resources, before the
 //! command begins.
 
-use etendue_compare::{Applicability, Memory, too_much_work};
 use etendue_field::Light;
+use etendue_predict::{Applicability, Memory, too_much_work};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::machine;

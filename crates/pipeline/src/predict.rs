@@ -4,7 +4,8 @@ use crate::judge::Judge;
 use crate::method;
 use crate::reporter::{Reporter, Work};
 use crate::workers::Leader;
-use etendue_compare::{Applicability, Class, Prediction};
+use etendue_compare::{Class, Prediction};
+use etendue_predict::{Applicability, predict, predict_reference};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method, predictions};
 use std::collections::BTreeMap;
@@ -35,7 +36,7 @@ pub(crate) fn predicted(
     let own = |plane: u32| {
         let at = &scene.planes[plane as usize];
         bar.name(&at.name);
-        let prediction = Prediction::new(scene, at, &theories[plane as usize]);
+        let prediction = predict(scene, at, &theories[plane as usize]);
         bar.advance(1);
         Ok(prediction)
     };
@@ -56,7 +57,7 @@ pub(crate) fn predicted(
             return told.remove(&number).ok_or_else(missing);
         };
         bar.advance(1);
-        let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);
+        let reference = predict_reference(scene, i, theory, &judge.measurement, at);
         let mut prediction = reference.map_err(Failure::cannot_run)?;
         prediction.steps.push(method::step(judge.method));
         Ok(prediction)

@@ -1,7 +1,7 @@
 //! Reads a measurement, in one or several parts, and a prediction from their folders.
 
 use crate::case::MeasuredScene;
-use etendue_compare::Applicability;
+use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::batches::{self, Held};
@@ -42,9 +42,10 @@ pub fn read_case(
         .chain(predicted.paths());
     let inputs = inputs.collect();
     let theories = Applicability::of_planes(&scene);
+    let classes: Vec<_> = theories.iter().map(Applicability::class).collect();
     let case = MeasuredScene {
         method,
-        predictions: predictions::read(&predicted, &scene, &theories, method)?,
+        predictions: predictions::read(&predicted, &scene, &classes, method)?,
         theories,
         measurement,
         scene,

@@ -6,9 +6,7 @@ use crate::Results;
 use crate::framing::{joined, split};
 use crate::npz::{Npz, NpzFile};
 use crate::stored::Stored;
-use etendue_compare::{
-    Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
-};
+use etendue_compare::{Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction};
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -166,11 +164,12 @@ fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
     stacked
 }
 
-/// Reads the predictions of the planes of a scene for a measurement by `method`.
+/// Reads the predictions of the planes of a scene for a measurement by `method`. `classes` are the
+/// classes that the planes have today.
 pub fn read(
     stored: &Stored<StoredPrediction>,
     scene: &Scene,
-    theories: &[Applicability],
+    classes: &[Class],
     method: Method,
 ) -> Result<Vec<Prediction>, Failure> {
     let StoredPrediction {
@@ -194,11 +193,10 @@ pub fn read(
         let [predicted, wanted] = [predicted, wanted].map(|planes| planes.join(", "));
         return Err(stored.fault(format!("the planes are [{predicted}]; must be [{wanted}]")));
     }
-    let planes = scene.planes.iter().zip(theories).zip(planes);
+    let planes = scene.planes.iter().zip(classes).zip(planes);
     planes
-        .map(|((plane, theory), words)| {
-            let class = theory.class();
-            if words.class != class {
+        .map(|((plane, class), words)| {
+            if words.class != *class {
                 let (name, is) = (&plane.name, words.class);
                 return Err(stored.fault(format!(
                     "the class of plane {name} is {is:?}; must be {class:?}"

@@ -2,9 +2,10 @@
 //! measured bandwidths.
 
 use crate::values::{SweepPoint, message_at};
-use etendue_compare::{Applicability, criterion, exact_bandwidth, measured_bandwidth};
+use etendue_compare::measured_bandwidth;
 use etendue_field::{Term, VirtualPlane};
 use etendue_pipeline::{Reporter, Work, measured};
+use etendue_predict::{Applicability, criterion, exact_bandwidth};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
 use etendue_theory::PathKind;

@@ -2,9 +2,9 @@
 
 use crate::request::SweepRequest;
 use crate::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
-use etendue_compare::Test;
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{Job, Reporter, Summary, judged};
+use etendue_predict::test_of;
 use etendue_scene::{RunFile, Scene};
 use etendue_store::{ArgumentStyle, Failure, Method};
 use std::collections::BTreeMap;
@@ -93,7 +93,7 @@ impl SweepPoints {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
         let case = Job::of(scene.clone(), self.method, Vec::new())?.run(reporter)?;
-        let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
+        let summary = Summary::new(&case, &judged(&case, &test_of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }
 }

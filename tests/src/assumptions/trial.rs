@@ -4,10 +4,9 @@
 use super::kind::{DARK, UNKNOWN, assumption};
 use crate::scenes::traced;
 use crate::wild::HANDFUL;
-use etendue_compare::{
-    Applicability, Prediction, Test, Theory, Verdict, compare, seconds, too_much_work,
-};
+use etendue_compare::{Prediction, Verdict, compare};
 use etendue_field::{Light, ProjectionGrid, VirtualPlane};
+use etendue_predict::{Applicability, Theory, predict, seconds, test_of, too_much_work};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Model, Predicted, RayBudget};
 use std::collections::BTreeSet;
@@ -113,7 +112,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
         replicates: found.replicates,
         quadrature_error: found.error,
         unblocked: found.unblocked,
-        ..Prediction::new(scene, plane, checked)
+        ..predict(scene, plane, checked)
     };
     match judged(scene, SEEDS[0], &prediction) {
         TrialEnding::Judged {
@@ -157,7 +156,7 @@ fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> TrialEnding {
     scene.run.seed = seed;
     let photons = traced(&scene);
     let inside = photons.tally(0).inside;
-    let compared = compare(&photons, 0, prediction, &Test::of(&scene));
+    let compared = compare(&photons, 0, prediction, &test_of(&scene));
     let verdict = compared.map_or(Verdict::Undecided, |compared| compared.report.verdict);
     let few = verdict == Verdict::Fail && inside < HANDFUL;
     TrialEnding::Judged {

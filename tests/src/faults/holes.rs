@@ -4,8 +4,8 @@
 use super::{NONE, judged, p_values};
 use crate::report::Row;
 use crate::scenes::traced;
-use etendue_compare::chain;
 use etendue_field::{ConvexPolygon, Hole, Mask, ProjectionGrid, VirtualPlane};
+use etendue_predict::chain;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::{Chain, Model, Operator, RayBudget};

@@ -2,9 +2,9 @@
 //! units of the stated error.
 
 use super::draw::{BlockerKind, SceneDice, scene};
-use etendue_compare::{Applicability, Theory};
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_field::{ProjectionGrid, Window};
+use etendue_predict::{Applicability, Theory};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::{Model, REPLICATES, RayBudget};
 

@@ -2,8 +2,9 @@
 
 use crate::predicted;
 use crate::scenes::traced;
-use etendue_compare::{Residuals, path};
+use etendue_compare::Residuals;
 use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Reflectance, Slices, VirtualPlane};
+use etendue_predict::path;
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
 use etendue_theory::Observed;

@@ -5,10 +5,9 @@ use super::scenes::{alone, changed};
 use crate::predicted;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{compared, traced};
-use etendue_compare::{
-    Applicability, FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict, path,
-};
+use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict};
 use etendue_field::Slices;
+use etendue_predict::{Applicability, path, predict};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
@@ -74,7 +73,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
         let scene = alone(changed(SCENE, Some(photons), &[]), plane);
         let measurement = traced(&scene);
         let place = &scene.planes[0];
-        let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
+        let sound = predict(&scene, place, &Applicability::new(&scene, place));
         let view = path(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
             // At a plane on the surface, the maps after the surface have no effect.

@@ -4,8 +4,9 @@
 use super::glossy_bench::{ACROSS, BASE, BOX, GlossyBench, Lit, LobeOwner, WIDEST};
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
-use etendue_compare::{Applicability, exact_bandwidth, measured_bandwidth};
+use etendue_compare::measured_bandwidth;
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves};
+use etendue_predict::{Applicability, exact_bandwidth};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
 use std::f64::consts::SQRT_2;

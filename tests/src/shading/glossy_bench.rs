@@ -1,6 +1,6 @@
 //! A glossy surface that is lit and seen by an eye, as a scene.
 
-use etendue_compare::{Applicability, criterion};
+use etendue_predict::{Applicability, criterion};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::shading::Criterion;
 

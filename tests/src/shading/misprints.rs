@@ -6,8 +6,9 @@ use super::scenes::{alone, changed};
 use crate::predicted::traced;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use etendue_compare::{path, sidak};
+use etendue_compare::sidak;
 use etendue_field::{Complex, Light, Quantity, Slices};
+use etendue_predict::path;
 use etendue_scene::Scene;
 use std::f64::consts::PI;
 

@@ -17,7 +17,8 @@ pub(crate) use quadrature::apart;
 
 use crate::report::ReportSection;
 use crate::scenes::{compared, predicted, traced};
-use etendue_compare::{PlaneComparison, Prediction, TESTS, path, sidak};
+use etendue_compare::{PlaneComparison, Prediction, TESTS, sidak};
+use etendue_predict::path;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::Observed;

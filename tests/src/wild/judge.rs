@@ -3,7 +3,8 @@
 
 use super::run::{PlaneSummary, RunEnding, Runner};
 use crate::scenes::{traced, traced_backwards, traced_evenly};
-use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
+use etendue_compare::{Verdict, compare};
+use etendue_predict::{Applicability, predict_reference, test_of};
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::finds;
 use std::io;
@@ -244,8 +245,8 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     };
     let inside = [&photons, &rays].map(|measured| measured.tally(0).inside);
     let theory = Applicability::new(&scene, plane);
-    let reference = Prediction::reference(&scene, 0, &theory, &rays, 0).ok()?;
-    let compared = compare(&photons, 0, &reference, &Test::of(&scene)).ok()?;
+    let reference = predict_reference(&scene, 0, &theory, &rays, 0).ok()?;
+    let compared = compare(&photons, 0, &reference, &test_of(&scene)).ok()?;
     Some(Tracers {
         verdict: compared.report.verdict,
         p: compared.report.p_value,

@@ -3,8 +3,9 @@
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{named, traced};
-use etendue_compare::{Applicability, Prediction, Test, compare};
+use etendue_compare::{Prediction, compare};
 use etendue_field::{Frame, Lobe, ProjectionGrid};
+use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::path::{Interaction, PathSystem};
@@ -78,7 +79,7 @@ pub(super) fn planted() -> ReportSection {
     let Some(view) = theory.theory.path() else {
         unreachable!("{SCENE} has two surfaces that scatter");
     };
-    let like = Prediction::new(&scene, &scene.planes[0], &theory);
+    let like = predict(&scene, &scene.planes[0], &theory);
     let p_value = |view: &Observed| p_value(&scene, &measured, view, &like);
     let sound = p_value(view);
     let mut rows = vec![Row::new(
@@ -121,6 +122,6 @@ fn p_value(scene: &Scene, measured: &Measurement, view: &Observed, like: &Predic
         first_order: None,
         ..like.clone()
     };
-    let compared = compare(measured, 0, &prediction, &Test::of(scene));
+    let compared = compare(measured, 0, &prediction, &test_of(scene));
     compared.map_or(1.0, |found| found.report.p_value.unwrap_or(1.0))
 }

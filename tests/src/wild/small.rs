@@ -7,8 +7,9 @@ use super::scene;
 use crate::progress::progress;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
-use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare, seconds};
+use etendue_compare::{Class, Verdict, compare};
 use etendue_field::{Orientation, Profile, Quantity, VirtualPlane};
+use etendue_predict::{Applicability, predict, seconds, test_of};
 use etendue_scene::{
     AxisFile, BlockersFile, FrequenciesFile, MeshSource, Place, PlaneFile, Scene, SceneFile,
     ShapeFile, SurfaceFile, WindowFile, resolve,
@@ -297,8 +298,8 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
         let mut scene = scene.clone();
         scene.run.seed = seed;
         scene.run.photons = photons;
-        let prediction = Prediction::new(&scene, plane, &theories[0]);
-        let compared = compare(&traced(&scene), 0, &prediction, &Test::of(&scene));
+        let prediction = predict(&scene, plane, &theories[0]);
+        let compared = compare(&traced(&scene), 0, &prediction, &test_of(&scene));
         compared.map_or(Verdict::Undecided, |found| found.report.exact_verdict())
     };
     let photons = scene.run.photons;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 const LINES: &[(&str, usize, usize, &str)] = &[
     ("bvh", 1261, 1261, ""),
     ("cli", 4109, 4111, "the feature `worlds`"),
-    ("compare", 5723, 5723, ""),
+    ("compare", 2929, 2929, ""),
     ("explorer", 1059, 1059, ""),
     ("export", 1413, 1413, ""),
     ("field", 3031, 3031, ""),
@@ -20,6 +20,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3243, ""),
     ("pipeline", 5436, 5436, ""),
+    ("predict", 2842, 2842, ""),
     ("python", 1650, 1650, ""),
     ("rayfile", 2394, 2394, ""),
     ("report", 2599, 2599, ""),

@@ -43,9 +43,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["field", "scene", "spectrum", "trace", "transform"],
     ),
     ("export", &["field", "scene"]),
+    ("compare", &["field", "spectrum", "theory", "transform"]),
     (
-        "compare",
-        &["field", "scene", "spectrum", "theory", "transform"],
+        "predict",
+        &[
+            "compare",
+            "field",
+            "scene",
+            "spectrum",
+            "theory",
+            "transform",
+        ],
     ),
     ("import", &["field", "scene", "world"]),
     (
@@ -71,27 +79,29 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "pipeline",
         &[
-            "compare", "field", "rayfile", "scene", "spectrum", "store", "trace", "variance",
+            "compare", "field", "predict", "rayfile", "scene", "spectrum", "store", "trace",
+            "variance",
         ],
     ),
     (
         "report",
         &[
-            "compare", "explorer", "field", "figures", "pipeline", "scene", "spectrum", "store",
-            "variance",
+            "compare", "explorer", "field", "figures", "pipeline", "predict", "scene", "spectrum",
+            "store", "variance",
         ],
     ),
     (
         "sweep",
         &[
-            "compare", "field", "figures", "pipeline", "report", "scene", "store", "theory",
+            "compare", "field", "figures", "pipeline", "predict", "report", "scene", "store",
+            "theory",
         ],
     ),
     (
         "view",
         &[
-            "adaptive", "compare", "field", "figures", "import", "paths", "pipeline", "report",
-            "spectrum", "store", "theory", "world",
+            "adaptive", "compare", "field", "figures", "import", "paths", "pipeline", "predict",
+            "report", "spectrum", "store", "theory", "world",
         ],
     ),
     (
@@ -104,6 +114,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "import",
             "paths",
             "pipeline",
+            "predict",
             "report",
             "scene",
             "scenes",
@@ -118,8 +129,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cli",
         &[
             "adaptive", "compare", "export", "field", "figures", "import", "paper", "pipeline",
-            "rayfile", "report", "scene", "scenes", "spectrum", "store", "sweep", "theory",
-            "variance", "view",
+            "predict", "rayfile", "report", "scene", "scenes", "spectrum", "store", "sweep",
+            "theory", "variance", "view",
         ],
     ),
 ];

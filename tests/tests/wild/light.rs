@@ -5,8 +5,9 @@ use super::{
     only_the_blind_are_wrong, photons, replaced, report, row, scene, scene_does_not_fail,
     the_tracers_agree, verdict,
 };
-use etendue_compare::{Applicability, Class, Theory, Verdict, path};
+use etendue_compare::{Class, Verdict};
 use etendue_field::{EnvironmentMap, LatLong, Light};
+use etendue_predict::{Applicability, Theory, path};
 use std::sync::Arc;
 
 /// Nets of rays resolve a grating, but the quadrature nodes on a receiver do not. A prediction that

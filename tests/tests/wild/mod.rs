@@ -12,10 +12,9 @@ mod light;
 mod obstacles;
 mod surfaces;
 
-use etendue_compare::{
-    Applicability, Class, PlaneReport, Prediction, Test, Verdict, compare, path,
-};
+use etendue_compare::{Class, PlaneReport, Prediction, Test, Verdict, compare};
 use etendue_field::{PhotonSource, ProjectionGrid, Slices, VirtualPlane};
+use etendue_predict::{Applicability, path, predict, predict_reference, test_of};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_theory::path::{PatchExtent, PathSystem};
@@ -66,7 +65,7 @@ fn report(
     // Noise of 50 % is low enough to detect predictions with an error of 50 %.
     let test = Test {
         resolution: 0.5,
-        ..Test::of(scene)
+        ..test_of(scene)
     };
     let compared = compare(measurement, plane, prediction, &test);
     compared.unwrap().report
@@ -77,12 +76,12 @@ fn verdict(scene: &Scene, measurement: &Measurement, prediction: &Prediction) ->
 }
 
 fn by_theory(scene: &Scene, plane: &VirtualPlane) -> Prediction {
-    Prediction::new(scene, plane, &Applicability::new(scene, plane))
+    predict(scene, plane, &Applicability::new(scene, plane))
 }
 
 fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[plane]);
-    Prediction::reference(scene, plane, &theory, reference, plane).unwrap()
+    predict_reference(scene, plane, &theory, reference, plane).unwrap()
 }
 
 /// Returns the prediction by exact rays, without the affine chain, whose verdict is separate.

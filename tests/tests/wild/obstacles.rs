@@ -4,7 +4,8 @@ use super::{
     by_exact_rays, by_path, by_theory, does_not_fail, edited, forgets_later_surfaces, measured,
     only_the_blind_are_wrong, photons, replaced, report, scene, scene_does_not_fail,
 };
-use etendue_compare::{Applicability, Class, Verdict, chain, path};
+use etendue_compare::{Class, Verdict};
+use etendue_predict::{Applicability, chain, path};
 use etendue_trace::Backward;
 
 /// A prediction tests whether occluders block rays on the leg after the mirror.

@@ -5,7 +5,8 @@ use super::{
     does_not_fail, edited, forgets_own_shadows, measured, only_the_blind_are_wrong, photons,
     report, scene, scene_does_not_fail, the_tracers_agree, verdict,
 };
-use etendue_compare::{Applicability, Class, Prediction, Verdict, path};
+use etendue_compare::{Class, Prediction, Verdict};
+use etendue_predict::{Applicability, path};
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::Tracer;
 use std::path::Path;

@@ -2,10 +2,10 @@
 //! the covariance at the first surface to the camera.
 
 use super::scene::{BATCHES, FREQUENCIES, ProbeRequest, budget, seed_at};
-use etendue_compare::AXES;
 use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::moments::{check_memory, fitting};
 use etendue_pipeline::{Reporter, Work};
+use etendue_predict::AXES;
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
 use etendue_store::Failure;
 use etendue_theory::covariance::{SpectralCovariance, window};

@@ -2,10 +2,10 @@
 //! and with the covariance of the measured spectrum.
 
 use crate::applicability::Applicability;
-use crate::class::Class;
-use crate::prediction::Prediction;
-use crate::report::Pair;
 use crate::theories::Theory;
+use etendue_compare::Class;
+use etendue_compare::Pair;
+use etendue_compare::Prediction;
 use etendue_field::{FieldGrid, SliceGrid, VirtualPlane, percent, tidy};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::field::{FieldCovariance, Moments, PowerMoments};

@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Class, Prediction, Theory};
+use etendue_compare::Class;
 use etendue_field::{Profile, ProjectionGrid};
+use etendue_predict::{Applicability, Theory, predict};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::path::{PatchExtent, PathSystem};
 use etendue_theory::{Model, PathKind, RayBudget};
@@ -127,7 +128,7 @@ fn a_mesh_that_ends_the_path_and_stops_light_before() {
     let step = "multiply  by the visibility of end on the legs before it";
     assert!(steps.iter().any(|found| found == step), "{steps:#?}");
     let predicted = |applies: &Applicability| {
-        let prediction = Prediction::new(&scene, &scene.planes[0], applies);
+        let prediction = predict(&scene, &scene.planes[0], applies);
         prediction.slices.at_zero()
     };
     let mut open = applies.clone();
@@ -250,7 +251,7 @@ fn darkness_has_a_reason() {
                 }
                 assert_eq!(found.class(), *class);
                 assert_eq!(found.dark.as_deref(), Some(reason), "{surface} {light}");
-                let prediction = Prediction::new(&scene, &scene.planes[0], &found);
+                let prediction = predict(&scene, &scene.planes[0], &found);
                 assert_eq!(prediction.class, *class);
                 assert!(prediction.steps.contains(&format!("dark  {reason}")));
                 assert!(prediction.slices.half.iter().all(|f| f.norm_sqr() <= 0.0));
@@ -373,9 +374,7 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
         let scene = scene(LIGHT, sheet, floor, r#""floor""#, at, 0.2);
         let found = of(&scene);
         assert_eq!(found.reasons, [""; 0]);
-        Prediction::new(&scene, &scene.planes[0], &found)
-            .slices
-            .at_zero()
+        predict(&scene, &scene.planes[0], &found).slices.at_zero()
     };
     let [before, after] = [r#"Before("sheet")"#, r#"After("sheet")"#].map(mean);
     // The sheet covers the middle of the window, where most of the light is.
@@ -427,4 +426,39 @@ fn light_passes_an_aperture_through_its_hole() {
         behind.reasons
     );
     assert!(behind.declined[0].contains("visibility of iris"));
+}
+
+/// No theory describes light that leaves a mesh. If a smooth surface stands in the light, theory
+/// traces rays past it.
+#[test]
+fn what_has_no_theory_is_a_reference() {
+    let class = |surfaces: &str, visits: &str| {
+        let text = format!(
+            r#"(
+                light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
+                surfaces: [{surfaces}],
+                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
+                planes: [(name: "before", at: Distance(0.9)), (name: "after", at: After({visits}))],
+                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)),
+                run: (photons: 100),
+            )"#
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        let scene = resolve("t", file, ".".as_ref(), u64::MAX).unwrap();
+        [0, 1].map(|i| Applicability::new(&scene, &scene.planes[i]).class())
+    };
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
+    let star = r#"Mesh(name: "star", center: (0, 0, 2),
+        mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
+    let beside = |x: f64| {
+        format!(
+            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0),
+            form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
+        )
+    };
+    let reference = Class::Reference;
+    assert_eq!(class(floor, "\"floor\""), [Class::Exact; 2]);
+    assert_eq!(class(star, "\"star\""), [Class::Exact, reference]);
+    assert_eq!(class(&beside(0.08), "\"floor\""), [Class::FirstOrder; 2]);
+    assert_eq!(class(&beside(2.0), "\"floor\""), [Class::Exact; 2]);
 }

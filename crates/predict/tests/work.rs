@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Memory, TooMuchWork, too_much_work};
+use etendue_predict::{Applicability, Memory, TooMuchWork, too_much_work};
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};

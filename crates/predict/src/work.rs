@@ -2,7 +2,7 @@
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
-use crate::class::Class;
+use etendue_compare::Class;
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;

@@ -3,8 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Class};
+use etendue_compare::Class;
 use etendue_field::ProjectionGrid;
+use etendue_predict::Applicability;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::path::{PatchExtent, PathSystem};
 use etendue_theory::{Model, RayBudget};

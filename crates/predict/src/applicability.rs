@@ -1,12 +1,12 @@
 //! Decides, once for each plane, which theory applies.
 
 use crate::chain::chain;
-use crate::class::Class;
 use crate::off_parallel::obstacles_to_theory;
 use crate::off_patches::{OffPatches, off_patches};
 use crate::theories::Theory;
 use crate::theory_input::{path, print, too_fine};
 use crate::unlit;
+use etendue_compare::Class;
 use etendue_field::{VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::path::rays;
