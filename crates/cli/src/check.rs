@@ -4,9 +4,9 @@ use crate::args::CheckArgs;
 use crate::print::{deliver, deliver_json, say};
 use crate::warnings;
 use etendue_compare::Class;
-use etendue_field::{Orientation, tidy};
+use etendue_field::{Orientation, VirtualPlane, percent, tidy};
 use etendue_pipeline::{limits, load, method};
-use etendue_predict::{Applicability, Memory, seconds};
+use etendue_predict::{Applicability, Memory, seconds, stopped};
 use etendue_report::pictures;
 use etendue_scene::Scene;
 use etendue_store::Failure;
@@ -162,22 +162,7 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
                 method::step(method::judge_of(Method::Photons, scene, plane))
             ));
         }
-        let begin = lines.len();
-        for (of, _, theory, number) in applicability.of_lights(scene, plane) {
-            for assumption in theory.theory.assumptions() {
-                let line = format!("  assumes  {assumption}");
-                // Lights with the same theory make the same assumptions.
-                if !lines[begin..].contains(&line) {
-                    lines.push(line);
-                }
-            }
-            if let Some(chain) = theory.affine_chain(of) {
-                if !scene.other_lights.is_empty() {
-                    lines.push(format!("  light {number}"));
-                }
-                lines.extend(rays(&chain));
-            }
-        }
+        lines.extend(of_lights(scene, plane, applicability));
         lines.push(format!(
             "  measured at {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per {}",
             tidy(plane.grid.rho.max()),
@@ -186,4 +171,31 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
         ));
     }
     lines.join("\n")
+}
+
+/// Describes what the theory of each light assumes and what stops its light, and its rays.
+fn of_lights(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for (of, seen, theory, number) in applicability.of_lights(scene, plane) {
+        for assumption in theory.theory.assumptions() {
+            let line = format!("  assumes  {assumption}");
+            // Lights with the same theory make the same assumptions.
+            if !lines.contains(&line) {
+                lines.push(line);
+            }
+        }
+        for (name, share) in stopped(seen, theory) {
+            let percent = percent(share, 1);
+            lines.push(format!(
+                "  stopped  {percent} of the light in the window, by {name}"
+            ));
+        }
+        if let Some(chain) = theory.affine_chain(of) {
+            if !scene.other_lights.is_empty() {
+                lines.push(format!("  light {number}"));
+            }
+            lines.extend(rays(&chain));
+        }
+    }
+    lines
 }

@@ -4,7 +4,7 @@
 
 use etendue_compare::Class;
 use etendue_field::{Profile, ProjectionGrid};
-use etendue_predict::{Applicability, Theory, predict};
+use etendue_predict::{Applicability, Theory, predict, stopped};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::path::{PatchExtent, PathSystem};
 use etendue_theory::{Model, PathKind, RayBudget};
@@ -36,7 +36,7 @@ type Blind = fn(&mut PathSystem);
 
 /// Returns the share of the light in a window of a given width that an occluder stops: the share by
 /// which the prediction grows if it is blind to this occluder.
-fn stopped(blind: Blind, scene: &Scene) -> f64 {
+fn stops(blind: Blind, scene: &Scene) -> f64 {
     let applies = of(scene);
     assert_eq!(applies.class(), Class::FirstOrder, "{:?}", applies.reasons);
     let (plane, view) = (&scene.planes[0], applies.theory.path().unwrap());
@@ -51,7 +51,7 @@ fn stopped(blind: Blind, scene: &Scene) -> f64 {
 
 /// Asserts that an occluder stops no light in the narrow window, and light in the wide window.
 fn stops_only(narrow: f64, wide: f64, blind: Blind, scene: impl Fn(f64) -> Scene) {
-    let [narrow, wide] = [narrow, wide].map(|half| stopped(blind, &scene(half)));
+    let [narrow, wide] = [narrow, wide].map(|half| stops(blind, &scene(half)));
     // The same rays give both predictions, so they are equal except for rounding if none is stopped.
     assert!(narrow.abs() < 1e-12 && wide > 1e-4, "{narrow} {wide}");
 }
@@ -97,6 +97,24 @@ fn a_bowl_that_meets_its_own_light() {
             scene(light, "", bowl, r#""bowl""#, r#"After("bowl")"#, half)
         });
     }
+}
+
+/// The share of the light that a surface stops is stated with its name.
+#[test]
+fn what_stops_light_is_named() {
+    let bowl = r#"Smooth(name: "bowl", center: (-0.28, 0, 1), facing: (0, 0, -1),
+                form: Sphere(-2), aperture: 0.45, event: Mirror)"#;
+    let named = |half: f64| {
+        let scene = scene(LIGHT, "", bowl, r#""bowl""#, r#"After("bowl")"#, half);
+        (
+            stopped(&scene.planes[0], &of(&scene)),
+            stops(forgets_shadows, &scene),
+        )
+    };
+    assert_eq!(named(0.01).0, []);
+    let (found, share) = named(0.3);
+    assert_eq!(found[0].0, "bowl");
+    assert!((found[0].1 - share).abs() < 0.02, "{found:?} {share}"); // errors of both sums
 }
 
 /// The rim of a tilted bowl shades its inside.
@@ -384,7 +402,7 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
         Smooth(name: "card", center: (-0.5, 0, 0.2), facing: (-1, 0, 1.5), form: Plane, aperture: 0.55, event: Mirror)"#;
     let visits = r#""floor", "card""#;
     let scene = scene(PROJECTOR, "", leaning, visits, "Distance(0.8)", 0.2);
-    assert!(stopped(forgets_shadows, &scene) > 1e-3);
+    assert!(stops(forgets_shadows, &scene) > 1e-3);
 }
 
 /// A card shades a small mirror, but light still passes beside the mirror. A plane before the
