@@ -17,8 +17,7 @@ use etendue_theory::{Observed, PathKind};
 pub struct Applicability {
     /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// Descriptions of objects that stand in the way of the light and that no theory covers. The
-    /// list is empty where a theory applies.
+    /// The reasons why no theory applies. The list is empty where a theory applies.
     pub reasons: Vec<String>,
     /// The reasons why the theory of a path replaces the theory of parallel planes. The list is empty
     /// where it is not replaced.

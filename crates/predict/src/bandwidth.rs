@@ -30,8 +30,8 @@ pub fn criterion(
     let chain = path::chain(view)?;
     let surface = &chain.scatterers[0];
     let from_light = surface.frame.origin.z;
-    let mut before = system.masks.iter().map(|(distance, _)| *distance);
-    let last = before.rfind(|distance| *distance < from_light);
+    let last = system.masks_before(from_light).next_back();
+    let last = last.map(|(distance, _)| *distance);
     let edge = if system.light.is_distant() {
         last
     } else {

@@ -157,8 +157,20 @@ fn by_triangles(
 ) -> Option<TwoPlane> {
     let mut point = DVec3::new(x, y, 0.0);
     let mut direction = DVec3::new(u, v, 1.0).normalize();
-    for (surface, object) in view.system.before_plane().iter().zip(objects) {
-        let patch = &surface.patch;
+    // A mesh also stops light on the legs that neither begin nor end at it.
+    let is_stopped = |leg: usize, point: DVec3, direction: DVec3, end: f64| {
+        let ends = [leg.checked_sub(1), Some(leg)].map(|i| objects.get(i?));
+        let beside = objects
+            .iter()
+            .filter(|object| !ends.contains(&Some(object)));
+        let mut meshes = beside.filter_map(|object| match object {
+            Object::Mesh(i) => Some(&scene.meshes[*i]),
+            Object::Surface(_) | Object::Patch(_) => None,
+        });
+        meshes.any(|mesh| hits(mesh, point, direction, 0.0).any(|(t, _)| t < end))
+    };
+    for (leg, (surface, object)) in view.system.before_plane().iter().zip(objects).enumerate() {
+        let (patch, start) = (&surface.patch, point);
         let mut beyond = None;
         let normal = if let Object::Mesh(i) = object {
             let mesh = &scene.meshes[*i];
@@ -177,6 +189,9 @@ fn by_triangles(
             point += ahead.min_by(f64::total_cmp)? * direction;
             patch.normal(point)
         };
+        if is_stopped(leg, start, direction, start.distance(point)) {
+            return None;
+        }
         let event = surface.event()?;
         direction = event
             .turned(&patch.frame, normal, point, direction)?
@@ -186,6 +201,11 @@ fn by_triangles(
         {
             return None;
         }
+    }
+    let frame = &view.plane.frame;
+    let end = (frame.origin - point).dot(frame.d) / direction.dot(frame.d);
+    if is_stopped(objects.len(), point, direction, end) {
+        return None;
     }
     let [x, y, u, v] = view.plane.arrival(point, direction)?;
     Some(TwoPlane { x, y, u, v })

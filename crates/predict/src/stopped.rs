@@ -2,7 +2,7 @@
 
 use crate::applicability::Applicability;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane};
-use etendue_theory::path::{PatchExtent, PathSystem};
+use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, Observed, Obstacle, ObstacleForm, RayBudget};
 
 /// The rays of each sum. Its error is some per cent, but sums with the same rays differ by less.
@@ -60,7 +60,7 @@ pub fn stopped(plane: &VirtualPlane, applicability: &Applicability) -> Vec<(Stri
     }
     let all = light(view);
     let of_surfaces = surfaces.iter().enumerate().map(|(i, surface)| {
-        let open = without(&|system| system.surfaces[i].extent = PatchExtent::Osculating);
+        let open = without(&|system| system.surfaces[i].occludes = false);
         (surface.name.clone(), open)
     });
     let of_obstacles = obstacles.iter().enumerate().map(|(i, obstacle)| {

@@ -14,7 +14,8 @@ pub enum Theory {
     /// Light between parallel planes. The prediction is a closed form, or a quadrature over a flat
     /// receiver.
     Parallel(Chain),
-    /// Rays of a path over surfaces of any position, or of light through pictures.
+    /// Rays along a path over surfaces in any position; also light of a picture that meets no
+    /// surface.
     Path(Box<Observed>),
     /// No theory applies, and another measurement takes the place of a prediction.
     None,

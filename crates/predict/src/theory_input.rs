@@ -25,9 +25,7 @@ pub fn path(scene: &Scene, plane: &VirtualPlane) -> Option<Observed> {
         .collect();
     let mut surfaces = before?;
     let scatterers = surfaces.iter().filter(|surface| surface.scatters()).count();
-    let has_mesh = surfaces
-        .iter()
-        .any(|surface| surface.extent == PatchExtent::Osculating);
+    let has_mesh = surfaces.iter().any(|surface| !surface.occludes);
     if scatterers > reflections::MAX_SCATTERERS || scatterers > 0 && has_mesh {
         return None;
     }
@@ -37,8 +35,14 @@ pub fn path(scene: &Scene, plane: &VirtualPlane) -> Option<Observed> {
     // From the first mesh that light meets later, objects stop light as objects beside the path do.
     // The object that ends the last leg stops light only on the legs before.
     let ends = scene.path.ends_at(visited).map(|end| end.object);
-    for hit in &hits[surfaces.len()..] {
+    let (known, rest) = hits.split_at(surfaces.len());
+    for (i, hit) in rest.iter().enumerate() {
         let object = hit.object;
+        // The path may visit an object again.
+        let mut earlier = known.iter().chain(&rest[..i]);
+        if earlier.any(|earlier| earlier.object == object) {
+            continue;
+        }
         let until = (Some(object) == ends).then_some(visited);
         if until == Some(0) {
             continue;
@@ -100,6 +104,7 @@ fn surface_of(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
         extent,
         hit: hit.point,
         interaction,
+        occludes: true,
     })
 }
 
@@ -113,9 +118,10 @@ fn osculating(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
     Some(PathSurface {
         name: mesh.name.clone(),
         patch: mesh.osculating(hit)?,
-        extent: PatchExtent::Osculating,
+        extent: PatchExtent::Whole,
         hit: hit.point,
         interaction: Interaction::Specular(event),
+        occludes: false,
     })
 }
 

@@ -6,7 +6,7 @@ use etendue_compare::Class;
 use etendue_field::{Profile, ProjectionGrid};
 use etendue_predict::{Applicability, Theory, predict, stopped};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_theory::path::{PatchExtent, PathSystem};
+use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, PathKind, RayBudget};
 
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
@@ -58,7 +58,7 @@ fn stops_only(narrow: f64, wide: f64, blind: Blind, scene: impl Fn(f64) -> Scene
 
 fn forgets_shadows(system: &mut PathSystem) {
     for surface in &mut system.surfaces {
-        surface.extent = PatchExtent::Osculating;
+        surface.occludes = false;
     }
 }
 
@@ -178,6 +178,32 @@ fn a_mirror_that_is_met_out_of_turn() {
             half,
         )
     });
+}
+
+/// A flat mesh reflects light on its way back, and if it is large, it also stops light on the first
+/// leg.
+#[test]
+fn a_mesh_that_shades_an_earlier_leg() {
+    let class = |half: f64| {
+        let surfaces = format!(
+            r#"Smooth(name: "mirror", center: (0, 0, 1), facing: (0.38268343236509, 0, -0.923879532511287),
+                    form: Plane, aperture: 0.4, event: Mirror),
+               Mesh(name: "sheet", center: (0.5, 0, 0.5), event: Mirror,
+                    mesh: Paraboloid(curvatures: (0, 0), half: {half}, cells: 4))"#
+        );
+        let visits = r#""mirror", "sheet""#;
+        of(&scene(
+            LIGHT,
+            "",
+            &surfaces,
+            visits,
+            r#"After("sheet")"#,
+            0.1,
+        ))
+        .class()
+    };
+    assert_eq!(class(0.3), Class::FirstOrder);
+    assert_eq!(class(0.48), Class::Reference);
 }
 
 /// Rays are tested against a surface that the path does not visit.

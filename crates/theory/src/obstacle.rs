@@ -102,7 +102,7 @@ pub struct Obstacle {
     pub name: String,
     /// The shape of the obstacle and its position.
     pub form: ObstacleForm,
-    /// The obstacle stops light only before the leg with this index; `None` stands for all legs.
+    /// The obstacle stops light only on legs with a smaller index; `None` stands for all legs.
     pub until: Option<usize>,
 }
 

@@ -3,7 +3,7 @@
 use etendue_field::{Disc, Hole, Light, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
-/// an element of a system.
+/// a surface of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// The size of a light. For a rectangle, it is the side along X, and the aspect ratio is
@@ -13,9 +13,9 @@ pub enum Parameter {
     SpotExponent,
     /// The first width of a light's picture; the ratio of the two widths is constant.
     ImageWidth,
-    /// The distance of a step of travel. In a system, this is the length of a leg of the central
-    /// ray. The leg starts at an element, or at the light (0), and ends at the next element or at
-    /// the plane. If the length changes, all elements after the leg and the plane move along D.
+    /// The distance of a step of travel. On a path, this is the length of a leg of the central
+    /// ray. The leg starts at a surface, or at the light (0), and ends at the next surface or at
+    /// the plane. If the length changes, all surfaces after the leg and the plane move along D.
     Travel(usize),
     /// The size of the first shape of an opaque mask, or of the hole of an aperture. For a
     /// rectangle, it is the side along X; for a bar, which is a rectangle of unlimited length, it

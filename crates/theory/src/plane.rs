@@ -2,7 +2,7 @@
 
 use etendue_field::{Frame, Orientation, Patch, Quantity, Side};
 
-/// The plane at which the light field is observed, behind all surfaces that light meets.
+/// The plane at which the light field is observed, behind the surfaces that light has left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The plane's frame, in the coordinates of the frame at the light. O is on the central ray,
@@ -16,9 +16,9 @@ pub struct Plane {
     pub longitude: f64,
     /// The surface that gives the local normals. If it is `None`, all normals are along D.
     pub patch: Option<Patch>,
-    /// Whether the plane lies before or after the objects at its distance. If light arrives at the
-    /// plane's surface, this surface is not among the system's elements. If light leaves it, this
-    /// surface is the last element.
+    /// Whether the plane lies before or after the objects at its distance. The surface of a plane is
+    /// the next surface of the path if light arrives there, and otherwise the last that light has
+    /// left.
     pub side: Side,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,

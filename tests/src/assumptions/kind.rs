@@ -33,8 +33,7 @@ const PHRASES: [(&str, &str); 13] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A phrase from the reason that `check` gives for a slow prediction. If this assumption is
-/// violated, predictions are slow, but not wrong.
+/// The assumption that is violated where a plane is said to be dark.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.

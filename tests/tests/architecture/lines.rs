@@ -20,7 +20,12 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3243, ""),
     ("pipeline", 5436, 5436, ""),
-    ("predict", 2917, 2917, ""),
+    (
+        "predict",
+        2917,
+        2943,
+        "a smooth mesh stops light on other legs",
+    ),
     ("python", 1650, 1650, ""),
     ("rayfile", 2394, 2394, ""),
     ("report", 2599, 2599, ""),

@@ -17,7 +17,7 @@ use etendue_field::{PhotonSource, ProjectionGrid, Slices, VirtualPlane};
 use etendue_predict::{Applicability, path, predict, predict_reference, test_of};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::path::{PatchExtent, PathSystem};
+use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, Observed, RayBudget};
 use etendue_trace::{Backward, Tracer};
 use std::time::Instant;
@@ -183,7 +183,7 @@ fn forgets_later_surfaces(system: &mut PathSystem) {
 /// Makes a prediction blind to the shadow of a surface on itself.
 fn forgets_own_shadows(system: &mut PathSystem) {
     for surface in &mut system.surfaces {
-        surface.extent = PatchExtent::Osculating;
+        surface.occludes = false;
     }
 }
 

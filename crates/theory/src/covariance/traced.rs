@@ -5,7 +5,7 @@ use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
 use crate::parallel::{Chain, Operator};
 use crate::path::rays;
-use crate::path::{self, Observed, PathKind, PathSystem};
+use crate::path::{self, Observed, PathKind};
 use crate::plane::Plane;
 use etendue_field::{
     Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
@@ -186,9 +186,8 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
 /// Returns the covariance of light after the masks of the first leg, and the distance from the
 /// light to the last mask. `length` is the length of the leg.
 fn past_masks(view: &Observed, length: f64) -> Result<(SpectralCovariance, f64), Untraced> {
-    let PathSystem { light, masks, .. } = &view.system;
-    let mut masks = masks.iter().filter(|(distance, _)| *distance < length);
-    let start = (of_light(light)?, 0.0);
+    let start = (of_light(&view.system.light)?, 0.0);
+    let mut masks = view.system.masks_before(length);
     masks.try_fold(start, |(light, at), (distance, mask)| {
         let arriving = moved(&light, &AffineMap::travel(distance - at))?;
         Ok((masked(&arriving, mask)?, *distance))

@@ -193,7 +193,7 @@ fn steps(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Vec<String
     let mut steps = Vec::new();
     let (mut name, mut travelled) = ("light", 0.0);
     let first_leg = visited.first()?.hit.z;
-    for (distance, mask) in system.masks.iter().filter(|(at, _)| *at < first_leg) {
+    for (distance, mask) in system.masks_before(first_leg) {
         steps.push(words::travel(distance - travelled, name, "mask"));
         steps.push(words::mask("", mask));
         (name, travelled) = ("mask", *distance);

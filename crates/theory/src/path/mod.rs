@@ -5,9 +5,9 @@
 //! mirror, a refracting surface, a lens, a diffuse rectangle or a surface with a BRDF. A system and
 //! a plane together are an [`Observed`], which is a [`Model`](crate::Model).
 //!
-//! Light follows the path if it meets each surface in turn, and no other surface, mask or obstacle
-//! before it. Every ray is tested for this (`prepared.rs`), so the surfaces may have any
-//! positions. Like a photon, a ray is lost where it meets a surface out of order or twice.
+//! Light follows the path if it meets the next surface first on each leg. Masks attenuate it, and
+//! everything else stops it. Every ray is tested for this (`prepared.rs`), so the surfaces may have
+//! any positions. Like a photon, a ray is lost where it meets a surface out of order or twice.
 //!
 //! The model samples rays in one of three ways, which [`PathKind`] names. They share the system, its
 //! occluders, its parameters and its plane: [`rays`] follows rays through specular
@@ -27,7 +27,7 @@ mod surface;
 pub use chain::{PathChain, ScatteringSurface, chain, defect};
 
 pub(crate) use chain::{local, towards};
-pub(crate) use prepared::PreparedPath;
+pub(crate) use prepared::{PreparedPath, SAME_DISTANCE};
 
 use crate::obstacle::Obstacle;
 use crate::plane::Plane;
@@ -40,8 +40,9 @@ pub struct PathSystem {
     /// The light, which emits from the plane z = 0, along Z. A light that is a list of rays is not
     /// allowed.
     pub light: Light,
-    /// Masks across the first leg, with their distances from the light in metres, in ascending
-    /// order. A mask stops light on every leg that crosses it.
+    /// Masks in planes across the first leg, with their distances from the light in metres, in
+    /// ascending order. A mask attenuates light on every leg that crosses it. It may stand behind
+    /// the light, at a negative distance, or beyond the first surface.
     pub masks: Vec<(f64, Mask)>,
     /// Occluders beside the path.
     pub obstacles: Vec<Obstacle>,
@@ -65,6 +66,9 @@ pub struct PathSurface {
     pub hit: DVec3,
     /// The interaction of light with the surface.
     pub interaction: Interaction,
+    /// Whether the surface stops light that it does not deflect. A patch that osculates a mesh does
+    /// not, because the mesh is not known far from the central ray's hit.
+    pub occludes: bool,
 }
 
 /// The extent of a surface in its patch.
@@ -74,9 +78,6 @@ pub enum PatchExtent {
     Whole,
     /// The rectangle around the patch's vertex with these side lengths along X and Y, metres.
     Rectangle([f64; 2]),
-    /// The patch osculates a mesh at the central ray's hit. Farther away, the mesh is not known, so
-    /// it occludes no light.
-    Osculating,
 }
 
 /// The interaction of light with a surface.
@@ -139,6 +140,12 @@ impl PathSystem {
         &self.surfaces[..self.visited]
     }
 
+    /// Returns the masks that the central ray crosses on its first leg of the given length.
+    pub fn masks_before(&self, length: f64) -> impl DoubleEndedIterator<Item = &(f64, Mask)> {
+        let masks = self.masks.iter();
+        masks.filter(move |(at, _)| 0.0 < *at && *at < length)
+    }
+
     /// Returns the number of surfaces that scatter light before the plane.
     #[must_use]
     pub fn scatterers(&self) -> usize {
@@ -173,6 +180,7 @@ impl PathSurface {
             extent: PatchExtent::Whole,
             hit: patch.frame.origin,
             interaction,
+            occludes: true,
         }
     }
 }

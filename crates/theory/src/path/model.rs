@@ -34,7 +34,7 @@ impl Model for Observed {
             all.retain(|parameter| self.is_parameter(*parameter));
             return all;
         };
-        for (number, surface) in self.system.before_plane().iter().enumerate() {
+        for (number, surface) in self.system.first_visits() {
             let patch = &surface.patch;
             let axes = curvatures(patch).into_iter();
             let curved = axes.filter(|axis| patch.curvature[*axis] != 0.0);
@@ -105,6 +105,14 @@ impl Model for Observed {
             },
             _ => parameter.change_light(&mut self.system.light, new)?,
         }
+        match parameter {
+            Parameter::Incidence(i)
+            | Parameter::Curvature(i, _)
+            | Parameter::Index(i)
+            | Parameter::FocalLength(i) => self.system.repeat(i),
+            Parameter::Albedo | Parameter::Lobe => self.system.repeat(last?),
+            _ => {}
+        }
         Some(())
     }
 
@@ -169,9 +177,11 @@ impl Observed {
     fn specular_parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Vec::new();
+        let is_first = |i: usize| system.first_visits().any(|(first, _)| first == i);
         for (i, surface) in system.before_plane().iter().enumerate() {
             all.push(Parameter::Travel(i));
             match surface.event() {
+                _ if !is_first(i) => continue,
                 Some(Specular::ThinLens { .. }) => {
                     all.push(Parameter::FocalLength(i));
                     continue;
@@ -204,6 +214,12 @@ impl Observed {
 
     /// Changes the length of a leg, and moves the plane and all surfaces after the leg.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
+        // A surface that is visited on both sides of the leg cannot move away from itself.
+        let (before, after) = self.system.surfaces.split_at(leg);
+        let is_before = |surface: &PathSurface| before.iter().any(|one| one.name == surface.name);
+        if after.iter().any(is_before) {
+            return None;
+        }
         let (from, along) = self.system.leg(leg)?;
         let to = match self.system.hits()?.get(leg) {
             Some(hit) => hit.arriving.origin,
@@ -264,6 +280,29 @@ impl PathSystem {
             }
         }
         Some(system)
+    }
+
+    /// Returns the surfaces before the plane, without those that light has visited before.
+    fn first_visits(&self) -> impl Iterator<Item = (usize, &PathSurface)> {
+        let all = self.before_plane();
+        let is_new = |(i, surface): &(usize, &PathSurface)| {
+            all[..*i].iter().all(|before| before.name != surface.name)
+        };
+        all.iter().enumerate().filter(is_new)
+    }
+
+    /// Gives the patch and the interaction of a surface to all visits of this surface.
+    fn repeat(&mut self, number: usize) {
+        let PathSurface {
+            name,
+            patch,
+            interaction,
+            ..
+        } = self.surfaces[number].clone();
+        for visit in self.surfaces.iter_mut().filter(|visit| visit.name == name) {
+            visit.patch = patch;
+            visit.interaction = interaction.clone();
+        }
     }
 
     /// Checks whether the light field is the same at all distances from the light.

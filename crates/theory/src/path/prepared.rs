@@ -13,7 +13,7 @@ pub(crate) struct PreparedPath<'a> {
 }
 
 /// Two distances along a ray are treated as equal if they differ by less than this share.
-const SAME_DISTANCE: f64 = 1e-6;
+pub(crate) const SAME_DISTANCE: f64 = 1e-6;
 
 impl<'a> PreparedPath<'a> {
     pub(crate) fn new(system: &'a PathSystem) -> Self {
@@ -40,7 +40,7 @@ impl<'a> PreparedPath<'a> {
     pub(crate) fn reaches(&self, leg: usize, ray: &LegRay, length: f64) -> f64 {
         let surface = &self.system.surfaces[leg];
         let is_before = |t: f64| t < length * (1.0 - SAME_DISTANCE);
-        if surface.occludes() && surface.first(ray, ray.start()).is_some_and(is_before) {
+        if surface.occludes && surface.first(ray, ray.start()).is_some_and(is_before) {
             return 0.0;
         }
         self.passes(leg, ray, length)
@@ -51,7 +51,7 @@ impl<'a> PreparedPath<'a> {
     pub(crate) fn leaves(&self, ray: &LegRay, length: f64) -> f64 {
         let leg = self.system.visited;
         let last = self.system.before_plane().last();
-        let known = last.filter(|last| last.occludes());
+        let known = last.filter(|last| last.occludes);
         let again = known.is_some_and(|last| last.first(ray, ray.start()).is_some());
         if again || self.is_hidden(leg, ray, length) {
             return 0.0;
@@ -84,9 +84,10 @@ impl<'a> PreparedPath<'a> {
     /// of the leg.
     fn is_hidden(&self, leg: usize, ray: &LegRay, end: f64) -> bool {
         let surfaces = &self.system.surfaces;
-        let ends = surfaces.get(leg).map(|surface| surface.patch);
-        let others = surfaces.iter().filter(|other| other.occludes());
-        let mut others = others.filter(|other| Some(other.patch) != ends);
+        // A path may visit a surface twice.
+        let ends = surfaces.get(leg).map(|surface| &surface.name);
+        let others = surfaces.iter().filter(|other| other.occludes);
+        let mut others = others.filter(|other| Some(&other.name) != ends);
         let start = ray.start();
         others.any(|other| other.distances(ray, start).any(|t| t < end))
     }

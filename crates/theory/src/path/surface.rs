@@ -24,11 +24,6 @@ impl PathSurface {
         self.event().is_none()
     }
 
-    /// Checks whether the surface occludes light that it does not deflect.
-    pub(crate) fn occludes(&self) -> bool {
-        self.extent != PatchExtent::Osculating
-    }
-
     /// Returns the distances beyond `start` at which a ray meets the surface.
     pub(crate) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
         let ray = *ray;

@@ -9,16 +9,16 @@ use glam::DVec3;
 
 /// A plane, and the surfaces on the backward path from it.
 #[derive(Clone, Debug)]
-pub(super) struct Back {
+pub(super) struct Back<'a> {
     plane: Plane,
-    surfaces: Vec<PathSurface>,
+    surfaces: &'a [PathSurface],
 }
 
-impl Back {
-    pub(super) fn new(system: &PathSystem, plane: &Plane) -> Self {
+impl<'a> Back<'a> {
+    pub(super) fn new(system: &'a PathSystem, plane: &Plane) -> Self {
         Self {
             plane: *plane,
-            surfaces: system.before_plane().to_vec(),
+            surfaces: system.before_plane(),
         }
     }
 

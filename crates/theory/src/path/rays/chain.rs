@@ -133,7 +133,7 @@ impl Walk {
     /// Appends the steps through the masks of the first leg, and returns the distance of the last.
     fn cross(&mut self, system: &PathSystem, first_leg: f64) -> f64 {
         let mut travelled = 0.0;
-        for (distance, mask) in system.masks.iter().filter(|(at, _)| *at < first_leg) {
+        for (distance, mask) in system.masks_before(first_leg) {
             self.travel(distance - travelled, "mask");
             self.steps.push(words::mask("", mask));
             travelled = *distance;

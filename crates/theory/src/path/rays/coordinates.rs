@@ -42,7 +42,7 @@ impl Plane {
             return Some(0.0);
         }
         if let Some(patch) = &self.patch {
-            return Some(self.arrives_on(patch, ray)?.0);
+            return Some(self.arrives_on(patch, ray)?.0 * (1.0 - ROUNDING));
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
         let is_behind = self.is_arriving() && t < 0.0;

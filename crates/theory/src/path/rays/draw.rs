@@ -45,7 +45,7 @@ impl RayStrategy {
 pub(super) struct RaySampler<'a> {
     emission: EmissionMeasure,
     outer: Outer<'a>,
-    by: By,
+    by: By<'a>,
 }
 
 /// The sampling of the two outer coordinates of a ray. Only a light with extent needs them, in
@@ -61,7 +61,7 @@ enum Outer<'a> {
 }
 
 #[derive(Clone, Debug)]
-enum By {
+enum By<'a> {
     Picture([LinearDensity; 2]),
     /// Positions at a plane that light reaches directly from the source.
     Straight {
@@ -83,7 +83,7 @@ enum By {
     /// back exactly.
     Back {
         window: Box<[LinearDensity; 4]>,
-        back: Back,
+        back: Back<'a>,
     },
     /// All four coordinates of the target ray at the plane are sampled, and the target is mapped
     /// back to first order.

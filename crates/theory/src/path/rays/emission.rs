@@ -47,7 +47,7 @@ impl PathSystem {
         }
         for (distance, mask) in &self.masks {
             if let Some(grating) = mask.grating() {
-                let per_unit = if inner[0] == 0 { 1.0 } else { *distance };
+                let per_unit = if inner[0] == 0 { 1.0 } else { distance.abs() };
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;
             }
         }

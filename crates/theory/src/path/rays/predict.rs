@@ -123,9 +123,9 @@ pub fn sampled(
 ///
 /// The map moves the radiance of ray z at the light to A z + t, where A is the transpose of the
 /// map's matrix and t is the map's phase. The map also multiplies the spectrum by the map's factor,
-/// so F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are treated
-/// exactly, and obstacles are tested with the first-order rays of each leg. For a plane on a
-/// surface that is lit by an environment, z contains angles instead of slopes.
+/// so F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks and obstacles
+/// are tested with the first-order rays of each leg, and surfaces of the path stop no light. For a
+/// plane on a surface that is lit by an environment, z contains angles instead of slopes.
 #[must_use]
 pub fn linear(
     view: &Observed,

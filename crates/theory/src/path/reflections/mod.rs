@@ -1,5 +1,5 @@
-//! Windowed spectra of light that several surfaces reflect in turn. Some of these surfaces have a
-//! BRDF.
+//! Windowed spectra of light that several surfaces redirect in turn. Some of these surfaces scatter
+//! it.
 //!
 //! The model of such a [path](crate::path) sums paths of light over scrambled nets. A path leaves
 //! the light, is redirected by each specular surface, and leaves each scattering surface in a
@@ -10,10 +10,10 @@
 //! Directions are sampled from a Gaussian that guides light into the window (`guide.rs`). It is
 //! computed by first-order maps, which take the window back along the path.
 //!
-//! The module also has the chain of first-order operators (Durand et al. 2005, Table 1). The chain
-//! has affine maps from each scattering surface to the next. At each of these surfaces, the chain
-//! multiplies by the cosine and convolves with the lobe at the central ray. The error of the chain
-//! is computed as a sum over the paths of the exact prediction.
+//! The [chain](crate::path::chain()) of first-order operators (Durand et al. 2005, Table 1) has
+//! affine maps from each scattering surface to the next. At each of these surfaces, it multiplies by
+//! the cosine and convolves with the lobe at the central ray. Its error is computed as a sum over
+//! the paths of the exact prediction.
 
 mod aim;
 mod direction;

@@ -9,7 +9,8 @@ use crate::obstacle::LegRay;
 use crate::path::local;
 use crate::path::rays::{emitted, point_of};
 use crate::path::{
-    Observed, PatchExtent, PathChain, PathSurface, PreparedPath, ScatteringSurface, chain,
+    Observed, PatchExtent, PathChain, PathSurface, PreparedPath, SAME_DISTANCE, ScatteringSurface,
+    chain,
 };
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
@@ -315,8 +316,6 @@ impl<'a> FieldPaths<'a> {
 
 /// Checks whether a ray that was aimed at `target` met a surface at another point.
 fn is_beside(target: DVec3, point: DVec3, length: f64) -> bool {
-    /// Points closer than this share of the ray's length are treated as equal.
-    const SAME_DISTANCE: f64 = 1e-6;
     target.distance(point) > SAME_DISTANCE * length
 }
 
@@ -334,9 +333,7 @@ fn on_surface(
     // This is the variance of positions along an axis of a rectangle or a disc.
     let variance = match surface.extent {
         PatchExtent::Rectangle([x, y]) => (x * x + y * y) / 24.0,
-        PatchExtent::Whole | PatchExtent::Osculating => {
-            0.25 * surface.patch.aperture * surface.patch.aperture
-        }
+        PatchExtent::Whole => 0.25 * surface.patch.aperture * surface.patch.aperture,
     };
     let middle = scatterer.frame.to_local(surface.patch.frame.origin);
     let front = 1.0 / (FRONT * FRONT);

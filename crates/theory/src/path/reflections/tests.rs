@@ -113,7 +113,8 @@ fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
 }
 
 fn surface(patch: Patch, interaction: Interaction) -> PathSurface {
-    PathSurface::new("surface", patch, interaction)
+    // Surfaces with the same name are visits of one surface.
+    PathSurface::new(&patch.frame.origin.to_string(), patch, interaction)
 }
 
 /// Returns a plane through a point, perpendicular to a ray.

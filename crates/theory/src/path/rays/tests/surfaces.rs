@@ -1,6 +1,7 @@
 //! Tests of projection pictures, covariances and derivatives from rays, and of rays that are lost.
 
 use super::*;
+use crate::Parameter;
 
 #[test]
 fn covariance_of_a_gaussian_beam() {
@@ -74,9 +75,12 @@ fn derivatives_by_every_parameter() {
         back: 1.5,
     };
     let mut system = mirror(projector([0.2, 0.2]), 0.5, [0.2, 0.1], [-0.5, -0.3, 0.0]);
-    for (event, theta0, shape) in [(glass, 0.3, [0.4; 3]), (lens, 0.0, [0.0; 3])] {
+    for (name, event, theta0, shape) in [
+        ("glass", glass, 0.3, [0.4; 3]),
+        ("lens", lens, 0.0, [0.0; 3]),
+    ] {
         let patch = placed(&after(&system, 0.0).frame, 0.3, theta0, [0.0; 2], shape);
-        visit(&mut system, element("next", patch, event));
+        visit(&mut system, element(name, patch, event));
     }
     let plane = after(&system, 0.2);
     let window = window(Profile::Hann(0.1), Profile::Hann(0.1));
@@ -151,4 +155,26 @@ fn rays_are_lost() {
         &grid(1, [0.1; 2]),
     );
     assert!(dark.slices.half.iter().all(|s| s.norm() == 0.0));
+}
+
+/// Light passes a lens, returns from a mirror and passes the lens again.
+#[test]
+fn a_surface_that_is_visited_twice_changes_as_one() {
+    let at = |distance| placed(&Frame::IDENTITY, distance, 0.0, [0.0; 2], [0.0; 3]);
+    let lens = || element("lens", at(0.5), Specular::ThinLens { focal_length: 0.6 });
+    let mirror = element("mirror", at(1.0), Specular::Mirror);
+    let system = PathSystem::new(beam([0.1, 0.1]), vec![lens(), mirror, lens()]);
+    let view = view(&system, &after(&system, 0.2));
+    let parameters = view.parameters();
+    let is_focal = |p: &&Parameter| matches!(p, Parameter::FocalLength(_));
+    let focal: Vec<_> = parameters.iter().filter(is_focal).collect();
+    assert_eq!(focal, [&Parameter::FocalLength(0)]);
+    // The lens cannot move away from itself.
+    assert!(!parameters.contains(&Parameter::Travel(1)));
+    let changed = view.with(Parameter::FocalLength(0), 0.7).unwrap();
+    let [first, _, last] = &changed.system.surfaces[..] else {
+        panic!("three visits")
+    };
+    assert_eq!(first, last);
+    assert_ne!(*first, lens());
 }
