@@ -114,27 +114,35 @@ fn two_results_are_told_apart_when_they_differ() {
     );
 }
 
-/// Of the two edges of a slit, the one that moved is named.
+/// Of the edges and sides of a mask, the one that differs is named first.
 #[test]
 fn the_edge_that_moved_is_named() {
     let slit = concat!(
-        r#"--set blockers=[Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:["#,
-        "HalfPlane(axis:X,edge:-0.05,opaque:Below),HalfPlane(axis:X,edge:EDGE,opaque:Above)])]",
-        " --photons 2^17",
+        "HalfPlane(axis:X,edge:-0.05,opaque:Below),",
+        "HalfPlane(axis:X,edge:0.05,opaque:Above)"
     );
-    let [before, after] = ["0.05", "0.053"].map(|edge| slit.replace("EDGE", edge));
-    let folder = runs(&[
-        &format!("{before} --seed 1 --out a"),
-        &format!("{after} --seed 2 --out b"),
-    ]);
-    let (code, text) = diff(folder.path(), "a b");
-    assert_eq!(code, Some(1), "{text}");
-    let verdict = text.lines().find(|line| line.starts_with("verdict:"));
-    let verdict = verdict.unwrap();
-    assert!(
-        verdict.contains("edge 2 of slit") && !verdict.contains("edge 1"),
-        "{verdict}"
+    let two = concat!(
+        "Rectangle(center:(-0.1,0),size:(0.08,0.1)),",
+        "Rectangle(center:(0.1,0),size:(0.08,0.2))"
     );
+    for (shapes, [from, to], named) in [
+        (slit, ["edge:0.05", "edge:0.053"], "edge 2 of slit"),
+        (two, ["0.08,0.2", "0.08,0.215"], "side y of shape 2 of slit"),
+        (two, ["(0.1,0)", "(0.107,0)"], "position x of shape 2 of slit"),
+    ] {
+        let run = |shapes: &str, options: &str| {
+            let mask = format!(r#"Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:[{shapes}])"#);
+            format!("--set blockers=[{mask}] --photons 2^17 {options}")
+        };
+        let folder = runs(&[
+            &run(shapes, "--seed 1 --out a"),
+            &run(&shapes.replace(from, to), "--seed 2 --out b"),
+        ]);
+        let (code, text) = diff(folder.path(), "a b");
+        assert_eq!(code, Some(1), "{text}");
+        let verdict = text.lines().find(|line| line.starts_with("verdict:"));
+        assert!(verdict.unwrap().contains(named), "{verdict:?}");
+    }
 }
 
 #[test]

@@ -172,7 +172,7 @@ pub fn predict_reference(
 /// `all` are the parameters of a model; the first travel begins at the light.
 fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
     match parameter {
-        Parameter::SourceSize | Parameter::SpotExponent | Parameter::ImageWidth => true,
+        Parameter::SourceSize(_) | Parameter::SpotExponent | Parameter::ImageWidth(_) => true,
         Parameter::Travel(_) => {
             let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
             all.iter().find(is_travel) == Some(&parameter)

@@ -1,32 +1,33 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{Disc, Hole, Light, Patch, Rectangle, Shape};
+use etendue_field::{Disc, Hole, Light, Mask, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// a surface of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The size of a light. For a rectangle, it is the side along X, and the aspect ratio is
-    /// constant. For a disc, it is the radius.
-    SourceSize,
+    /// The side of a rectangular light along X (0) or Y (1), or the radius of a disc (0).
+    SourceSize(usize),
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
-    /// The first width of a light's picture; the ratio of the two widths is constant.
-    ImageWidth,
+    /// The first (0) or the second (1) width of a light's picture.
+    ImageWidth(usize),
     /// The distance of a step of travel. On a path, this is the length of a leg of the central
     /// ray. The leg starts at a surface, or at the light (0), and ends at the next surface or at
     /// the plane. If the length changes, all surfaces after the leg and the plane move along D.
     Travel(usize),
-    /// The size of the first shape of an opaque mask, or of the hole of an aperture. For a
-    /// rectangle, it is the side along X; for a bar, which is a rectangle of unlimited length, it
-    /// is the width; for a disc, it is the radius; for a polygon, it is the extent along X. All
-    /// shapes of the mask scale by the same factor about their centres, and a polygon scales about
-    /// its centroid.
-    BlockerSide(usize),
-    /// The position of an opaque mask's shapes, or of the hole of an aperture, along X (0) or Y (1).
-    /// The value is the mean of the shapes' centres, or the centroid of a polygon. All shapes of the
-    /// mask move together; its half-planes do not move.
-    BlockerPosition(usize, usize),
+    /// The size of a shape of an opaque mask, or of the hole of an aperture: the index of the mask,
+    /// of the shape, and of the axis. For a rectangle, it is the side along this axis; for a bar,
+    /// which is a rectangle of unlimited length, it is the width; for a disc, it is the radius; for
+    /// a polygon, it is the extent along X, and the polygon scales about its centroid. A mask of
+    /// more than four shapes has one size: that of its first shape, and all its shapes scale by the
+    /// same factor about their centres.
+    BlockerSide(usize, usize, usize),
+    /// The position of a shape of an opaque mask, or of the hole of an aperture, along X (0) or Y
+    /// (1): the index of the mask, of the shape, and of the axis. For a polygon, it is the centroid.
+    /// A mask of more than four shapes has one position, which is the mean of the centres, and all
+    /// shapes move together. Half-planes do not move.
+    BlockerPosition(usize, usize, usize),
     /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
     /// other edges do not move.
     HalfPlaneEdge(usize, usize),
@@ -54,11 +55,14 @@ impl Parameter {
     /// Returns the parameters of a light.
     pub(crate) fn of_light(light: &Light) -> Vec<Self> {
         match light {
-            Light::Area { exponent, .. } if *exponent > 0.0 => {
-                vec![Self::SourceSize, Self::SpotExponent]
+            Light::Area {
+                shape, exponent, ..
+            } => {
+                let sizes = size_axes(std::slice::from_ref(shape)).into_iter();
+                let exponent = (*exponent > 0.0).then_some(Self::SpotExponent);
+                sizes.map(Self::SourceSize).chain(exponent).collect()
             }
-            Light::Area { .. } => vec![Self::SourceSize],
-            Light::Projector { .. } | Light::Beam { .. } => vec![Self::ImageWidth],
+            Light::Projector { .. } | Light::Beam { .. } => [0, 1].map(Self::ImageWidth).to_vec(),
             _ => Vec::new(),
         }
     }
@@ -66,14 +70,14 @@ impl Parameter {
     /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
-            Self::ImageWidth if matches!(light, Light::Projector { .. }) => "",
+            Self::ImageWidth(_) if matches!(light, Light::Projector { .. }) => "",
             Self::SpotExponent | Self::Index(_) | Self::Albedo | Self::Lobe => "",
             Self::GratingPhase(_) | Self::Incidence(_) => "rad",
             Self::GratingFrequency(_) | Self::Curvature(..) => "1/m",
-            Self::SourceSize
-            | Self::ImageWidth
+            Self::SourceSize(_)
+            | Self::ImageWidth(_)
             | Self::Travel(_)
-            | Self::BlockerSide(_)
+            | Self::BlockerSide(..)
             | Self::BlockerPosition(..)
             | Self::HalfPlaneEdge(..)
             | Self::FocalLength(_) => "m",
@@ -97,11 +101,12 @@ impl Parameter {
     /// Returns the readable name of a light's parameter; `name` is the name of the light.
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
         match (self, light) {
-            (Self::SourceSize, Light::Area { shape, .. }) => {
-                Some(format!("{} of {name}", size_of(shape).0))
+            (Self::SourceSize(axis), Light::Area { shape, .. }) => {
+                let word = size_word(std::slice::from_ref(shape), axis);
+                Some(format!("{word} of {name}"))
             }
             (Self::SpotExponent, _) => Some(format!("exponent of {name}")),
-            (Self::ImageWidth, _) => Some("width of image".to_owned()),
+            (Self::ImageWidth(axis), _) => Some(format!("width {} of image", axis + 1)),
             _ => None,
         }
     }
@@ -110,15 +115,110 @@ impl Parameter {
     /// does not have the parameter.
     pub(crate) fn change_light(self, light: &mut Light, new: New<'_>) -> Option<()> {
         match (self, light) {
-            (Self::SourceSize, Light::Area { shape, .. }) => {
-                resize(std::slice::from_mut(shape), new);
+            (Self::SourceSize(axis), Light::Area { shape, .. }) => {
+                resize(std::slice::from_mut(shape), axis, new);
             }
             (Self::SpotExponent, Light::Area { exponent, .. }) => *exponent = new(*exponent),
-            (Self::ImageWidth, Light::Projector { image, .. } | Light::Beam { image, .. }) => {
-                let factor = new(image.width[0]) / image.width[0];
-                image.width = image.width.map(|w| w * factor);
-            }
+            (
+                Self::ImageWidth(axis),
+                Light::Projector { image, .. } | Light::Beam { image, .. },
+            ) => image.width[axis] = new(image.width[axis]),
             _ => return None,
+        }
+        Some(())
+    }
+
+    /// Returns the parameters of a mask; `index` is the index of its operator.
+    pub(crate) fn of_mask(mask: &Mask, index: usize) -> Vec<Self> {
+        let shapes = shapes_of(mask);
+        let groups = shapes.chunks(group_size(shapes)).enumerate();
+        let of_shapes = groups.flat_map(|(number, group)| {
+            let sizes = size_axes(group).into_iter();
+            let sizes = sizes.map(move |axis| Self::BlockerSide(index, number, axis));
+            let axes = movable_axes(group).into_iter();
+            sizes.chain(axes.map(move |axis| Self::BlockerPosition(index, number, axis)))
+        });
+        let others = match mask {
+            Mask::Opaque { half_planes, .. } => {
+                let edges = 0..half_planes.len();
+                edges.map(|edge| Self::HalfPlaneEdge(index, edge)).collect()
+            }
+            Mask::Aperture(Hole::Shape(_)) => Vec::new(),
+            Mask::Aperture(Hole::Polygon(_)) => {
+                let [x, y] = [0, 1].map(|axis| Self::BlockerPosition(index, 0, axis));
+                vec![Self::BlockerSide(index, 0, 0), x, y]
+            }
+            Mask::Grating(_) => vec![Self::GratingFrequency(index), Self::GratingPhase(index)],
+        };
+        of_shapes.chain(others).collect()
+    }
+
+    /// Returns the readable name of a mask's parameter; `name` is the name of the mask.
+    pub(crate) fn name_of_mask(self, mask: &Mask, name: &str) -> Option<String> {
+        let shapes = shapes_of(mask);
+        let size = group_size(shapes);
+        let of = |number: usize| match shapes.len() > size {
+            true => format!("shape {} of {name}", number + 1),
+            false => name.to_owned(),
+        };
+        Some(match (self, mask) {
+            (Self::BlockerSide(..), Mask::Aperture(Hole::Polygon(_))) => format!("width of {name}"),
+            (Self::BlockerSide(_, number, axis), _) => {
+                let group = shapes.chunks(size).nth(number)?;
+                format!("{} of {}", size_word(group, axis), of(number))
+            }
+            (Self::BlockerPosition(_, number, axis), _) => {
+                format!("position {} of {}", ["x", "y"][axis], of(number))
+            }
+            (Self::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
+                let number = (half_planes.len() > 1).then(|| format!(" {}", edge + 1));
+                format!("edge{} of {name}", number.unwrap_or_default())
+            }
+            (Self::GratingFrequency(_), _) => format!("frequency of {name}"),
+            (Self::GratingPhase(_), _) => format!("phase of {name}"),
+            _ => return None,
+        })
+    }
+
+    /// Replaces the value of the parameter in a mask by `new(value)`. Returns `None` if the mask
+    /// does not have the parameter.
+    pub(crate) fn change_mask(self, mask: &mut Mask, new: New<'_>) -> Option<()> {
+        match (self, mask) {
+            (Self::BlockerSide(..), Mask::Aperture(hole @ Hole::Polygon(_))) => {
+                let width = hole.bounds().size[0];
+                let factor = new(width) / width;
+                let fixed = hole.moments().centroid;
+                *hole = hole.mapped(factor, fixed.map(|c| c - factor * c));
+            }
+            (Self::BlockerPosition(_, _, axis), Mask::Aperture(hole @ Hole::Polygon(_))) => {
+                let old = hole.moments().centroid[axis];
+                let mut shift = [0.0; 2];
+                shift[axis] = new(old) - old;
+                *hole = hole.mapped(1.0, shift);
+            }
+            (Self::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
+                let half = half_planes.get_mut(edge)?;
+                half.edge = new(half.edge);
+            }
+            (Self::GratingFrequency(_), Mask::Grating(grating)) => {
+                grating.frequency = new(grating.frequency);
+            }
+            (Self::GratingPhase(_), Mask::Grating(grating)) => grating.phase = new(grating.phase),
+            (_, mask) => {
+                let shapes = match mask {
+                    Mask::Opaque { shapes, .. } => shapes.as_mut_slice(),
+                    Mask::Aperture(Hole::Shape(shape)) => std::slice::from_mut(shape),
+                    Mask::Aperture(Hole::Polygon(_)) | Mask::Grating(_) => return None,
+                };
+                let mut groups = shapes.chunks_mut(group_size(shapes));
+                match self {
+                    Self::BlockerSide(_, number, axis) => resize(groups.nth(number)?, axis, new),
+                    Self::BlockerPosition(_, number, axis) => {
+                        reposition(groups.nth(number)?, axis, new);
+                    }
+                    _ => return None,
+                }
+            }
         }
         Some(())
     }
@@ -155,32 +255,79 @@ pub(crate) type New<'a> = &'a mut dyn FnMut(f64) -> f64;
 /// The largest side that a scene can state. A rectangle with a larger side is a bar.
 const MAX_SIDE: f64 = 1e9;
 
-/// Returns the size of a shape that is a parameter, with the word for this size in the parameter's
-/// name.
-pub(crate) fn size_of(shape: &Shape) -> (&'static str, f64) {
-    match shape {
-        Shape::Rectangle(Rectangle { size: [x, y], .. }) if x.max(*y) > MAX_SIDE => {
-            ("width", x.min(*y))
-        }
-        Shape::Rectangle(rectangle) => ("side", rectangle.size[0]),
-        Shape::Disc(disc) => ("radius", disc.radius),
+/// The largest number of shapes of a mask that have parameters of their own.
+const MAX_SEPARATE: usize = 4;
+
+/// Returns the shapes of a mask or of its hole; none for a polygon or a grating.
+fn shapes_of(mask: &Mask) -> &[Shape] {
+    match mask {
+        Mask::Opaque { shapes, .. } => shapes,
+        Mask::Aperture(Hole::Shape(shape)) => std::slice::from_ref(shape),
+        Mask::Aperture(Hole::Polygon(_)) | Mask::Grating(_) => &[],
     }
 }
 
-/// Sets the size of the first shape, and scales all shapes by the same factor.
-pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
-    let (_, size) = size_of(&shapes[0]);
-    let factor = new(size) / size;
-    for shape in shapes {
-        match shape {
-            Shape::Rectangle(rectangle) => rectangle.size = rectangle.size.map(|s| s * factor),
-            Shape::Disc(disc) => disc.radius *= factor,
-        }
+/// Returns how many shapes of a mask share their parameters.
+fn group_size(shapes: &[Shape]) -> usize {
+    if shapes.len() > MAX_SEPARATE {
+        shapes.len()
+    } else {
+        1
+    }
+}
+
+/// Checks whether a shape ends along an axis.
+fn ends(shape: &Shape, axis: usize) -> bool {
+    match shape {
+        Shape::Rectangle(rectangle) => rectangle.size[axis] <= MAX_SIDE,
+        Shape::Disc(_) => true,
+    }
+}
+
+/// Returns the axes of the sizes of shapes: one for each side of a single rectangle, and otherwise
+/// one.
+fn size_axes(shapes: &[Shape]) -> Vec<usize> {
+    let axes = [0, 1].into_iter();
+    let finite = axes.filter(|axis| ends(&shapes[0], *axis));
+    match shapes {
+        [Shape::Rectangle(_)] => finite.collect(),
+        _ => finite.take(1).collect(),
+    }
+}
+
+/// Returns the word for the size of shapes along an axis.
+fn size_word(shapes: &[Shape], axis: usize) -> &'static str {
+    match shapes {
+        [Shape::Disc(_), ..] => "radius",
+        [Shape::Rectangle(Rectangle { size: [x, y], .. }), ..] if x.max(*y) > MAX_SIDE => "width",
+        [_] => ["side x", "side y"][axis],
+        _ => "side",
+    }
+}
+
+/// Sets the size of shapes. Several shapes scale by the same factor along both axes.
+fn resize(shapes: &mut [Shape], axis: usize, new: New<'_>) {
+    let old = match &shapes[0] {
+        Shape::Rectangle(rectangle) => rectangle.size[axis],
+        Shape::Disc(disc) => disc.radius,
+    };
+    let factor = new(old) / old;
+    match shapes {
+        [Shape::Rectangle(rectangle)] => rectangle.size[axis] *= factor,
+        _ => shapes.iter_mut().for_each(|shape| scale(shape, factor)),
+    }
+}
+
+/// Scales a shape about its centre.
+pub(crate) fn scale(shape: &mut Shape, factor: f64) {
+    match shape {
+        Shape::Rectangle(rectangle) => rectangle.size = rectangle.size.map(|s| s * factor),
+        Shape::Disc(disc) => disc.radius *= factor,
     }
 }
 
 /// Sets the mean position of shapes along an axis, and moves all shapes by the same distance.
-pub(crate) fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
+fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
     let centers = shapes.iter().map(|shape| shape.bounds().center[axis]);
     let old = centers.sum::<f64>() / shapes.len() as f64;
     let by = new(old) - old;
@@ -190,48 +337,10 @@ pub(crate) fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
     }
 }
 
-/// Sets the position of a hole along an axis.
-pub(crate) fn reposition_hole(hole: &mut Hole, axis: usize, new: New<'_>) {
-    match hole {
-        Hole::Shape(shape) => reposition(std::slice::from_mut(shape), axis, new),
-        Hole::Polygon(_) => {
-            let old = hole.moments().centroid[axis];
-            let mut shift = [0.0; 2];
-            shift[axis] = new(old) - old;
-            *hole = hole.mapped(1.0, shift);
-        }
-    }
-}
-
 /// Returns the axes along which a displacement of the shapes changes the light: all axes along
 /// which a shape ends.
-pub(crate) fn movable_axes(shapes: &[Shape]) -> Vec<usize> {
-    let ends = |shape: &Shape, axis: usize| match shape {
-        Shape::Rectangle(rectangle) => rectangle.size[axis] <= MAX_SIDE,
-        Shape::Disc(_) => true,
-    };
+fn movable_axes(shapes: &[Shape]) -> Vec<usize> {
     let axes = [0, 1].into_iter();
     axes.filter(|axis| shapes.iter().any(|shape| ends(shape, *axis)))
         .collect()
-}
-
-/// Returns the word for the size of a hole in parameter names.
-pub(crate) fn hole_word(hole: &Hole) -> &'static str {
-    match hole {
-        Hole::Shape(shape) => size_of(shape).0,
-        Hole::Polygon(_) => "width",
-    }
-}
-
-/// Sets the size of a hole.
-pub(crate) fn resize_hole(hole: &mut Hole, new: New<'_>) {
-    match hole {
-        Hole::Shape(shape) => resize(std::slice::from_mut(shape), new),
-        Hole::Polygon(_) => {
-            let width = hole.bounds().size[0];
-            let factor = new(width) / width;
-            let fixed = hole.moments().centroid;
-            *hole = hole.mapped(factor, fixed.map(|c| c - factor * c));
-        }
-    }
 }

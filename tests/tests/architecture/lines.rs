@@ -44,9 +44,9 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("sweep", 1238, 1238, ""),
     (
         "theory",
-        16875,
-        16899,
-        "converge tells its noise from its error",
+        16745,
+        16786,
+        "each side and position of a single shape is a parameter",
     ),
     ("trace", 6797, 6797, ""),
     ("transform", 1685, 1685, ""),

@@ -4,14 +4,11 @@ use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
-use crate::parameter::{
-    New, Parameter, hole_word, movable_axes, reposition, reposition_hole, resize, resize_hole,
-    size_of,
-};
+use crate::parameter::{New, Parameter};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
-use etendue_field::{Light, Mask, Shape, SliceGrid, Window};
+use etendue_field::{Light, SliceGrid, Window};
 
 impl Model for Chain {
     fn light(&self) -> &Light {
@@ -27,11 +24,11 @@ impl Model for Chain {
         let mut all = Parameter::of_light(&self.source.light);
         // The width of a light's picture is not a parameter, because closed forms do not cover
         // lights with pictures.
-        all.retain(|parameter| *parameter != Parameter::ImageWidth);
+        all.retain(|parameter| !matches!(parameter, Parameter::ImageWidth(_)));
         for (i, operator) in self.operators.iter().enumerate() {
             match operator {
                 Operator::Travel { .. } => all.push(Parameter::Travel(i)),
-                Operator::Visibility { mask, .. } => all.extend(of_mask(mask, i)),
+                Operator::Visibility { mask, .. } => all.extend(Parameter::of_mask(mask, i)),
                 Operator::Cosine { .. } | Operator::Diffuse { .. } => {}
             }
         }
@@ -46,25 +43,7 @@ impl Model for Chain {
         let name = match (parameter, operator) {
             (_, None) => parameter.name_of_light(light, name),
             (_, Some(Operator::Travel { from, to, .. })) => Some(format!("travel {from} to {to}")),
-            (_, Some(Operator::Visibility { name, mask })) => match (parameter, mask) {
-                (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) => {
-                    let shape = shapes.first();
-                    shape.map(|shape| format!("{} of {name}", size_of(shape).0))
-                }
-                (Parameter::BlockerSide(_), Mask::Aperture(hole)) => {
-                    Some(format!("{} of {name}", hole_word(hole)))
-                }
-                (Parameter::BlockerPosition(_, axis), _) => {
-                    Some(format!("position {} of {name}", ["x", "y"][axis]))
-                }
-                (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
-                    let number = (half_planes.len() > 1).then(|| format!(" {}", edge + 1));
-                    Some(format!("edge{} of {name}", number.unwrap_or_default()))
-                }
-                (Parameter::GratingFrequency(_), _) => Some(format!("frequency of {name}")),
-                (Parameter::GratingPhase(_), _) => Some(format!("phase of {name}")),
-                _ => None,
-            },
+            (_, Some(Operator::Visibility { name, mask })) => parameter.name_of_mask(mask, name),
             _ => None,
         };
         name.unwrap_or_else(|| panic!("this chain has no parameter {parameter:?}"))
@@ -76,31 +55,7 @@ impl Model for Chain {
         };
         match (parameter, self.operators.get_mut(i)?) {
             (Parameter::Travel(_), Operator::Travel { distance, .. }) => *distance = new(*distance),
-            (_, Operator::Visibility { mask, .. }) => match (parameter, mask) {
-                (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) if !shapes.is_empty() => {
-                    resize(shapes, new);
-                }
-                (Parameter::BlockerSide(_), Mask::Aperture(hole)) => resize_hole(hole, new),
-                (Parameter::BlockerPosition(_, axis), Mask::Opaque { shapes, .. })
-                    if !shapes.is_empty() =>
-                {
-                    reposition(shapes, axis, new);
-                }
-                (Parameter::BlockerPosition(_, axis), Mask::Aperture(hole)) => {
-                    reposition_hole(hole, axis, new);
-                }
-                (Parameter::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
-                    let half = half_planes.get_mut(edge)?;
-                    half.edge = new(half.edge);
-                }
-                (Parameter::GratingFrequency(_), Mask::Grating(grating)) => {
-                    grating.frequency = new(grating.frequency);
-                }
-                (Parameter::GratingPhase(_), Mask::Grating(grating)) => {
-                    grating.phase = new(grating.phase);
-                }
-                _ => return None,
-            },
+            (_, Operator::Visibility { mask, .. }) => parameter.change_mask(mask, new)?,
             _ => return None,
         }
         Some(())
@@ -233,8 +188,8 @@ impl Parameter {
     fn operator(self) -> Option<usize> {
         match self {
             Self::Travel(i)
-            | Self::BlockerSide(i)
-            | Self::BlockerPosition(i, _)
+            | Self::BlockerSide(i, ..)
+            | Self::BlockerPosition(i, ..)
             | Self::HalfPlaneEdge(i, _)
             | Self::GratingFrequency(i)
             | Self::GratingPhase(i) => Some(i),
@@ -243,45 +198,24 @@ impl Parameter {
     }
 }
 
-fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
-    let of_shapes = |shapes: &[Shape]| {
-        let side = (!shapes.is_empty()).then_some(Parameter::BlockerSide(index));
-        let axes = movable_axes(shapes).into_iter();
-        let positions = axes.map(|axis| Parameter::BlockerPosition(index, axis));
-        side.into_iter().chain(positions).collect::<Vec<_>>()
-    };
-    match mask {
-        Mask::Opaque {
-            shapes,
-            half_planes,
-        } => {
-            let edges = (0..half_planes.len()).map(|edge| Parameter::HalfPlaneEdge(index, edge));
-            of_shapes(shapes).into_iter().chain(edges).collect()
-        }
-        Mask::Aperture(hole) => of_shapes(&[Shape::Rectangle(hole.bounds())]),
-        Mask::Grating(_) => vec![
-            Parameter::GratingFrequency(index),
-            Parameter::GratingPhase(index),
-        ],
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::testing::*;
     use etendue_field::{
-        ConvexPolygon, FrequencyAxis, HalfPlane, Hole, Profile, ProjectionGrid, Rectangle,
+        ConvexPolygon, FrequencyAxis, HalfPlane, Hole, Mask, Profile, ProjectionGrid, Rectangle,
+        Shape,
     };
 
     #[test]
     fn parameters_follow_the_light() {
-        let chain = chain(0.2, &[(1.0, blockers(2, 0.3, 0.1)), (0.5, vec![])]);
+        let chain = chain(0.2, &[(1.0, blockers(3, 0.3, 0.1)), (0.5, vec![])]);
         let names: Vec<_> = chain.parameters().iter().map(|&p| chain.name(p)).collect();
         assert_eq!(
             names,
             [
-                "side of light",
+                "side x of light",
+                "side y of light",
                 "travel a to b",
                 "side of b",
                 "position x of b",
@@ -303,9 +237,10 @@ mod tests {
             let chain = chain(0.2, &[(1.0, vec![bar]), (0.5, vec![])]);
             let names: Vec<_> = chain.parameters().iter().map(|&p| chain.name(p)).collect();
             let moved = format!("position {across} of b");
-            assert_eq!(names[2..4], ["width of b".to_owned(), moved]);
-            assert_eq!(names.len(), 5);
-            assert_eq!(chain.value(Parameter::BlockerSide(1)), Some(0.05));
+            assert_eq!(names[3..5], ["width of b".to_owned(), moved]);
+            assert_eq!(names.len(), 6);
+            let width = chain.parameters()[3];
+            assert_eq!(chain.value(width), Some(0.05));
         }
     }
 
@@ -366,9 +301,10 @@ mod tests {
         }
     }
 
+    /// Each side of the light changes alone; many shapes of a mask change together.
     #[test]
-    fn sides_keep_their_proportion_and_centers_stay() {
-        let mut chain = chain(0.2, &[(1.0, blockers(2, 0.3, 0.1))]);
+    fn sides_change_alone_and_the_shapes_of_an_array_together() {
+        let mut chain = chain(0.2, &[(1.0, blockers(3, 0.3, 0.1))]);
         let sized = |size| {
             lambertian(Rectangle {
                 center: [0.0, 0.1],
@@ -376,10 +312,12 @@ mod tests {
             })
         };
         chain.source.light = sized([0.2, 0.5]);
-        let wider = chain.with(Parameter::SourceSize, 0.4).unwrap();
-        assert_eq!(wider.source.light, sized([0.4, 1.0]));
-        let wider = chain.with(Parameter::BlockerSide(1), 0.2).unwrap();
-        let expected: Vec<_> = blockers(2, 0.3, 0.1)
+        let wider = chain.with(Parameter::SourceSize(0), 0.4).unwrap();
+        assert_eq!(wider.source.light, sized([0.4, 0.5]));
+        let higher = chain.with(Parameter::SourceSize(1), 0.25).unwrap();
+        assert_eq!(higher.source.light, sized([0.2, 0.25]));
+        let wider = chain.with(Parameter::BlockerSide(1, 0, 0), 0.2).unwrap();
+        let expected: Vec<_> = blockers(3, 0.3, 0.1)
             .into_iter()
             .map(|b| Rectangle {
                 size: [0.2, 0.2],
@@ -394,7 +332,13 @@ mod tests {
     /// Builds a chain with every kind of parameter.
     fn rich() -> Chain {
         let mixed = Mask::Opaque {
-            shapes: vec![disc([0.3, 0.1], 0.2)],
+            shapes: vec![
+                disc([0.3, 0.1], 0.2),
+                Shape::Rectangle(Rectangle {
+                    center: [-0.2, 0.05],
+                    size: [0.1, 0.3],
+                }),
+            ],
             half_planes: [(-0.3, false), (0.4, true)]
                 .map(|(edge, above)| HalfPlane {
                     axis: 1,
@@ -422,9 +366,13 @@ mod tests {
                 "radius of light [m]",
                 "exponent of light []",
                 "travel a to b [m]",
-                "radius of b [m]",
-                "position x of b [m]",
-                "position y of b [m]",
+                "radius of shape 1 of b [m]",
+                "position x of shape 1 of b [m]",
+                "position y of shape 1 of b [m]",
+                "side x of shape 2 of b [m]",
+                "side y of shape 2 of b [m]",
+                "position x of shape 2 of b [m]",
+                "position y of shape 2 of b [m]",
                 "edge 1 of b [m]",
                 "edge 2 of b [m]",
                 "travel b to c [m]",
@@ -444,20 +392,26 @@ mod tests {
     }
 
     #[test]
-    fn positions_move_all_shapes_of_a_mask_and_no_edge() {
+    fn positions_move_one_shape_of_a_mask_and_no_edge() {
         let mut chain = rich();
         let moved = |chain: &Chain, axis, to| {
-            let moved = chain.with(Parameter::BlockerPosition(1, axis), to).unwrap();
+            let moved = chain
+                .with(Parameter::BlockerPosition(1, 0, axis), to)
+                .unwrap();
             let Operator::Visibility { mask, .. } = moved.operators[1].clone() else {
                 unreachable!("the second operator is a mask")
             };
             mask
         };
-        let Mask::Opaque { half_planes, .. } = moved(&chain, 0, 0.0) else {
+        let Mask::Opaque {
+            half_planes,
+            shapes,
+        } = moved(&chain, 0, 0.0)
+        else {
             unreachable!("the mask is opaque")
         };
         let at = |x, y| Mask::Opaque {
-            shapes: vec![disc([x, y], 0.2)],
+            shapes: vec![disc([x, y], 0.2), shapes[1]],
             half_planes: half_planes.clone(),
         };
         assert_eq!(moved(&chain, 0, 0.5), at(0.5, 0.1));
@@ -479,7 +433,7 @@ mod tests {
         for foreign in [
             Parameter::GratingPhase(0),
             Parameter::Albedo,
-            Parameter::ImageWidth,
+            Parameter::ImageWidth(0),
         ] {
             assert_eq!(rich().value(foreign), None);
         }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::model::{Model, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
-use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
+use crate::parameter::{New, Parameter, change_curvature, curvatures, scale};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{
@@ -392,7 +392,7 @@ fn shrunk_light(light: &Light, factor: f64) -> Light {
             }
         }
         Light::Area { shape, .. } => {
-            resize(std::slice::from_mut(shape), &mut |size| size * factor);
+            scale(shape, factor);
             let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
                 shape;
             *center = center.map(|c| c * factor);

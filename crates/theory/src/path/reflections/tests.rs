@@ -375,7 +375,8 @@ fn a_wrong_map_is_a_defect() {
     assert_eq!(
         view.parameters(),
         [
-            Parameter::SourceSize,
+            Parameter::SourceSize(0),
+            Parameter::SourceSize(1),
             Parameter::Curvature(0, 0),
             Parameter::Curvature(1, 0),
             Parameter::Albedo,
