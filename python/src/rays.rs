@@ -5,7 +5,7 @@ use crate::live::Live;
 use crate::outcome::cells;
 use etendue_compare::noise_dof;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
-use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
+use etendue_spectrum::bandwidth::Along;
 use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{
     CrossPower, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
@@ -119,8 +119,8 @@ pub(crate) fn spectrum(
     let grid = &plane.grid;
     let varying = measured.without_mean(0);
     let varying = CrossPower::of_replicates(&varying, 0..grid.azimuths).map_err(few)?;
-    let along_rho = |power: &CrossPower<'_>| power.bandwidth(bandwidth_rho).map(|b| b.value);
-    let along_nu = |power: &CrossPower<'_>| power.bandwidth(bandwidth_nu).map(|b| b.value);
+    let along_rho = |power: &CrossPower<'_>| power.bandwidth(Along::Rho).map(|b| b.value);
+    let along_nu = |power: &CrossPower<'_>| power.bandwidth(Along::Nu).map(|b| b.value);
     Ok(Spectrum {
         slices: estimate::slices(&measured, 0).map_err(few)?,
         radial: power.radial(),

@@ -128,7 +128,11 @@ fn the_edge_that_moved_is_named() {
     for (shapes, [from, to], named) in [
         (slit, ["edge:0.05", "edge:0.053"], "edge 2 of slit"),
         (two, ["0.08,0.2", "0.08,0.215"], "side y of shape 2 of slit"),
-        (two, ["(0.1,0)", "(0.107,0)"], "position x of shape 2 of slit"),
+        (
+            two,
+            ["(0.1,0)", "(0.107,0)"],
+            "position x of shape 2 of slit",
+        ),
     ] {
         let run = |shapes: &str, options: &str| {
             let mask = format!(r#"Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:[{shapes}])"#);

@@ -1,7 +1,7 @@
 //! The bandwidths of lobes and of measured reflections along ν.
 
 use etendue_field::Lobe;
-use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};
+use etendue_spectrum::bandwidth::{Along, BANDWIDTH_FRACTION};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::PlanarLobe;
@@ -29,5 +29,5 @@ pub fn measured_bandwidth(
     index: usize,
 ) -> Result<Option<Uncertain>, TooFewBatches> {
     let power = CrossPower::new(measurement, index)?;
-    Ok(power.bandwidth(bandwidth_nu).map(|widest| widest.value))
+    Ok(power.bandwidth(Along::Nu).map(|widest| widest.value))
 }

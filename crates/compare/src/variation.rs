@@ -5,7 +5,7 @@ use crate::prediction::Prediction;
 use crate::report::{Azimuths, Bandwidth, DirectedPair};
 use crate::residuals::of_transform;
 use etendue_field::Slices;
-use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
+use etendue_spectrum::bandwidth::{Along, Widest, widest};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, WindowedMean};
 use ndarray::Array3;
@@ -19,7 +19,7 @@ pub(crate) fn bandwidth(
 ) -> Bandwidth {
     let power = slices_power(predicted);
     let moved = &power + &of_transform(&power);
-    let along = |of: SliceBandwidth| {
+    let along = |of: Along| {
         let widest = |power: &Array3<f64>| Some(widest(power.view(), &predicted.grid, of)?.value);
         let change = widest(&moved).zip(widest(&power));
         let transform_error = change.map_or(0.0, |(moved, still)| (moved - still).abs());
@@ -41,8 +41,8 @@ pub(crate) fn bandwidth(
         }
     };
     Bandwidth {
-        rho: along(bandwidth_rho),
-        nu: along(bandwidth_nu),
+        rho: along(Along::Rho),
+        nu: along(Along::Nu),
     }
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn variation(
 }
 
 /// Returns the bandwidth of slices without a statistical error.
-fn exact(slices: &Slices, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
+fn exact(slices: &Slices, of: Along) -> Option<Widest<Uncertain>> {
     let power = slices_power(slices);
     let exact = widest(power.view(), &slices.grid, of)?;
     Some(Widest {

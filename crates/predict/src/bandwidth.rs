@@ -6,7 +6,7 @@ use etendue_compare::lobe_cutoff;
 use etendue_field::{Orientation, ProjectionGrid, Reflectance, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::CrossPower;
-use etendue_spectrum::bandwidth::bandwidth_nu;
+use etendue_spectrum::bandwidth::Along;
 use etendue_theory::shading::Criterion;
 use etendue_theory::{Model, PathKind, path};
 
@@ -68,5 +68,5 @@ pub fn exact_bandwidth(
     let over = (window, grid, &picture);
     let exact = view.predict(&[], over, budget(scene));
     let power = CrossPower::of_replicates(&exact.replicates, 0..grid.azimuths).ok()?;
-    Some(power.bandwidth(bandwidth_nu)?.value.value)
+    Some(power.bandwidth(Along::Nu)?.value.value)
 }

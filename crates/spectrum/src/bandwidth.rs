@@ -1,15 +1,92 @@
 //! Computes bandwidths of slices. A bandwidth is the frequency below which most of the power lies,
 //! at the azimuth where this frequency is largest.
 
+use crate::jackknife::Uncertain;
 use etendue_field::{FrequencyAxis, SliceGrid};
-use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
+use ndarray::{Array1, ArrayView1, ArrayView2, ArrayView3, Axis};
 
 /// The default fraction of the power that lies within a bandwidth.
 pub const BANDWIDTH_FRACTION: f64 = 0.95;
 
-/// A function that returns the bandwidth of a slice along an axis: [`bandwidth_rho`] or
-/// [`bandwidth_nu`].
-pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
+/// The axis of a slice along which a bandwidth is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// Position.
+    Rho,
+    /// Slope.
+    Nu,
+}
+
+impl Along {
+    /// Returns the power of a slice [ρ, ν] along the axis, and the axis.
+    fn marginal(
+        self,
+        power: ArrayView2<'_, f64>,
+        grid: &SliceGrid,
+    ) -> (Array1<f64>, FrequencyAxis) {
+        match self {
+            Self::Rho => (power.sum_axis(Axis(1)), grid.rho),
+            Self::Nu => (power.sum_axis(Axis(0)), grid.nu),
+        }
+    }
+
+    /// Returns the bandwidth of the power of a slice [ρ, ν]: see [`bandwidth`].
+    #[must_use]
+    pub fn bandwidth(self, power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> {
+        let (marginal, axis) = self.marginal(power, grid);
+        bandwidth(marginal.view(), &axis, BANDWIDTH_FRACTION)
+    }
+
+    /// Returns what the power of a slice [ρ, ν] within each cell end lacks to [`BANDWIDTH_FRACTION`]
+    /// of the whole (see [`missing`]), and last what the power within the frequency `bound` lacks.
+    pub(crate) fn missing(
+        self,
+        power: ArrayView2<'_, f64>,
+        grid: &SliceGrid,
+        bound: f64,
+    ) -> Array1<f64> {
+        let (marginal, axis) = self.marginal(power, grid);
+        let mut all = missing(marginal.view(), &axis, BANDWIDTH_FRACTION);
+        let at = bound / axis.spacing;
+        let after = (1..all.len() - 1).find(|i| cell_end(*i) >= at);
+        let after = after.unwrap_or(all.len() - 1);
+        let [start, end] = [after - 1, after].map(cell_end);
+        let share = (at - start) / (end - start);
+        all.push(all[after - 1] + share * (all[after] - all[after - 1]));
+        all.into()
+    }
+
+    /// Returns a bandwidth with its standard error. `missing` is what [`Along::missing`] returns for
+    /// it, and `errors` are the standard errors of these numbers.
+    ///
+    /// The error is found as that of a quantile (Woodruff 1952): it is the distance to the farther of
+    /// the frequencies at which the enclosed power lacks one standard error, and has one too many.
+    /// Where noise is a large part of the power, the enclosed power does not grow steadily. Then the
+    /// error is at least half of the distance to each cell end where what is lacking is within two
+    /// standard errors of zero.
+    pub(crate) fn with_error(
+        self,
+        value: f64,
+        [missing, errors]: [&[f64]; 2],
+        grid: &SliceGrid,
+    ) -> Uncertain {
+        let spacing = match self {
+            Self::Rho => grid.rho.spacing,
+            Self::Nu => grid.nu.spacing,
+        };
+        let away = |end: f64| (end * spacing - value).abs();
+        let [cells @ .., _] = missing else {
+            unreachable!("the last number belongs to the bound")
+        };
+        let error = errors[cells.len()];
+        let near = [error, -error].map(|level| away(crossing(cells, level)));
+        let ends = cells.iter().zip(errors).enumerate();
+        let undecided = ends.filter(|(_, (lack, error))| lack.abs() <= 2.0 * **error);
+        let undecided = undecided.map(|(i, _)| 0.5 * away(cell_end(i)));
+        let error = undecided.chain(near).fold(0.0, f64::max);
+        Uncertain { value, error }
+    }
+}
 
 /// The largest of the bandwidths at all azimuths, with its azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,27 +97,11 @@ pub struct Widest<T> {
     pub value: T,
 }
 
-/// Returns the bandwidth of a slice along ρ: see [`bandwidth`].
-#[must_use]
-pub fn bandwidth_rho(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
-    bandwidth(power.sum_axis(Axis(1)).view(), &grid.rho, fraction)
-}
-
-/// Returns the bandwidth of a slice along ν: see [`bandwidth`].
-#[must_use]
-pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
-    bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
-}
-
 /// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]. If several
 /// azimuths have the largest bandwidth, the first of them is returned.
 #[must_use]
-pub fn widest(
-    power: ArrayView3<'_, f64>,
-    grid: &SliceGrid,
-    of: SliceBandwidth,
-) -> Option<Widest<f64>> {
-    let (slice, value) = widest_slice(power, grid, of)?;
+pub fn widest(power: ArrayView3<'_, f64>, grid: &SliceGrid, along: Along) -> Option<Widest<f64>> {
+    let (slice, value) = widest_slice(power, grid, along)?;
     let azimuth = grid.azimuth(slice);
     Some(Widest { azimuth, value })
 }
@@ -49,11 +110,11 @@ pub fn widest(
 pub(crate) fn widest_slice(
     power: ArrayView3<'_, f64>,
     grid: &SliceGrid,
-    of: SliceBandwidth,
+    along: Along,
 ) -> Option<(usize, f64)> {
     let each = power.outer_iter().enumerate().filter_map(|(k, half)| {
         let power = grid.unfold_radial(half);
-        Some((k, of(power.view(), grid, BANDWIDTH_FRACTION)?))
+        Some((k, along.bandwidth(power.view(), grid)?))
     });
     each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
 }
@@ -72,35 +133,50 @@ pub fn bandwidth(
     fraction: f64,
 ) -> Option<f64> {
     let total = marginal.sum();
-    if total.is_nan() || total <= 0.0 {
-        return None;
-    }
-    let wanted = fraction * total;
+    (total > 0.0).then(|| crossing(&missing(marginal, axis, fraction), 0.0) * axis.spacing)
+}
+
+/// Returns what the power within each cell end lacks to `fraction` of the whole power. The first
+/// number belongs to frequency zero. The two cells at the same distance from zero are added; the
+/// single cell at zero extends to both sides of zero.
+fn missing(marginal: ArrayView1<'_, f64>, axis: &FrequencyAxis, fraction: f64) -> Vec<f64> {
+    let wanted = fraction * marginal.sum();
     let mut inside = 0.0;
-    for step in 0..=axis.half {
-        // The two cells at the same distance from zero are added. The single cell at zero extends
-        // to both sides of zero.
-        let (power, inner, width) = match step {
-            0 => (marginal[axis.half], 0.0, 0.5),
-            _ => (
-                marginal[axis.half - step] + marginal[axis.half + step],
-                step as f64 - 0.5,
-                1.0,
-            ),
-        };
-        if inside + power >= wanted {
-            return Some((inner + width * (wanted - inside) / power) * axis.spacing);
-        }
+    let powers = (0..=axis.half).map(|step| match step {
+        0 => marginal[axis.half],
+        _ => marginal[axis.half - step] + marginal[axis.half + step],
+    });
+    let within = powers.map(|power| {
         inside += power;
+        wanted - inside
+    });
+    std::iter::once(wanted).chain(within).collect()
+}
+
+/// Returns the frequency at which cell `i` begins, or at which the cell before it ends, in steps of
+/// the axis.
+fn cell_end(i: usize) -> f64 {
+    if i == 0 { 0.0 } else { i as f64 - 0.5 }
+}
+
+/// Returns the lowest frequency, in steps of the axis, at which the enclosed power lacks `level` or
+/// less.
+fn crossing(missing: &[f64], level: f64) -> f64 {
+    let Some(i) = missing.iter().position(|lack| *lack <= level) else {
+        return cell_end(missing.len() - 1);
+    };
+    if i == 0 {
+        return 0.0;
     }
-    // The loop ends without a result only because of rounding errors.
-    Some(axis.max() + 0.5 * axis.spacing)
+    let [before, after] = [i - 1, i].map(cell_end);
+    let share = (missing[i - 1] - level) / (missing[i - 1] - missing[i]);
+    before + share * (after - before)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndarray::{Array1, Array2, Array3, arr1};
+    use ndarray::{Array2, Array3, arr1};
     use std::f64::consts::PI;
 
     fn axis(half: usize, spacing: f64) -> FrequencyAxis {
@@ -134,8 +210,8 @@ mod tests {
             libm::exp(-(nu * nu) - (rho / 0.8).powi(2))
         });
         // The power is exp(−t²/s²) with s = 0.8 and 1, and erf(B/s) = 0.95 at B = 1.386 s.
-        let rho = bandwidth_rho(power.view(), &grid, 0.95).unwrap();
-        let nu = bandwidth_nu(power.view(), &grid, 0.95).unwrap();
+        let rho = Along::Rho.bandwidth(power.view(), &grid).unwrap();
+        let nu = Along::Nu.bandwidth(power.view(), &grid).unwrap();
         assert!((rho - 1.386 * 0.8).abs() < 0.02, "{rho}"); // curvature within a cell of 0.3
         assert!((nu - 1.386).abs() < 0.02, "{nu}"); // curvature within a cell of 0.25
     }
@@ -198,7 +274,7 @@ mod tests {
             let frequency = (k == 2).then_some(3.0);
             slice.row_mut(0).assign(&seen(frequency, &grid.nu));
         }
-        let found = widest(power.view(), &grid, bandwidth_nu).unwrap();
+        let found = widest(power.view(), &grid, Along::Nu).unwrap();
         assert!((found.azimuth - PI / 2.0).abs() < 1e-12, "{found:?}"); // rounding
         let alone = bandwidth(
             seen(Some(3.0), &grid.nu).view(),

@@ -1,11 +1,11 @@
 //! Averages power spectra over azimuths.
 
-use crate::bandwidth::{BANDWIDTH_FRACTION, SliceBandwidth, Widest, widest_slice};
+use crate::bandwidth::{Along, Widest, widest_slice};
 use crate::estimate::TooFewBatches;
 use crate::jackknife::{Jackknife, Uncertain};
 use crate::measurement::Measurement;
 use etendue_field::{Complex, SliceGrid, Slices};
-use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis, Slice};
+use ndarray::{Array1, Array2, Array3, ArrayView2, ArrayView3, Axis, Slice};
 use std::ops::Range;
 
 /// The measured radial power of a plane, which is |S_φ|² averaged over the azimuths φ. The arrays
@@ -217,12 +217,15 @@ impl<'m> CrossPower<'m> {
     /// the bandwidth at this azimuth. If the bandwidths of several azimuths are nearly equal, noise
     /// decides which of them is the largest, and the result exceeds the true value by about the
     /// error.
-    pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
-        let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
+    pub fn bandwidth(&self, along: Along) -> Option<Widest<Uncertain>> {
+        let (slice, value) = widest_slice(self.pairs.view(), &self.grid, along)?;
         let one = self.slice(slice);
-        let value = one.statistic(|power| of(power, &self.grid, BANDWIDTH_FRACTION))?;
-        let azimuth = self.grid.azimuth(one.azimuths.start);
-        Some(Widest { azimuth, value })
+        let missing = |power: ArrayView2<'_, f64>| Some(along.missing(power, &self.grid, value));
+        let found = one.statistics(missing)?.map(|numbers| numbers.to_vec());
+        Some(Widest {
+            azimuth: self.grid.azimuth(one.azimuths.start),
+            value: along.with_error(value, found.each_ref().map(Vec::as_slice), &self.grid),
+        })
     }
 
     /// Returns a statistic of the power, such as a slope, with its standard error by the
@@ -231,16 +234,29 @@ impl<'m> CrossPower<'m> {
     /// Returns `None` if the statistic does not exist, either for all batches together or if any
     /// one batch is left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
-        let value = of(self.power().view())?;
-        let mut jackknife = Jackknife::new(ndarray::Ix0());
-        for left_out in 0..self.batches.len() {
-            jackknife.add(&ndarray::arr0(of(self.without(left_out).view())?));
-        }
-        let variance = jackknife.variance().into_scalar();
+        let [values, errors] = self.statistics(|power| Some(ndarray::arr1(&[of(power)?])))?;
         Some(Uncertain {
-            value,
-            error: variance.max(self.noise_alone(value, of)?).sqrt(),
+            value: values[0],
+            error: errors[0],
         })
+    }
+
+    /// Returns several statistics of the power, and their standard errors as in
+    /// [`CrossPower::statistic`].
+    fn statistics(
+        &self,
+        of: impl Fn(ArrayView2<'_, f64>) -> Option<Array1<f64>>,
+    ) -> Option<[Array1<f64>; 2]> {
+        let values = of(self.power().view())?;
+        let mut jackknife = Jackknife::new(values.raw_dim());
+        for left_out in 0..self.batches.len() {
+            jackknife.add(&of(self.without(left_out).view())?);
+        }
+        let mut errors = jackknife.variance();
+        errors.zip_mut_with(&self.noise_alone(&values, of)?, |own, noise| {
+            *own = own.max(*noise).sqrt();
+        });
+        Some([values, errors])
     }
 
     /// Returns the variance of a statistic if the power were noise alone: 2/(R(R−1)) times the
@@ -251,29 +267,23 @@ impl<'m> CrossPower<'m> {
     /// on Σ S.
     fn noise_alone(
         &self,
-        value: f64,
-        of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>,
-    ) -> Option<f64> {
+        values: &Array1<f64>,
+        of: impl Fn(ArrayView2<'_, f64>) -> Option<Array1<f64>>,
+    ) -> Option<Array1<f64>> {
         let r = self.batches.len() as f64;
         // A step as large as those of the jackknife.
         let step = 1.0 / (r * r.sqrt());
         let still = self.power() * (1.0 - step);
-        let pairs = self.batches.chunks_exact(2).map(|pair| {
+        let mut added = Jackknife::new(values.raw_dim());
+        for pair in self.batches.chunks_exact(2) {
             let [a, b] = [pair[0], pair[1]].map(|slices| at(&slices.half, &self.azimuths));
             let products = ndarray::Zip::from(&a)
                 .and(&b)
                 .map_collect(|a, b| (a.conj() * b).re);
             let pair = self.grid.unfold_radial(mean(&products).view());
-            Some((of((pair * step + &still).view())? - value) / step)
-        });
-        let added: Vec<f64> = pairs.collect::<Option<_>>()?;
-        let count = added.len() as f64;
-        if count < 2.0 {
-            return Some(0.0);
+            added.add(&((of((pair * step + &still).view())? - values) / step));
         }
-        let mean = added.iter().sum::<f64>() / count;
-        let squares = added.iter().map(|a| (a - mean).powi(2)).sum::<f64>();
-        Some(2.0 / (r * (r - 1.0)) * squares / (count - 1.0))
+        Some(added.sample_variance() * (2.0 / (r * (r - 1.0))))
     }
 }
 

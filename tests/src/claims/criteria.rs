@@ -5,7 +5,7 @@ use super::surfaces::bandwidth;
 use super::{Claim, decreasing};
 use crate::report::Bound::AtMost;
 use crate::report::Check;
-use etendue_spectrum::bandwidth::{bandwidth_nu, widest};
+use etendue_spectrum::bandwidth::{Along, widest};
 use etendue_theory::shading::{Criterion, PlanarLobe};
 
 pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
@@ -28,7 +28,7 @@ fn criteria(run: ClaimRun) -> Claim {
     let sizes = [0.003, 0.02, 0.05, 0.1];
     let shares = sizes.map(|size| {
         let seen = run.seen("criterion", &[("light.size", format!("({size}, {size})"))]);
-        let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
+        let found = seen.number(0, |slices| bandwidth(slices, Along::Nu));
         found.per(criterion.blocker())
     });
     let most = shares.iter().map(|share| share.value).fold(0.0, f64::max);
@@ -85,7 +85,7 @@ fn larger_curvature(run: ClaimRun) -> Claim {
         let seen = run.seen("larger_curvature", &fields);
         let found = seen.number(0, |slices| {
             let power = slices.half.mapv(|s| s.norm_sqr());
-            widest(power.view(), &slices.grid, bandwidth_nu).map_or(f64::NAN, |most| most.value)
+            widest(power.view(), &slices.grid, Along::Nu).map_or(f64::NAN, |most| most.value)
         });
         found.per(criterion.environment())
     });

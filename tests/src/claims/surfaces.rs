@@ -9,7 +9,7 @@ use crate::report::Check;
 use crate::scenes::measured;
 use crate::shading::Tampered;
 use etendue_field::{Crossing, PhotonSource, Slices, VirtualPlane};
-use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
+use etendue_spectrum::bandwidth::Along;
 use etendue_trace::Tracer;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -149,8 +149,8 @@ fn curvature(run: ClaimRun) -> [Claim; 2] {
     let curvatures = [-0.5, 0.0, 0.8, 1.6];
     let seen = curvatures.map(|k| run.seen("curvature", &[("surfaces.0.form", form(k))]));
     let each = |of: fn(&Slices) -> f64| seen.each_ref().map(|seen| seen.number(0, of)).to_vec();
-    let angular = each(|slices| bandwidth(slices, bandwidth_nu));
-    let spatial = each(|slices| bandwidth(slices, bandwidth_rho));
+    let angular = each(|slices| bandwidth(slices, Along::Nu));
+    let spatial = each(|slices| bandwidth(slices, Along::Rho));
     let spread = |of: &[ClaimNumber]| {
         let values = of.iter().map(|n| n.value);
         values.clone().fold(0.0, f64::max) / values.fold(f64::INFINITY, f64::min) - 1.0
@@ -194,9 +194,10 @@ fn form(k: f64) -> String {
     }
 }
 
-pub(super) fn bandwidth(slices: &Slices, of: etendue_spectrum::bandwidth::SliceBandwidth) -> f64 {
+pub(super) fn bandwidth(slices: &Slices, along: Along) -> f64 {
     let power = slices.radial_power();
-    of(power.view(), &slices.grid, 0.95).unwrap_or(f64::NAN)
+    let found = along.bandwidth(power.view(), &slices.grid);
+    found.unwrap_or(f64::NAN)
 }
 
 fn cosine(run: ClaimRun) -> Claim {

@@ -39,7 +39,12 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("scenefile", 3036, 3036, ""),
     ("scenes", 52, 52, ""),
-    ("spectrum", 3218, 3218, ""),
+    (
+        "spectrum",
+        3218,
+        3309,
+        "errors of bandwidths hold where noise is strong",
+    ),
     ("store", 3185, 3185, ""),
     ("sweep", 1238, 1238, ""),
     (

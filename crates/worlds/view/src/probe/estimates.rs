@@ -7,7 +7,7 @@ use etendue_compare::{Prediction, TESTS, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
 use etendue_paths::{BackwardProbe, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
-use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
+use etendue_spectrum::bandwidth::Along;
 use etendue_spectrum::estimate;
 use etendue_spectrum::{CrossPower, Measurement, measure};
 use etendue_store::Failure;
@@ -225,8 +225,8 @@ impl Estimator<'_> {
         let [own, others] = targets(effort.noise);
         let found = Found {
             comparison,
-            nu: power.bandwidth(bandwidth_nu),
-            rho: power.bandwidth(bandwidth_rho),
+            nu: power.bandwidth(Along::Nu),
+            rho: power.bandwidth(Along::Rho),
             judge,
             counts: [effort.count, other.effort.count],
             needed: [effort.needed(own), other.effort.needed(others)],
