@@ -191,7 +191,7 @@ fn leaving_one_out_is_the_power_of_the_others() {
 
 /// Returns normal noise at frequency `m` of a batch; the real part has variance one.
 fn noise(seed: u64, batch: u32, m: usize) -> Complex {
-    let block = u32::try_from(m).unwrap();
+    let block = u32::try_from(m).expect("block fits 32 bits");
     let [a, b, ..] = random::words(seed, Stream::Photon, batch.into(), block).map(random::unit);
     Complex::from_polar((-2.0 * libm::log(a)).sqrt(), TAU * b)
 }
