@@ -2,9 +2,9 @@
 //! files.
 
 use crate::args::CompareArgs;
-use crate::conclude::{Ending, conclude};
+use crate::conclude::Ending;
 use crate::print::say;
-use crate::progress;
+use crate::progress::{self, Terminal};
 use crate::threads::on_threads;
 use etendue_pipeline::{Stopwatch, read_case};
 use etendue_report::{OutputOptions, plan};
@@ -33,7 +33,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
         args.work.force.force,
         ArgumentStyle::Command,
     )?;
-    let results = Results::claim(&args.out.folder, plan)?;
+    let mut results = Results::claim(&args.out.folder, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
     if !args.work.quiet && held < all as usize {
         say(&format!("{held} of {all} batches were measured"));
@@ -48,6 +48,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
         quiet: args.work.quiet,
     };
     on_threads(&args.work.threads, || {
-        conclude(&case, &ending, results, watch)
+        let terminal = Terminal::new(args.work.quiet);
+        let judged = ending.judge(&case, &mut results, &terminal)?;
+        watch.lap("compare");
+        ending.write(&case, judged, results, watch, &terminal)
     })
 }

@@ -1,15 +1,14 @@
-//! Ends commands that compare a measurement with predictions: writes the result, prints it and
-//! determines the exit code.
+//! Ends commands that compare a measurement with predictions: judges the planes, writes the result,
+//! prints it and determines the exit code.
 
 use crate::args::Expect;
 use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
-
 use etendue_compare::{PlaneReport, Verdict};
 use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work, table, target};
 use etendue_report::{OutputOptions, write_result};
-use etendue_store::{Failure, Results};
+use etendue_store::{Failure, Finished, Results};
 
 /// The user's options for the conclusion of a command.
 #[derive(Debug)]
@@ -21,27 +20,43 @@ pub(crate) struct Ending<'a> {
     pub(crate) quiet: bool,
 }
 
-/// Compares, draws and writes the result; returns the exit code.
-pub(crate) fn conclude(
-    case: &MeasuredScene,
-    ending: &Ending<'_>,
-    mut results: Results,
-    mut watch: Stopwatch,
-) -> Result<u8, Failure> {
-    let fields = ending.options.save.contains(&Save::Field);
-    let terminal = Terminal::new(ending.quiet);
-    let judged = Judged::of(case, fields.then_some(&mut results), &terminal)?;
-    watch.lap("compare");
-    let stage = terminal.begin(Work::Stage("writing results"));
-    let seconds = watch.seconds("trace");
-    let finished = write_result(case, &ending.options, results, &judged, watch)?;
-    drop(stage);
-    say_replaced(&finished, ending.quiet);
-    let summary = judged.summary;
-    if !ending.quiet {
-        say(&table::text(&summary));
+impl Ending<'_> {
+    /// Compares the measurement with the predictions.
+    pub(crate) fn judge(
+        &self,
+        case: &MeasuredScene,
+        results: &mut Results,
+        terminal: &Terminal,
+    ) -> Result<Judged, Failure> {
+        let has_fields = self.options.save.contains(&Save::Field);
+        Judged::of(case, has_fields.then_some(results), terminal)
+    }
+
+    /// Draws, writes and prints the result; returns the exit code.
+    pub(crate) fn write(
+        &self,
+        case: &MeasuredScene,
+        judged: Judged,
+        results: Results,
+        watch: Stopwatch,
+        terminal: &Terminal,
+    ) -> Result<u8, Failure> {
+        let seconds = watch.seconds("trace");
+        let stage = terminal.begin(Work::Stage("writing results"));
+        let finished = write_result(case, &self.options, results, &judged, watch)?;
+        drop(stage);
+        say_replaced(&finished, self.quiet);
+        if !self.quiet {
+            self.print(&judged.summary, finished, seconds);
+        }
+        Ok(exit_code(self.expect, &judged.summary))
+    }
+
+    /// Prints the table, and what a longer run would achieve; `seconds` is the duration of tracing.
+    fn print(&self, summary: &Summary, finished: Finished, seconds: Option<f64>) {
+        say(&table::text(summary));
         say(&format!("results in {}", finished.folder.display()));
-        let left_out = ending.target_error;
+        let left_out = self.target_error;
         if let Some(left_out) = left_out.map(|t| target::left_out(&summary.planes, t)) {
             say(&left_out);
         }
@@ -57,7 +72,6 @@ pub(crate) fn conclude(
             ));
         }
     }
-    Ok(exit_code(ending.expect, &summary))
 }
 
 /// Returns the exit code under `--expect`: photons must agree with every exact prediction, and

@@ -1,25 +1,23 @@
 //! Implements `etendue run`: measures, predicts, compares and draws a scene.
 
 use crate::args::RunArgs;
-use crate::conclude::{Ending, code_of, conclude};
+use crate::conclude::{Ending, code_of};
 use crate::print::{deliver_json_file, say};
 use crate::progress::Terminal;
 use crate::report;
 use crate::threads::on_threads;
 use crate::warnings;
 use etendue_compare::Verdict;
-use etendue_pipeline::checkpoint::{self, Checkpointing};
-use etendue_pipeline::photons::Save;
+use etendue_pipeline::photons::{self, Save};
 use etendue_pipeline::table::word;
-use etendue_pipeline::{Job, Leader, Stopwatch};
-use etendue_pipeline::{field, photons, target};
+use etendue_pipeline::{Checkpointing, Job, Leader, Stopwatch, Tracing, field};
 use etendue_report::page::NAME;
-use etendue_report::{OutputOptions, plan};
+use etendue_report::{OutputOptions, check_explorer, plan};
 use etendue_scene::{Color, Scene};
 use etendue_store::Failure;
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{ArgumentStyle, Plan, Results, SUMMARY, below};
+use etendue_store::{ArgumentStyle, Results, SUMMARY, below};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -73,8 +71,71 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
 
 fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
-    let job = args.photons.job(&args.scene)?;
+    let mut job = args.photons.job(&args.scene)?;
     let folder = args.out.or_named(&job.scene.name);
+    on_threads(&args.work.threads, || {
+        let terminal = Terminal::new(args.work.quiet);
+        check(args, &job, &folder)?;
+        let mut results = Some(claim(args, &job, &folder)?);
+        if args.resume {
+            if let Some(code) = finished(args, &job.scene, &folder) {
+                return Ok(code);
+            }
+            // Several processes share the folder, so no process claims the result until the
+            // measurement is complete.
+            results = None;
+        }
+        announce(args, &job.scene);
+        let mut watch = Stopwatch::start();
+        let Some(measurement) = job.trace(tracing(args, workers, &folder), &terminal)? else {
+            return finished(args, &job.scene, &folder).ok_or_else(|| gone(&folder));
+        };
+        watch.lap("trace");
+        let predictions = job.predictions(workers, &terminal)?;
+        watch.lap("predict");
+        let mut results = match results {
+            Some(results) => results,
+            None => claim(args, &job, &folder)?,
+        };
+        if args.resume
+            && let Some(code) = finished(args, &job.scene, &folder)
+        {
+            return Ok(code);
+        }
+        let case = job.with(measurement, predictions);
+        let ending = Ending {
+            options: OutputOptions {
+                save: &args.save,
+                compact: args.compact,
+            },
+            expect: args.expect,
+            target_error: args.target_error,
+            quiet: args.is_quiet(),
+        };
+        let judged = ending.judge(&case, &mut results, &terminal)?;
+        watch.lap("compare");
+        let code = ending.write(&case, judged, results, watch, &terminal)?;
+        CheckpointStore::of(&folder, &case.scene, case.method).remove();
+        Ok(code)
+    })
+}
+
+/// Prints warnings, and fails if the run is too large or its folder has the result of another
+/// scene.
+fn check(args: &RunArgs, job: &Job, folder: &Path) -> Result<(), Failure> {
+    let scene = &job.scene;
+    warnings::tell(scene, args.work.quiet);
+    job.check_limits()?;
+    if args.save.contains(&Save::Field) {
+        field::check_memory(scene)?;
+    }
+    check_explorer(scene, &args.save)?;
+    let force = args.work.force.force;
+    check_earlier(folder, SUMMARY, scene, force, ArgumentStyle::Command)
+}
+
+/// Claims the result folder. With `--resume`, waits until no other process has claimed it.
+fn claim(args: &RunArgs, job: &Job, folder: &Path) -> Result<Results, Failure> {
     let plan = plan(
         &job.scene,
         &args.save,
@@ -82,44 +143,38 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         args.work.force.force,
         ArgumentStyle::Command,
     );
-    on_threads(&args.work.threads, || {
-        let scene = &job.scene;
-        warnings::tell(scene, args.work.quiet);
-        job.check_limits()?;
-        if args.save.contains(&Save::Field) {
-            field::check_memory(scene)?;
-        }
-        check_earlier(
-            &folder,
-            SUMMARY,
-            scene,
-            args.work.force.force,
-            ArgumentStyle::Command,
-        )?;
-        let begin = |plan: Plan| {
-            if args.resume {
-                Results::claim_in_turn(&folder, plan, &warnings::warn)
-            } else {
-                Results::claim(&folder, plan)
-            }
-        };
-        let mut results = Some(begin(plan.clone())?);
-        if args.resume {
-            if let Some(code) = finished(&folder, scene, args) {
-                return Ok(code);
-            }
-            // Several processes share the folder, so no process claims the result until the
-            // measurement is complete.
-            results = None;
-        }
-        let place = ResultPlace {
-            folder: &folder,
-            plan,
-            results,
+    if args.resume {
+        Results::claim_in_turn(folder, plan, &warnings::warn)
+    } else {
+        Results::claim(folder, plan)
+    }
+}
+
+/// Announces what `--save` will write.
+fn announce(args: &RunArgs, scene: &Scene) {
+    if args.is_quiet() {
+        return;
+    }
+    let saved = args.save.iter();
+    for announcement in saved.filter_map(|save| photons::announcement(scene, *save)) {
+        say(&announcement);
+    }
+}
+
+/// Returns how the arguments ask for the photons to be traced.
+fn tracing<'a>(args: &RunArgs, workers: Option<&'a Leader<'a>>, folder: &'a Path) -> Tracing<'a> {
+    match args.target_error {
+        None => Tracing::Stored(Checkpointing {
+            folder,
+            resume: args.resume,
+            until: args.time.and_then(|time| Instant::now().checked_add(time)),
             workers,
-        };
-        stages(args, job, place)
-    })
+        }),
+        Some(noise) => Tracing::Until {
+            noise,
+            most: args.photons.photons,
+        },
+    }
 }
 
 /// Fails if `--save` names the same data twice.
@@ -132,19 +187,9 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
-/// The folder to which a result will be written, and the processes that share the work.
-struct ResultPlace<'a> {
-    folder: &'a Path,
-    plan: Plan,
-    /// The claimed result folder; `None` if several processes measure.
-    results: Option<Results>,
-    /// The leader of the other processes, if several processes share the measurement.
-    workers: Option<&'a Leader<'a>>,
-}
-
 /// Returns the exit code of a run that is already finished, and prints the verdict of this run
 /// again. Also removes the batches that a process has left in the folder.
-fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
+fn finished(args: &RunArgs, scene: &Scene, folder: &Path) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
@@ -164,67 +209,4 @@ fn gone(folder: &Path) -> Failure {
         "the result in {} no longer exists",
         folder.display()
     ))
-}
-
-fn stages(args: &RunArgs, mut job: Job, place: ResultPlace<'_>) -> Result<u8, Failure> {
-    let mut watch = Stopwatch::start();
-    if !args.is_quiet() {
-        let kept = args.save.iter();
-        for announcement in kept.filter_map(|save| photons::announcement(&job.scene, *save)) {
-            say(&announcement);
-        }
-    }
-    let terminal = Terminal::new(args.work.quiet);
-    let method = job.method;
-    let kept = CheckpointStore::of(place.folder, &job.scene, method);
-    let checkpointing = Checkpointing {
-        resume: args.resume,
-        until: args.time.and_then(|time| Instant::now().checked_add(time)),
-        workers: place.workers,
-    };
-    let measurement = match args.target_error {
-        None => {
-            let is_done = || summary_of(place.folder, &job.scene, method).is_some();
-            checkpoint::measured(
-                &job.scene,
-                method,
-                (&kept, &is_done),
-                checkpointing,
-                &terminal,
-            )?
-        }
-        Some(target) => {
-            let target = (target, args.photons.photons);
-            Some(target::reached(&mut job.scene, method, target, &terminal)?)
-        }
-    };
-    let Some(measurement) = measurement else {
-        return finished(place.folder, &job.scene, args).ok_or_else(|| gone(place.folder));
-    };
-    watch.lap("trace");
-    let predictions = job.predictions(place.workers, &terminal)?;
-    watch.lap("predict");
-    let case = job.with(measurement, predictions);
-    let results = match place.results {
-        Some(results) => results,
-        None => {
-            let results = Results::claim_in_turn(place.folder, place.plan, &warnings::warn)?;
-            if let Some(code) = finished(place.folder, &case.scene, args) {
-                return Ok(code);
-            }
-            results
-        }
-    };
-    let ending = Ending {
-        options: OutputOptions {
-            save: &args.save,
-            compact: args.compact,
-        },
-        expect: args.expect,
-        target_error: args.target_error,
-        quiet: args.is_quiet(),
-    };
-    let code = conclude(&case, &ending, results, watch)?;
-    kept.remove();
-    Ok(code)
 }

@@ -94,10 +94,20 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     fs::write(path.join("other.ron"), SCENE).unwrap();
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
+        let is_known = name == "known";
+        let with_explorer = call(path, &format!("{run} --save explorer"));
+        if !is_known {
+            assert_eq!(with_explorer.status.code(), Some(2), "{with_explorer:?}");
+            assert!(!path.join(name).exists());
+        }
+        let run = if is_known {
+            format!("{run} --save explorer --force")
+        } else {
+            run
+        };
         let code = call(path, &run).status.code();
         // With so few photons, the verdict may be undecided.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
-        let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));
         assert_eq!(summary["files"]["explorer.html"].is_string(), is_known);
         assert_eq!(path.join(name).join("explorer.html").exists(), is_known);

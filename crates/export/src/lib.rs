@@ -5,6 +5,8 @@
 //! With them, a script can record the same local light fields by an independent tracer
 //! (`docs/mitsuba.md`). The export fails if Mitsuba cannot represent a part of the scene; the error
 //! names this part.
+//!
+//! This crate runs no renderer and reads no results of one.
 
 mod mitsuba;
 

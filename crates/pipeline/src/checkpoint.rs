@@ -10,9 +10,11 @@ use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched}
 use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_store::checkpoints::{BatchProgress, CheckpointStore};
+use etendue_store::stored::summary_of;
 use etendue_store::unfinished;
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -23,9 +25,11 @@ const MIN_AGE: Duration = Duration::from_secs(5);
 /// The interval at which an unfinished batch is stored.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 
-/// The time limit of a measurement, and the other processes that take part.
+/// The result folder of a run, its time limit, and the other processes that take part.
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
+    /// The folder of the results, in which batches are stored.
+    pub folder: &'a Path,
     /// Whether to continue from stored batches, and to share the work with all processes that
     /// continue from these batches.
     pub resume: bool,
@@ -36,15 +40,16 @@ pub struct Checkpointing<'a> {
 }
 
 /// Measures all batches of a scene. Returns `None` if another process that shares the work has
-/// finished the run, as `is_done` reports. If the time limit is reached before all batches are
+/// finished the run and written the result. If the time limit is reached before all batches are
 /// finished, stores the finished batches and returns a failure with a message.
-pub fn measured(
+pub(crate) fn measured(
     scene: &Scene,
     method: Method,
-    (kept, is_done): (&CheckpointStore, &(dyn Fn() -> bool + Sync)),
     checkpointing: Checkpointing<'_>,
     reporter: &dyn Reporter,
 ) -> Result<Option<Measurement>, Failure> {
+    let kept = &CheckpointStore::of(checkpointing.folder, scene, method);
+    let is_done = &|| summary_of(checkpointing.folder, scene, method).is_some();
     let source = source(scene, method)?;
     let emitted = |batch: u32| source.emitted(batch);
     let lit: Vec<u32> = (0..scene.run.batches).filter(|b| emitted(*b) > 0).collect();
@@ -173,6 +178,7 @@ impl Keeper<'_> {
             resume,
             until,
             workers,
+            ..
         } = self.checkpointing;
         let is_eager = resume || until.is_some() || workers.is_some();
         is_eager || self.begun.elapsed() > MIN_AGE

@@ -1,6 +1,7 @@
 //! Étendue as a library: measures, predicts and compares a scene in memory, as `etendue run` does.
 
 use crate::case::MeasuredScene;
+use crate::checkpoint::{self, Checkpointing};
 use crate::judged::Judged;
 use crate::load::SceneSource;
 use crate::measure::measured;
@@ -8,7 +9,7 @@ use crate::method::{self, source};
 use crate::predict::predicted;
 use crate::reporter::{Reporter, Silent};
 use crate::workers::{Leader, Packing};
-use crate::{limits, load};
+use crate::{limits, load, target};
 use etendue_compare::{PlaneComparison, Prediction, Verdict};
 use etendue_field::PhotonSource;
 use etendue_predict::{Applicability, predict};
@@ -31,6 +32,20 @@ pub struct Job {
     pub method: Method,
     /// The files from which the scene was read.
     pub inputs: Vec<PathBuf>,
+}
+
+/// How the photons of a run are traced.
+#[derive(Clone, Copy, Debug)]
+pub enum Tracing<'a> {
+    /// Batches are stored in the result folder, so that a later process can continue the run.
+    Stored(Checkpointing<'a>),
+    /// Photons are added until the noise at each plane is low enough.
+    Until {
+        /// The largest allowed noise, as a share of the spectrum.
+        noise: f64,
+        /// The largest allowed number of photons; `None` for the default.
+        most: Option<u64>,
+    },
 }
 
 impl Job {
@@ -72,7 +87,26 @@ impl Job {
         }
     }
 
-    /// Measures and predicts the scene.
+    /// Traces the photons of all batches. Returns `None` if another process that shares the work has
+    /// written the result.
+    ///
+    /// # Errors
+    /// When the method of measurement finds no light, when time is up, or when too many photons
+    /// would be needed.
+    pub fn trace(
+        &mut self,
+        tracing: Tracing<'_>,
+        reporter: &dyn Reporter,
+    ) -> Result<Option<Measurement>, Failure> {
+        match tracing {
+            Tracing::Stored(how) => checkpoint::measured(&self.scene, self.method, how, reporter),
+            Tracing::Until { noise, most } => {
+                target::reached(&mut self.scene, self.method, (noise, most), reporter).map(Some)
+            }
+        }
+    }
+
+    /// Measures and predicts the scene, without storing batches.
     ///
     /// # Errors
     /// When the method of measurement finds no light.

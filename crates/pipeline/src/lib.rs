@@ -11,7 +11,7 @@
 )]
 
 mod case;
-pub mod checkpoint;
+mod checkpoint;
 pub mod covariance;
 pub mod diff;
 mod enough_photons;
@@ -41,8 +41,9 @@ pub mod variance_table;
 mod workers;
 
 pub use case::MeasuredScene;
+pub use checkpoint::Checkpointing;
 pub use follower::{follow_job, follow_points, report_failure};
-pub use job::{Job, Outcome};
+pub use job::{Job, Outcome, Tracing};
 pub use judged::{Judged, judged};
 pub use measure::measured;
 pub use read_case::read_case;

@@ -24,6 +24,8 @@ pub enum Save {
     Tm25,
     /// The light field on a 4D grid, and its full radial spectrum.
     Field,
+    /// The interactive page of the scene.
+    Explorer,
 }
 
 impl Save {
@@ -35,6 +37,7 @@ impl Save {
             Self::Mcpl => "mcpl",
             Self::Tm25 => "tm25",
             Self::Field => "field",
+            Self::Explorer => "explorer",
         }
     }
 }
@@ -59,7 +62,7 @@ fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
         Save::Photons => Some(("photons.npy", "photons", 40)),
         Save::Mcpl => Some(("photons.mcpl", "mcpl", 64)),
         Save::Tm25 => Some(("photons.tm25ray", "tm25", 28)),
-        Save::Field => None,
+        Save::Field | Save::Explorer => None,
     }
 }
 
@@ -124,7 +127,7 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
                     })?;
                     Content::tm25(&rays, rows, flux)
                 }
-                Save::Photons | Save::Field => Content::npy(rows),
+                Save::Photons | Save::Field | Save::Explorer => Content::npy(rows),
             };
             file.write_all(&content.begin())?;
             offsets = of_plane.trace(&mut |crossings| file.write_all(&content.rows(crossings)?))?;

@@ -31,7 +31,7 @@ const MAX_FACTOR: f64 = 8.0;
 ///
 /// # Errors
 /// When no photon reaches any plane, or when more than `most` photons would be needed.
-pub fn reached(
+pub(crate) fn reached(
     scene: &mut Scene,
     method: Method,
     (target, most): (f64, Option<u64>),

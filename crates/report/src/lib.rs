@@ -1,5 +1,7 @@
 //! Writes the readable output of a run: pictures of its planes and path, and a page that shows
 //! everything.
+//!
+//! This crate measures and judges nothing; it shows what `etendue_pipeline` has found.
 
 #![allow(
     clippy::missing_errors_doc,
@@ -16,4 +18,4 @@ pub mod variance;
 mod write_result;
 
 pub use shell::shell_word;
-pub use write_result::{OutputOptions, plan, save, write_result};
+pub use write_result::{OutputOptions, check_explorer, plan, save, write_result};

@@ -23,6 +23,16 @@ pub struct OutputOptions<'a> {
 /// arrays hold the numbers.
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
+/// Fails if the explorer is to be saved and does not support the scene.
+pub fn check_explorer(scene: &Scene, save: &[Save]) -> Result<(), Failure> {
+    if save.contains(&Save::Explorer) && explorer::fragment(&scene.file).is_none() {
+        return Err(Failure::bad_input(
+            "--save explorer: the explorer shows only scenes that it could have saved",
+        ));
+    }
+    Ok(())
+}
+
 /// Returns the files that a comparison of a scene writes.
 pub fn plan(
     scene: &Scene,
@@ -44,7 +54,7 @@ pub fn plan(
     let beside = pictures::PATH_NAMES
         .into_iter()
         .chain([TIMING, page::NAME])
-        .chain(explorer::fragment(&scene.file).map(|_| explorer::NAME));
+        .chain(save.contains(&Save::Explorer).then_some(explorer::NAME));
     Plan {
         index: SUMMARY,
         files: scene
@@ -88,7 +98,10 @@ pub fn write_result(
     }
     let path = path?;
     path.write(&mut results)?;
-    let explorer = explorer::fragment(&summary.scene_file).filter(|_| !options.compact);
+    let explores = options.save.contains(&Save::Explorer);
+    let explorer = explores
+        .then(|| explorer::fragment(&summary.scene_file))
+        .flatten();
     let data = page::data(case, summary, planes, (path.svg(), explorer.as_deref()));
     results.write(
         page::NAME,

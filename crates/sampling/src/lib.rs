@@ -2,6 +2,8 @@
 //! worlds.
 //!
 //! Random numbers are in (0, 1). Directions have unit length, and densities of directions are per steradian.
+//!
+//! This crate draws no random numbers and knows no BSDFs; those are in `etendue_scatter`.
 
 pub mod chi_square;
 mod cone;

@@ -5,6 +5,8 @@
 //! file, reports all faults together, and returns a [`Scene`] that is valid by construction. Later
 //! stages do not check validity again.
 //!
+//! This crate neither traces nor predicts.
+//!
 //! ```
 //! let text = r#"(
 //!     light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2), radiance: 1.0),

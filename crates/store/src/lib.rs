@@ -4,6 +4,8 @@
 //! [`Results`] claims a folder, writes files and an index of their hashes, and puts all files in
 //! place together. The other modules define the content of files: arrays, batches, predictions, and
 //! the indices that a later stage reads.
+//!
+//! This crate neither computes nor draws results.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -3,6 +3,8 @@
 //!
 //! Each point is a separate run, stored below `points` in a folder named by the hash of its scene.
 //! A sweep that was stopped, or whose values have changed, reuses the existing points.
+//!
+//! This crate traces and judges nothing: each point is a run of `etendue_pipeline`.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -5,6 +5,8 @@
 //! [`RealFft4`] transforms a 4D grid. A [`Net`] generates the points of a scrambled Sobol' net, and
 //! the module [`random`] generates random numbers that are addressed by index.
 //!
+//! This crate knows no scenes, photons or theory.
+//!
 //! ```
 //! use etendue_field::{FrequencyAxis, SliceGrid, TwoPlane};
 //! use etendue_transform::SliceTransform;

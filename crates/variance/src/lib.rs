@@ -10,6 +10,8 @@
 //!
 //! Without shifts the sum is over dyadic bands of the window instead of frequencies, for samplers
 //! whose cells are dyadic blocks ([`dyadic_power`]). The border of the window is then no edge.
+//!
+//! This crate traces no rays itself, and neither draws nor writes.
 
 mod dyadic_power;
 mod error;

@@ -58,7 +58,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]
     pub(crate) save: Vec<Save>,
 
-    /// Write a small folder for an archive, without the explorer and without CSV and SVG versions of the pictures
+    /// Write a small folder for an archive, without CSV and SVG versions of the pictures
     #[arg(long)]
     pub(crate) compact: bool,
 
@@ -311,6 +311,10 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         named(
             Save::Field,
             "The light field on a 4D grid, in field.npy and field.json, and its full radial spectrum, in full_radial.npz. The spectrum is also predicted and compared. The photons are traced once more for each plane, or twice if memory is short",
+        ),
+        named(
+            Save::Explorer,
+            "The scene in explorer.html, an interactive page of 1.2 MB, if the scene is one that this page can save",
         ),
     ])
 }
