@@ -1,7 +1,6 @@
 //! Compares a plane of a measurement with its prediction.
 
 use crate::agreement::{Agreement, UNSEEN};
-use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::full_radial::FullRadialComparison;
 use crate::heavy_rays::too_few;
@@ -242,12 +241,9 @@ impl ComparedSides<'_> {
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
-            let what = match (self.prediction.mesh_error, self.prediction.class) {
-                (None, _) => "because of its quadrature, the prediction may be wrong",
-                (Some(_), Class::Reference) => {
-                    "because of the coarse mesh, photons and backward rays may differ"
-                }
-                (Some(_), _) => "because of the coarse mesh, photons and the prediction may differ",
+            let what = match self.prediction.mesh_error {
+                None => "because of its quadrature, the prediction may be wrong",
+                Some(_) => "because of the coarse mesh, photons and the prediction may differ",
             };
             Some(format!(
                 "{what} by {error} of the spectrum, and noise is {}; more photons do not help",

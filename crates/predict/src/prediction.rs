@@ -161,7 +161,6 @@ pub fn predict_reference(
     let plane = &scene.planes[index];
     Ok(Prediction {
         steps: applicability.steps(scene, plane),
-        mesh_error: scene.mesh_mismatch(plane),
         depth: depth(scene, plane),
         cuts: cuts(scene, plane),
         ..Prediction::measured(measurement, at)?

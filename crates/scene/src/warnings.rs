@@ -6,8 +6,8 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A mesh causes a warning if the spectrum of photons and the spectrum of backward rays differ by
-/// at least this share.
+/// A mesh causes a warning if its spectrum and the spectrum of a smooth surface differ by at least
+/// this share.
 const LEVEL: f64 = 0.01;
 /// The maximum number of triangles examined. In finer meshes, only every second, every third, …
 /// triangle is examined.
@@ -19,8 +19,8 @@ const PIECES: f64 = 8.0;
 /// plane's largest frequency.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// For each point, the ratio of two radiances, of photons and of backward rays, is evaluated at
-/// these slopes. The unit is the window's half-width.
+/// For each point, the ratio of two radiances, of the mesh and of a smooth surface, is evaluated
+/// at these slopes. The unit is the window's half-width.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
@@ -28,13 +28,14 @@ impl Scene {
     /// mesh on the path that is too coarse.
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
-    /// to the normal t of the triangle. Let photons come along d and leave along e. Their radiance
-    /// is f = (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find, because
-    /// interpolated normals do not conserve étendue. The effect of a mesh on a plane is the ratio
-    /// of two spectra at the measured frequencies along x and y. Both spectra are computed at the
-    /// points where the light hits the mesh. The first spectrum is the spectrum of the window times
-    /// f − 1, and the second is the spectrum of the window alone. If facets are finer than the
-    /// waves of these frequencies, their effects average out.
+    /// to the normal t of the triangle. Let light come along d and leave along e. Its radiance is
+    /// f = (d·t / d·n) / (e·t / e·n) times the radiance behind a surface that really has the
+    /// normal n, because interpolated normals do not conserve étendue. The effect of a mesh on a
+    /// plane is the ratio of two spectra at the measured frequencies along x and y, for light that
+    /// fills the window evenly. Both spectra are computed at the points where the light hits the
+    /// mesh. The first spectrum is the spectrum of the window times f − 1, and the second is the
+    /// spectrum of the window alone. If facets are finer than the waves of these frequencies, their
+    /// effects average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -47,9 +48,9 @@ impl Scene {
                 worst.filter(|((_, mismatch), _)| *mismatch > LEVEL)
             {
                 warnings.push(format!(
-                    "{}: the mesh is too coarse for normals that are interpolated between vertices. At {}, photons \
-                     and backward rays may differ by {:.1} % of the spectrum; with triangles {:.0} \
-                     times shorter, they differ by at most {} %",
+                    "{}: the mesh is too coarse for normals that are interpolated between vertices. At {}, its \
+                     spectrum differs from that of a smooth surface by about {:.1} %, if light fills \
+                     the window evenly; with triangles {:.0} times shorter, by at most {} %",
                     mesh.name,
                     plane.name,
                     100.0 * mismatch,
@@ -75,17 +76,6 @@ impl Scene {
                 tidy(behind + flux)
             )
         })
-    }
-
-    /// Returns the possible difference between the spectra of photons and of backward rays at a
-    /// plane, as a share of the spectrum. The cause of such a difference is a smooth mesh before
-    /// the plane that is too coarse (see [`warnings`](Self::warnings)). Returns `None` if no
-    /// smooth mesh is before the plane.
-    #[must_use]
-    pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
-        let legs = 1..=plane.leg;
-        let all = legs.filter_map(|leg| Some(self.mismatch(leg, plane)?.1));
-        all.max_by(f64::total_cmp)
     }
 
     /// Returns the smooth mesh at the beginning of a leg, and the difference that this mesh
@@ -118,7 +108,7 @@ struct WindowView<'a> {
 }
 
 /// Two sums over points of a mesh, or the spectra of these sums: the window, and the difference
-/// between photons and backward rays in the window.
+/// between the mesh and a smooth surface in the window.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
     difference: f64,

@@ -202,8 +202,7 @@ fn a_light_that_is_too_far_is_refused_as_fast_as_a_scene_is_read() {
     assert!(far < 20.0 * near, "{far} s, {near} s");
 }
 
-/// The relative difference between photons and backward rays is 3 % with two cells. With eight
-/// cells, the difference is so small that 4e7 photons do not detect it.
+/// The spectrum of a mesh with two cells differs from that of a smooth surface by 3 %.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

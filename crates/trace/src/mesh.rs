@@ -145,16 +145,20 @@ impl BlockerMesh {
         }
     }
 
+    /// Returns the unit normal of the plane of a triangle.
+    pub(crate) fn facet_normal(&self, i: usize) -> DVec3 {
+        let [a, b, c] = self.corners(i);
+        (b - a).cross(c - a).normalize()
+    }
+
     /// Returns the unit normal at a point of a triangle.
     pub(crate) fn normal(&self, i: usize, point: DVec3) -> DVec3 {
-        let corners = self.corners(i);
         let Some(normals) = &self.normals else {
-            let [a, b, c] = corners;
-            return (b - a).cross(c - a).normalize();
+            return self.facet_normal(i);
         };
         let leg = self.leg.unwrap_or(Frame::IDENTITY);
         let normals = normals[i].map(|n| leg.vector_to_local(n));
-        interpolated_normal(&corners, &normals, point)
+        interpolated_normal(&self.corners(i), &normals, point)
     }
 
     /// Returns all hits on the line of a ray, found by a test of every triangle without a

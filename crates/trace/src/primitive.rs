@@ -130,6 +130,15 @@ impl Primitive {
         }
     }
 
+    /// Returns the normal of the plane of a part, if it is a triangle and may have another normal
+    /// at its points.
+    pub(crate) fn facet_normal(&self, part: usize) -> Option<DVec3> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.facet_normal(part)),
+            _ => None,
+        }
+    }
+
     /// Returns the lowest and the highest corner of the primitive's bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         match self {

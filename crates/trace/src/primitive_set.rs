@@ -57,6 +57,11 @@ impl<T> PrimitiveHit<'_, T> {
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         self.primitive.normal(self.part, point)
     }
+
+    /// Returns the normal of the triangle's plane at a hit on a mesh.
+    pub(crate) fn facet_normal(&self) -> Option<DVec3> {
+        self.primitive.facet_normal(self.part)
+    }
 }
 
 impl<T: Clone> PrimitiveSet<T> {

@@ -249,7 +249,9 @@ impl Backward {
                     return 0.0;
                 };
                 let to_front = along.dot(facing) > 0.0;
-                let factor = radiance_factor(lens, *event, to_front, along, came);
+                let facets = primitive.facet_normal();
+                let by_facet = facets.map_or(1.0, |facet| facet_factor(facet, facing, along, came));
+                let factor = by_facet * radiance_factor(lens, *event, to_front, along, came);
                 let [point, came] = [frame.to_world(point), frame.vector_to_world(-came)];
                 visible * factor * self.along(*leg - 1, point, came, block, words)
             }
@@ -375,6 +377,17 @@ impl Backward {
         let incoming = IncomingRay { leg, heading, ray };
         solid * self.arriving(&incoming, end, block + 1, words)
     }
+}
+
+/// Returns the ratio of the radiance after a deflection by a triangle with an interpolated normal
+/// to the radiance after a deflection by a surface that really has this normal. A triangle turns
+/// light about the interpolated normal, but receives and emits it through its own area, so
+/// interpolated normals do not conserve étendue (Veach 1997, section 5.3). Photons have
+/// this ratio by themselves, because each of them keeps its flux.
+fn facet_factor(facet: DVec3, normal: DVec3, along: DVec3, came: DVec3) -> f64 {
+    let kept = |d: DVec3| d.dot(facet) / d.dot(normal);
+    let factor = (kept(came) / kept(along)).abs();
+    if factor.is_finite() { factor } else { 0.0 }
 }
 
 impl Backward {
