@@ -13,7 +13,7 @@ const OF_NOISE: f64 = 12.0;
 /// enough that the prediction takes less time than tracing the photons.
 const SHARE: f64 = 0.25;
 /// The largest number of rays for runs with few photons.
-const FEWEST: f64 = 6e5;
+const FEWEST: f64 = 3e5;
 
 /// Returns the ray budget of a prediction. The prediction ends when its error is half of the
 /// photons' noise. It also ends when it has taken about as long as the photons take. An error of
