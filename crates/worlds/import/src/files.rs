@@ -112,6 +112,12 @@ impl Files {
     }
 }
 
+/// Checks whether the name of a file has an extension, in upper or lower case.
+pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}
+
 /// Decodes the bytes of a file as text.
 pub(crate) fn text(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| "is no UTF-8".to_owned())

@@ -84,6 +84,12 @@ impl Report {
         self.causes.borrow_mut().add(place, message.into());
     }
 
+    /// Adds a cause for refusal, and returns `None` in place of the value that is refused.
+    pub(crate) fn refuse<T>(&self, place: &SourcePlace, message: impl Into<String>) -> Option<T> {
+        self.cause(place, message);
+        None
+    }
+
     /// Adds a note on an omission or approximation.
     pub(crate) fn note(&self, place: &SourcePlace, message: impl Into<String>) {
         self.notes.borrow_mut().add(place, message.into());

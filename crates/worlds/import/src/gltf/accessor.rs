@@ -116,8 +116,7 @@ impl GltfReader<'_> {
             return None;
         }
         if accessor.sparse.is_some() {
-            self.cause(&format!("{path}.sparse"), "is not supported");
-            return None;
+            return self.refuse(&format!("{path}.sparse"), "is not supported");
         }
         let view = self.root.get(accessor.buffer_view?)?;
         let bytes = self.buffer(view.buffer.value())?;
@@ -125,11 +124,10 @@ impl GltfReader<'_> {
         let stride = view.byte_stride.map_or(element, |stride| stride.0);
         let fit = self.fit(accessor, element, stride, bytes.len());
         let Some((start, count)) = fit else {
-            self.cause(
+            return self.refuse(
                 &path,
                 "reaches beyond its buffer, or has elements that overlap",
             );
-            return None;
         };
         Some(AccessorRows {
             bytes,

@@ -100,8 +100,7 @@ impl<'a> GltfReader<'a> {
         let aspect = xmag / ymag;
         if !(ASPECTS[0]..=ASPECTS[1]).contains(&aspect) {
             let message = format!("xmag divided by ymag is {aspect}; allowed: {ASPECTS:?}");
-            self.cause(path, message);
-            return None;
+            return self.refuse(path, message);
         }
         Some((Projection::Orthographic, xmag, aspect, [near?, far?]))
     }

@@ -53,8 +53,7 @@ impl<'a> GltfReader<'a> {
                 "the pictures use several sets of texture coordinates, {:?}; allowed: one set",
                 draft.sets
             );
-            self.cause(&draft.path, message);
-            return None;
+            return self.refuse(&draft.path, message);
         }
         self.world.materials.push(material);
         Some(GltfSurface {

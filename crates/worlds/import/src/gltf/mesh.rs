@@ -43,18 +43,16 @@ impl GltfReader<'_> {
         };
         let count = vertices.len();
         if let Some(bad) = listed.iter().find(|i| **i as usize >= count) {
-            self.cause(
+            return self.refuse(
                 path,
                 format!("an index is {bad}, but there are only {count} vertices"),
             );
-            return None;
         }
         let agrees = |length: usize| length == count;
         if !normals.as_ref().is_none_or(|n| agrees(n.len()))
             || !uvs.as_ref().is_none_or(|uvs| agrees(uvs.len()))
         {
-            self.cause(path, "the attributes have different lengths");
-            return None;
+            return self.refuse(path, "the attributes have different lengths");
         }
         let mut parts = MeshParts {
             vertices,
@@ -77,8 +75,7 @@ impl GltfReader<'_> {
     fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<[f64; 2]>> {
         let Some(index) = attribute(primitive, Semantic::TexCoords(set)) else {
             let message = format!("has no TEXCOORD_{set}, which its material needs");
-            self.cause(path, message);
-            return None;
+            return self.refuse(path, message);
         };
         self.numbers(index)
     }

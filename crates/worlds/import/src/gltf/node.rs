@@ -145,11 +145,10 @@ impl<'a> GltfReader<'a> {
             .iter()
             .all(|v| v.abs() < 1e-6);
         if !is_affine {
-            self.cause(
+            return self.refuse(
                 &format!("{path}.matrix"),
                 "the last row of the matrix is not 0 0 0 1",
             );
-            return None;
         }
         let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
         let linear = DMat3::from_cols(column(0), column(1), column(2));
@@ -164,8 +163,7 @@ impl<'a> GltfReader<'a> {
                 let turn = DQuat::from_array(rotation.0.map(f64::from));
                 let length = turn.length();
                 if !(length.is_finite() && length > 1e-6) {
-                    self.cause(&format!("{path}.rotation"), "has no length");
-                    return None;
+                    return self.refuse(&format!("{path}.rotation"), "has no length");
                 }
                 if (length - 1.0).abs() > UNIT {
                     let message = format!("has length {length}, and is normalised");

@@ -78,6 +78,12 @@ impl<'a> GltfReader<'a> {
             .cause(&self.place, format!("{path}: {}", message.as_ref()));
     }
 
+    /// Adds a cause for the element at a JSON path, and returns `None` in place of its value.
+    pub(super) fn refuse<T>(&self, path: &str, message: impl AsRef<str>) -> Option<T> {
+        self.cause(path, message);
+        None
+    }
+
     /// Adds a note that the element at a JSON path is dropped or approximated.
     pub(super) fn note(&self, path: &str, message: impl AsRef<str>) {
         self.report
@@ -97,8 +103,7 @@ impl<'a> GltfReader<'a> {
         if (low..=high).contains(&value) && value.is_finite() {
             return Some(value);
         }
-        self.cause(path, format!("is {value}; allowed: {low} to {high}"));
-        None
+        self.refuse(path, format!("is {value}; allowed: {low} to {high}"))
     }
 
     /// Checks that numbers are from 0 to 1; `None` if a cause of refusal was reported.

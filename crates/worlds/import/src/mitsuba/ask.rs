@@ -3,7 +3,7 @@
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::reader::MitsubaReader;
 use super::xml::unknown;
-use crate::report::quoted;
+use crate::report::{SourcePlace, quoted};
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
@@ -14,14 +14,13 @@ impl<'a> MitsubaReader<'a> {
         object: &'a MitsubaObject,
         name: &str,
     ) -> Option<&'a ObjectProperty> {
-        let mut all = object.properties.iter();
-        let found = all.rfind(|property| property.name == name)?;
+        let found = object.last(name)?;
         found.is_read.set(true);
         Some(found)
     }
 
     pub(super) fn has(&self, object: &MitsubaObject, name: &str) -> bool {
-        object.properties.iter().any(|p| p.name == name)
+        object.last(name).is_some()
     }
 
     /// Returns the value of a property, as converted by `read`, or `None` if the property is
@@ -41,6 +40,16 @@ impl<'a> MitsubaReader<'a> {
             self.report.cause(&property.place, message);
         }
         value
+    }
+
+    /// Adds a cause at a property, and returns `None` in place of the property's value.
+    pub(super) fn fault<T>(
+        &self,
+        object: &'a MitsubaObject,
+        name: &str,
+        message: impl Into<String>,
+    ) -> Option<T> {
+        self.report.refuse(self.place_of(object, name), message)
     }
 
     pub(super) fn number(&self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
@@ -64,10 +73,26 @@ impl<'a> MitsubaReader<'a> {
         if is_allowed(value) {
             return Some(value);
         }
-        let place = self.place_of(object, name);
-        let message = format!("{name} is {value}; allowed: {allowed}");
-        self.report.cause(place, message);
-        None
+        self.fault(
+            object,
+            name,
+            format!("{name} is {value}; allowed: {allowed}"),
+        )
+    }
+
+    /// Reads a number like [`Self::number_within`], or returns `default` if the property is missing.
+    pub(super) fn number_or(
+        &self,
+        object: &'a MitsubaObject,
+        name: &str,
+        default: f64,
+        allowed: &str,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
+        match self.has(object, name) {
+            true => self.number_within(object, name, allowed, is_allowed),
+            false => Some(default),
+        }
     }
 
     pub(super) fn whole(&self, object: &'a MitsubaObject, name: &str) -> Option<i64> {
@@ -108,14 +133,10 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the position of a property in the file or, if the property is missing, the
     /// position of the object.
-    pub(super) fn place_of(
-        &self,
-        object: &'a MitsubaObject,
-        name: &str,
-    ) -> &'a crate::report::SourcePlace {
-        let mut all = object.properties.iter();
-        let found = all.rfind(|property| property.name == name);
-        found.map_or(&object.place, |property| &property.place)
+    pub(super) fn place_of(&self, object: &'a MitsubaObject, name: &str) -> &'a SourcePlace {
+        object
+            .last(name)
+            .map_or(&object.place, |found| &found.place)
     }
 
     /// Adds a cause for each reference to an unknown object.
@@ -132,16 +153,12 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the object that a property contains or refers to.
     pub(super) fn object_of(&self, property: &'a ObjectProperty) -> Option<&'a MitsubaObject> {
-        let at = match &property.value {
-            Value::Object(at) => *at,
-            Value::Reference(id) => match self.ids.get(id) {
-                Some(at) => *at,
-                // The cause of refusal for this object was already added.
-                None => return None,
-            },
-            _ => return None,
-        };
-        self.objects.get(at)
+        match &property.value {
+            Value::Object(at) => self.objects.get(*at),
+            // A cause of refusal was already added for an unknown object.
+            Value::Reference(id) => self.objects.get(*self.ids.get(id)?),
+            _ => None,
+        }
     }
 
     /// Returns all objects of a kind within an object, in the order of the file. Each is returned
@@ -151,15 +168,12 @@ impl<'a> MitsubaReader<'a> {
         object: &'a MitsubaObject,
         kind: ObjectKind,
     ) -> Vec<(&'a ObjectProperty, &'a MitsubaObject)> {
-        let mut found = Vec::new();
-        for property in &object.properties {
-            if let Some(child) = self.object_of(property)
-                && child.kind == kind
-            {
-                property.is_read.set(true);
-                child.is_used.set(true);
-                found.push((property, child));
-            }
+        let all = object.properties.iter();
+        let found = all.filter_map(|property| Some((property, self.object_of(property)?)));
+        let found: Vec<_> = found.filter(|(_, child)| child.kind == kind).collect();
+        for (property, child) in &found {
+            property.is_read.set(true);
+            child.is_used.set(true);
         }
         found
     }

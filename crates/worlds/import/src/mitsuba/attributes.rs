@@ -24,9 +24,8 @@ impl<'a> MitsubaReader<'a> {
             if !seen.insert(object.number) {
                 continue;
             }
-            if is_attribute(object) {
-                let name = object.properties.iter().rfind(|p| p.name == "name");
-                names.extend(name.and_then(|name| match &name.value {
+            if object.kind == ObjectKind::Texture && object.plugin == "mesh_attribute" {
+                names.extend(object.last("name").and_then(|name| match &name.value {
                     Value::Text(name) => Some(name.clone()),
                     _ => None,
                 }));
@@ -65,13 +64,13 @@ impl<'a> MitsubaReader<'a> {
             "of a shape without a mesh; allowed: vertex_… or face_… of a ply shape".to_owned()
         });
         let values = found.and_then(|mesh| self.values(&mesh, name, scale, role));
-        values
-            .map(Texture::OfMesh)
-            .map_err(|error| {
+        match values {
+            Ok(values) => Some(Texture::OfMesh(values)),
+            Err(error) => {
                 let message = format!("mesh_attribute {} {error}", quoted(name));
-                self.report.cause(self.place_of(object, "name"), message);
-            })
-            .ok()
+                self.fault(object, "name", message)
+            }
+        }
     }
 
     /// Returns the numbers of an attribute. A colour becomes one number.
@@ -117,8 +116,4 @@ impl<'a> MitsubaReader<'a> {
         };
         made.ok_or_else(|| "does not fit the mesh".to_owned())
     }
-}
-
-fn is_attribute(object: &MitsubaObject) -> bool {
-    object.kind == ObjectKind::Texture && object.plugin == "mesh_attribute"
 }

@@ -49,14 +49,11 @@ impl<'a> MitsubaReader<'a> {
             }
         };
         let lower = word.to_lowercase();
-        let found = NAMED.iter().find(|(known, _)| *known == lower);
-        if found.is_none() {
-            let message = format!(
-                "{name}: no index of refraction is known for {}",
-                quoted(word)
-            );
-            self.report.cause(self.place_of(object, name), message);
+        if let Some((_, index)) = NAMED.iter().find(|(known, _)| *known == lower) {
+            return Some(*index);
         }
-        found.map(|(_, value)| *value)
+        let word = quoted(word);
+        let message = format!("{name}: no index of refraction is known for {word}");
+        self.fault(object, name, message)
     }
 }

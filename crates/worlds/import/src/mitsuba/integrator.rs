@@ -67,22 +67,16 @@ impl<'a> MitsubaReader<'a> {
             -1 => None,
             // A picture with depth 0 is black, which the depth of a world cannot express.
             0 => {
-                self.report.cause(
-                    self.place_of(object, "max_depth"),
-                    "max_depth is 0, which shows nothing; allowed: -1, or 1 or more",
-                );
-                None
+                let message = "max_depth is 0, which shows nothing; allowed: -1, or 1 or more";
+                self.fault(object, "max_depth", message)
             }
-            depth => {
-                let less = depth.checked_sub(1).map(u32::try_from);
-                let Some(Ok(less)) = less else {
+            depth => match depth.checked_sub(1).map(u32::try_from) {
+                Some(Ok(less)) => Some(less),
+                _ => {
                     let message = format!("max_depth is {depth}; allowed: -1, or 1 or more");
-                    self.report
-                        .cause(self.place_of(object, "max_depth"), message);
-                    return None;
-                };
-                Some(less)
-            }
+                    self.fault(object, "max_depth", message)
+                }
+            },
         }
     }
 }

@@ -28,10 +28,7 @@ impl<'a> MitsubaReader<'a> {
                 .strength(object, "radiance")
                 .map(|radiance| Light::Constant { radiance }),
             "envmap" => self.sky(object),
-            _ => {
-                self.unsupported(object, ALLOWED);
-                None
-            }
+            _ => self.unsupported(object, ALLOWED),
         };
         let is_sky = |light: &Light| matches!(light, Light::Constant { .. } | Light::Sky(_));
         if light.as_ref().is_some_and(is_sky) && self.world.lights.iter().any(is_sky) {
@@ -82,17 +79,15 @@ impl<'a> MitsubaReader<'a> {
             [true, true] => {
                 let message =
                     format!("{name} is given together with to_world; allowed: one of them");
-                self.report.cause(&object.place, message);
-                None
+                self.report.refuse(&object.place, message)
             }
             [true, false] => self.vector(object, name).map(Some),
             [false, true] => {
-                let found = of(self.transform(object, "to_world")?);
-                if found.is_none() {
+                let found = of(self.transform(object, "to_world")?).map(Some);
+                found.or_else(|| {
                     self.report
-                        .cause(&object.place, "to_world gives no direction");
-                }
-                found.map(Some)
+                        .refuse(&object.place, "to_world gives no direction")
+                })
             }
             [false, false] => Some(None),
         }
@@ -104,28 +99,17 @@ impl<'a> MitsubaReader<'a> {
             None => Some(None),
         };
         let intensity = self.strength(object, "intensity");
-        let angle = |name| {
-            self.number_within(object, name, "0 to 90 degrees", |a| {
-                (0.0..=90.0).contains(&a)
-            })
+        let angle = |name, default| {
+            let is_angle = |a| (0.0..=90.0).contains(&a);
+            self.number_or(object, name, default, "0 to 90 degrees", is_angle)
         };
-        let has = |name| self.has(object, name);
-        let cutoff = if has("cutoff_angle") {
-            angle("cutoff_angle")
-        } else {
-            Some(CUTOFF)
-        };
-        let beam = if has("beam_width") {
-            angle("beam_width")
-        } else {
-            cutoff.map(|cutoff| cutoff * 0.75)
-        };
+        let cutoff = angle("cutoff_angle", CUTOFF);
+        let beam = angle("beam_width", cutoff.unwrap_or(CUTOFF) * 0.75);
         let rigid = self.rigid(object);
         let (cutoff, beam) = (cutoff?, beam?);
         if beam >= cutoff {
             let message = format!("beam_width is {beam}; allowed: below cutoff_angle, {cutoff}");
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         }
         Some(Light::Spot {
             to_world: rigid?,
@@ -162,11 +146,8 @@ impl<'a> MitsubaReader<'a> {
         let pixels = self.picture(object, false)?;
         let (scale, to_world) = (scale?, to_world?);
         if pixels.values().iter().any(|v| *v < 0.0) {
-            self.report.cause(
-                &object.place,
-                "the picture has pixels below 0; allowed: 0 or more",
-            );
-            return None;
+            let message = "the picture has pixels below 0; allowed: 0 or more";
+            return self.report.refuse(&object.place, message);
         }
         let bytes = size_of_val(pixels.values()) as u64;
         let fits = self.files.spend(bytes);
@@ -182,10 +163,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the factor on the picture of a projector or of an environment.
     fn scale(&self, object: &'a MitsubaObject) -> Option<f64> {
-        match self.has(object, "scale") {
-            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
-            false => Some(1.0),
-        }
+        self.number_or(object, "scale", 1.0, "0 or more", |s| s >= 0.0)
     }
 
     /// Returns `to_world`, which must preserve lengths and angles, or `None` if a cause of refusal
@@ -199,8 +177,6 @@ impl<'a> MitsubaReader<'a> {
             return Some(map);
         }
         let message = "to_world scales or shears; allowed: rotations, translations and reflections";
-        self.report
-            .cause(self.place_of(object, "to_world"), message);
-        None
+        self.fault(object, "to_world", message)
     }
 }

@@ -75,8 +75,7 @@ impl<'a> MitsubaReader<'a> {
         if depth > MAX_DEPTH {
             let message =
                 format!("bsdfs are nested more than {MAX_DEPTH} deep, or a bsdf contains itself");
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         }
         match object.plugin.as_str() {
             "diffuse" => Some(Material::Diffuse {
@@ -96,12 +95,11 @@ impl<'a> MitsubaReader<'a> {
             "blendbsdf" => self.blend(object, depth),
             "null" => Some(Material::Mask {
                 opacity: Texture::Constant(0.0),
-                of: Box::new(black()),
+                of: Box::new(Material::Diffuse {
+                    reflectance: Texture::Constant(0.0),
+                }),
             }),
-            _ => {
-                self.unsupported(object, ALLOWED);
-                None
-            }
+            _ => self.unsupported(object, ALLOWED),
         }
     }
 
@@ -126,16 +124,12 @@ impl<'a> MitsubaReader<'a> {
         let has_index = self.has(object, "eta") || self.has(object, "k");
         if name != "none" && has_index {
             let message = "material is given together with eta or k; allowed: one of them";
-            self.report
-                .cause(self.place_of(object, "material"), message);
-            return None;
+            return self.fault(object, "material", message);
         }
         if name != "none" {
             let Some(index) = metals::index(name) else {
                 let message = format!("no index of refraction is known for {}", quoted(name));
-                self.report
-                    .cause(self.place_of(object, "material"), message);
-                return None;
+                return self.fault(object, "material", message);
             };
             return Some(Some(index.map(|rgb| self.color.of(rgb))));
         }
@@ -153,8 +147,7 @@ impl<'a> MitsubaReader<'a> {
             Texture::Constant(value) if value >= 0.0 => Some(value),
             _ => {
                 let message = format!("{name} is not a number of 0 or more");
-                self.report.cause(self.place_of(object, name), message);
-                None
+                self.fault(object, name, message)
             }
         }
     }
@@ -212,8 +205,7 @@ impl<'a> MitsubaReader<'a> {
             let message = format!(
                 "diffuse_reflectance and specular_reflectance add up to {share}; allowed: up to 1"
             );
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         }
         Some(Material::Phong {
             diffuse,
@@ -258,8 +250,7 @@ impl<'a> MitsubaReader<'a> {
             }
             _ => {
                 let message = "allowed: alpha alone, or alpha_u and alpha_v";
-                self.report.cause(&object.place, message);
-                return None;
+                return self.report.refuse(&object.place, message);
             }
         };
         Some(Roughness {
@@ -274,13 +265,6 @@ impl<'a> MitsubaReader<'a> {
             return Some(as_number(texture));
         }
         let message = format!("{name} is not above 0 anywhere");
-        self.report.cause(self.place_of(object, name), message);
-        None
-    }
-}
-
-fn black() -> Material {
-    Material::Diffuse {
-        reflectance: Texture::Constant(0.0),
+        self.fault(object, name, message)
     }
 }

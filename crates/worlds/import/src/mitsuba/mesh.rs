@@ -58,10 +58,7 @@ impl<'a> MitsubaReader<'a> {
                 self.is_left_out = true;
                 return None;
             }
-            Err(error) => {
-                self.unread(object, name, &error);
-                return None;
-            }
+            Err(error) => return self.unread(object, name, &error),
         };
         // Mitsuba computes missing normals from the placed triangles, so a mirroring placement
         // flips computed normals. Normals from a file are transformed with the mesh.
@@ -78,26 +75,23 @@ impl<'a> MitsubaReader<'a> {
             return Some(0);
         }
         let value = self.whole(object, "shape_index")?;
-        let number = u32::try_from(value);
-        if number.is_err() {
+        let number = u32::try_from(value).ok();
+        number.or_else(|| {
             let message = format!("shape_index is {value}; allowed: 0 or more");
-            self.report
-                .cause(self.place_of(object, "shape_index"), message);
-        }
-        number.ok()
+            self.fault(object, "shape_index", message)
+        })
     }
 
     fn mesh_path(&self, object: &'a MitsubaObject, name: &str) -> Option<PathBuf> {
-        let found = self.files.find(&object.folders, name);
-        let path = found
-            .map_err(|error| self.unread(object, name, &error))
-            .ok()?;
+        let path = match self.files.find(&object.folders, name) {
+            Ok(path) => path,
+            Err(error) => return self.unread(object, name, &error),
+        };
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         let extension = extension.to_ascii_lowercase();
         if object.plugin != "serialized" && extension != object.plugin {
             let error = format!("has extension {}", quoted(&extension));
-            self.unread(object, name, &error);
-            return None;
+            return self.unread(object, name, &error);
         }
         Some(path)
     }

@@ -22,8 +22,7 @@ impl<'a> MitsubaReader<'a> {
         };
         if both.iter().any(lets_through) {
             let message = "twosided contains a bsdf that transmits light; allowed: opaque bsdfs";
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         }
         Some(Material::TwoSided(Box::new(both)))
     }
@@ -69,8 +68,7 @@ impl<'a> MitsubaReader<'a> {
     fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
         let plugin = &object.plugin;
         let message = format!("{plugin} has a wrong number of bsdfs; allowed: {allowed}");
-        self.report.cause(&object.place, message);
-        None
+        self.report.refuse(&object.place, message)
     }
 }
 

@@ -60,6 +60,15 @@ pub(super) enum Value {
     Broken,
 }
 
+impl MitsubaObject {
+    /// Returns the property with the given name, the last one if there are several.
+    pub(super) fn last(&self, name: &str) -> Option<&ObjectProperty> {
+        self.properties
+            .iter()
+            .rfind(|property| property.name == name)
+    }
+}
+
 /// Elements that define objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ObjectKind {
@@ -79,45 +88,39 @@ pub(super) enum ObjectKind {
 }
 
 impl ObjectKind {
+    /// All kinds, with the names of their elements.
+    const NAMES: [(Self, &str); 13] = [
+        (Self::Scene, "scene"),
+        (Self::Integrator, "integrator"),
+        (Self::Sensor, "sensor"),
+        (Self::Film, "film"),
+        (Self::Sampler, "sampler"),
+        (Self::Rfilter, "rfilter"),
+        (Self::Bsdf, "bsdf"),
+        (Self::Texture, "texture"),
+        (Self::Emitter, "emitter"),
+        (Self::Shape, "shape"),
+        (Self::Medium, "medium"),
+        (Self::Phase, "phase"),
+        (Self::Volume, "volume"),
+    ];
+
     /// Returns the kind of object that an element of this name defines. A spectrum with a type is a
     /// texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
-        Some(match name {
-            "scene" => Self::Scene,
-            "integrator" => Self::Integrator,
-            "sensor" => Self::Sensor,
-            "film" => Self::Film,
-            "sampler" => Self::Sampler,
-            "rfilter" => Self::Rfilter,
-            "bsdf" => Self::Bsdf,
-            "texture" => Self::Texture,
-            "spectrum" if has_type => Self::Texture,
-            "emitter" => Self::Emitter,
-            "shape" => Self::Shape,
-            "medium" => Self::Medium,
-            "phase" => Self::Phase,
-            "volume" => Self::Volume,
-            _ => return None,
-        })
+        let name = if name == "spectrum" && has_type {
+            "texture"
+        } else {
+            name
+        };
+        let found = Self::NAMES.iter().find(|(_, known)| *known == name);
+        found.map(|(kind, _)| *kind)
     }
 
     /// Returns the element name.
     pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Integrator => "integrator",
-            Self::Sensor => "sensor",
-            Self::Film => "film",
-            Self::Sampler => "sampler",
-            Self::Rfilter => "rfilter",
-            Self::Bsdf => "bsdf",
-            Self::Texture => "texture",
-            Self::Emitter => "emitter",
-            Self::Shape => "shape",
-            Self::Medium => "medium",
-            Self::Phase => "phase",
-            Self::Volume => "volume",
-        }
+        let found = Self::NAMES.iter().find(|(kind, _)| *kind == self);
+        found.map_or("", |(_, name)| name)
     }
 }
 

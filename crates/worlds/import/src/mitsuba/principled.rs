@@ -68,21 +68,14 @@ impl<'a> MitsubaReader<'a> {
     /// Returns the index of refraction. The file states either the index or `specular`; the
     /// reflectance at normal incidence is then 0.08 `specular`.
     fn principled_index(&mut self, object: &'a MitsubaObject) -> Option<f64> {
-        let has_specular = self.has(object, "specular");
         if !self.has(object, "eta") {
-            let specular = match has_specular {
-                true => {
-                    self.number_within(object, "specular", "0 to 1", |v| (0.0..=1.0).contains(&v))?
-                }
-                false => 0.5,
-            };
+            let is_share = |v| (0.0..=1.0).contains(&v);
+            let specular = self.number_or(object, "specular", 0.5, "0 to 1", is_share)?;
             return Some(of_specular(specular));
         }
-        if has_specular {
+        if self.has(object, "specular") {
             let message = "specular is given together with eta; allowed: one of them";
-            self.report
-                .cause(self.place_of(object, "specular"), message);
-            return None;
+            return self.fault(object, "specular", message);
         }
         self.number_within(object, "eta", "1 or more", |v| v >= 1.0)
     }

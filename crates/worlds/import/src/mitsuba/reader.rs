@@ -148,11 +148,11 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Reports an unsupported plugin.
-    pub(super) fn unsupported(&self, object: &'a MitsubaObject, allowed: &str) {
+    /// Reports an unsupported plugin, and returns `None` in place of the object.
+    pub(super) fn unsupported<T>(&self, object: &'a MitsubaObject, allowed: &str) -> Option<T> {
         let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
         let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");
-        self.report.cause(&object.place, message);
         self.drop_all(object);
+        self.report.refuse(&object.place, message)
     }
 }

@@ -1,6 +1,6 @@
 //! Sensors, as cameras.
 
-use super::object::{MitsubaObject, ObjectKind, ObjectProperty};
+use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 use etendue_world::{Camera, Lens, Projection};
@@ -37,7 +37,7 @@ impl<'a> MitsubaReader<'a> {
                 self.report.note(&sensor.place, message);
                 self.drop_all(sensor);
             } else {
-                self.unsupported(sensor, ALLOWED);
+                let _: Option<Camera> = self.unsupported(sensor, ALLOWED);
             }
         }
     }
@@ -76,8 +76,7 @@ impl<'a> MitsubaReader<'a> {
             return Some([near, far]);
         }
         let message = format!("the clip planes are at {near} and {far}; allowed: 0 < near < far");
-        self.report.cause(&object.place, message);
-        None
+        self.report.refuse(&object.place, message)
     }
 
     fn perspective(
@@ -102,12 +101,8 @@ impl<'a> MitsubaReader<'a> {
                 self.report
                     .cause(&object.place, "thinlens without aperture_radius");
             }
-            let focus = match self.has(object, "focus_distance") {
-                true => self.number_within(object, "focus_distance", "above 0", |f| f > 0.0),
-                false => Some(far),
-            };
-            let radius = radius?;
-            let focus = focus?;
+            let focus = self.number_or(object, "focus_distance", far, "above 0", |f| f > 0.0);
+            let (radius, focus) = (radius?, focus?);
             (radius > 0.0).then_some(Lens { radius, focus })
         } else {
             None
@@ -169,9 +164,7 @@ impl<'a> MitsubaReader<'a> {
             Ok(length) if length > 0.0 => Some(length),
             _ => {
                 let message = format!("focal_length is {}; allowed: such as 50mm", quoted(text));
-                self.report
-                    .cause(self.place_of(object, "focal_length"), message);
-                None
+                self.fault(object, "focal_length", message)
             }
         }
     }
@@ -192,9 +185,7 @@ impl<'a> MitsubaReader<'a> {
         let is_even = (lengths[0] - lengths[1]).abs() <= 1e-3 * lengths[0];
         if !is_square || !is_even || [x, y, z].contains(&DVec3::ZERO) {
             let message = "to_world shears, or scales x and y differently";
-            self.report
-                .cause(self.place_of(object, "to_world"), message);
-            return None;
+            return self.fault(object, "to_world", message);
         }
         map.matrix3.z_axis = z;
         Some((map, stretch))
@@ -247,16 +238,13 @@ impl<'a> MitsubaReader<'a> {
             return usize::try_from(value).ok();
         }
         let message = format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}");
-        self.report.cause(self.place_of(film, name), message);
-        None
+        self.fault(film, name, message)
     }
 
     /// Adds a note on the sampler, which is not needed for a world, and marks the sampler as
     /// read.
     fn sampler(&self, object: &'a MitsubaObject) {
-        let samplers: Vec<(&ObjectProperty, &MitsubaObject)> =
-            self.children(object, ObjectKind::Sampler);
-        for (_, sampler) in samplers {
+        for (_, sampler) in self.children(object, ObjectKind::Sampler) {
             let plugin = quoted(&sampler.plugin);
             self.report
                 .note(&sampler.place, format!("sampler {plugin} is left out"));

@@ -162,20 +162,13 @@ impl<'a> MitsubaReader<'a> {
             (geometry, own, mesh.is_flipped)
         });
         match object.plugin.as_str() {
-            "rectangle" => Some((Geometry::Rectangle, own, self.flips(object))),
-            "disk" => Some((Geometry::Disc, own, self.flips(object))),
+            "rectangle" => Some((Geometry::Rectangle, own, self.truth(object, "flip_normals"))),
+            "disk" => Some((Geometry::Disc, own, self.truth(object, "flip_normals"))),
             "sphere" => self.sphere(object, own),
             "cylinder" => self.cylinder(object, own),
             "cube" | "obj" | "ply" | "serialized" => meshed,
-            _ => {
-                self.unsupported(object, ALLOWED);
-                None
-            }
+            _ => self.unsupported(object, ALLOWED),
         }
-    }
-
-    fn flips(&self, object: &'a MitsubaObject) -> bool {
-        self.truth(object, "flip_normals")
     }
 
     fn sphere(
@@ -190,7 +183,7 @@ impl<'a> MitsubaReader<'a> {
         // In Mitsuba, a mirroring transform turns the normals of spheres inwards, but not the
         // normals of cylinders.
         let is_mirrored = own.matrix3.determinant() < 0.0;
-        let is_flipped = self.flips(object) != is_mirrored;
+        let is_flipped = self.truth(object, "flip_normals") != is_mirrored;
         if is_similarity(placed.matrix3) || placed.matrix3.determinant().abs() <= 0.0 {
             return Some((Geometry::Sphere, placed, is_flipped));
         }
@@ -214,23 +207,21 @@ impl<'a> MitsubaReader<'a> {
         let radius = self.radius(object)?;
         let (p0, axis) = (p0?, p1? - p0?);
         let Some(along) = axis.try_normalize() else {
-            self.report.cause(
-                &object.place,
-                "p0 and p1 are the same point; allowed: two different points",
-            );
-            return None;
+            let message = "p0 and p1 are the same point; allowed: two different points";
+            return self.report.refuse(&object.place, message);
         };
         let scale = DVec3::new(radius, radius, axis.length());
         let linear = frame(along) * DMat3::from_diagonal(scale);
         let placed = own * DAffine3::from_mat3_translation(linear, p0);
-        Some((Geometry::Cylinder, placed, self.flips(object)))
+        Some((
+            Geometry::Cylinder,
+            placed,
+            self.truth(object, "flip_normals"),
+        ))
     }
 
     fn radius(&self, object: &'a MitsubaObject) -> Option<f64> {
-        match self.has(object, "radius") {
-            true => self.number_within(object, "radius", "a number above 0", |r| r > 0.0),
-            false => Some(1.0),
-        }
+        self.number_or(object, "radius", 1.0, "a number above 0", |r| r > 0.0)
     }
 
     fn vector_or(&self, object: &'a MitsubaObject, name: &str, default: DVec3) -> Option<DVec3> {
@@ -271,8 +262,7 @@ impl<'a> MitsubaReader<'a> {
     ) -> Option<(&'a str, Texture)> {
         let emitter = self.child(object, ObjectKind::Emitter)?;
         if !["area", COLLIMATED].contains(&emitter.plugin.as_str()) {
-            self.unsupported(emitter, "area or directionalarea, within a shape");
-            return None;
+            return self.unsupported(emitter, "area or directionalarea, within a shape");
         }
         if is_in_group {
             self.report

@@ -53,8 +53,7 @@ impl<'a> MitsubaReader<'a> {
             return Some(texture);
         }
         let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
-        self.report.cause(self.place_of(object, name), message);
-        None
+        self.fault(object, name, message)
     }
 
     /// Reads the strength of a light, which must be a single number.
@@ -64,8 +63,7 @@ impl<'a> MitsubaReader<'a> {
             Texture::Constant(value) => Some(value),
             _ => {
                 let message = format!("{name} is a picture; allowed: one value");
-                self.report.cause(self.place_of(object, name), message);
-                None
+                self.fault(object, name, message)
             }
         }
     }
@@ -87,8 +85,7 @@ impl<'a> MitsubaReader<'a> {
             return Some(texture);
         }
         let message = format!("{name} goes down to {lowest}; allowed: 0 or more");
-        self.report.cause(self.place_of(object, name), message);
-        None
+        self.fault(object, name, message)
     }
 
     fn texture(&mut self, property: &'a ObjectProperty, role: Role) -> Option<Texture> {
@@ -109,8 +106,7 @@ impl<'a> MitsubaReader<'a> {
                     property.name,
                     other.noun()
                 );
-                self.report.cause(&property.place, message);
-                return None;
+                return self.report.refuse(&property.place, message);
             }
         };
         Some(Texture::Constant(constant))
@@ -127,8 +123,7 @@ impl<'a> MitsubaReader<'a> {
     fn texture_of(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
         if object.kind != ObjectKind::Texture {
             let message = format!("{} in place of a texture", object.kind.name());
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         }
         match object.plugin.as_str() {
             "bitmap" => self.bitmap(object),
@@ -146,10 +141,7 @@ impl<'a> MitsubaReader<'a> {
                     _ => None,
                 }
             }
-            _ => {
-                self.unsupported(object, ALLOWED);
-                None
-            }
+            _ => self.unsupported(object, ALLOWED),
         }
     }
 
@@ -162,8 +154,7 @@ impl<'a> MitsubaReader<'a> {
                 _ => {
                     let noun = property.value.noun();
                     let message = format!("{name} is {noun}; allowed: a colour");
-                    self.report.cause(&property.place, message);
-                    return None;
+                    return self.report.refuse(&property.place, message);
                 }
             },
         };
@@ -183,8 +174,7 @@ impl<'a> MitsubaReader<'a> {
         let to_uv = self.to_uv(object);
         let (Texture::Constant(first), Texture::Constant(second)) = (first?, second?) else {
             let message = "a checkerboard has textures as its colours; allowed: two values";
-            self.report.cause(&object.place, message);
-            return None;
+            return self.report.refuse(&object.place, message);
         };
         Some(Texture::Checkerboard {
             to_uv,
@@ -227,7 +217,7 @@ impl<'a> MitsubaReader<'a> {
         let name = self.file_name(object)?;
         let found = self.files.find(&object.folders, name);
         let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, raw));
-        read.map_err(|error| self.unread(object, name, &error)).ok()
+        read.map_or_else(|error| self.unread(object, name, &error), Some)
     }
 
     /// Reads the property `filename` of an object.
@@ -239,11 +229,14 @@ impl<'a> MitsubaReader<'a> {
         self.text(object, "filename")
     }
 
-    /// Reports a file that cannot be used.
-    pub(super) fn unread(&self, object: &'a MitsubaObject, name: &str, error: &str) {
-        let message = format!("file {} {error}", quoted(name));
-        self.report
-            .cause(self.place_of(object, "filename"), message);
+    /// Reports a file that cannot be used, and returns `None` in place of its content.
+    pub(super) fn unread<T>(
+        &self,
+        object: &'a MitsubaObject,
+        name: &str,
+        error: &str,
+    ) -> Option<T> {
+        self.fault(object, "filename", format!("file {} {error}", quoted(name)))
     }
 
     /// Reads one of several keywords; the first keyword is the default. Returns `None` if a cause
@@ -258,13 +251,12 @@ impl<'a> MitsubaReader<'a> {
             return allowed.first().map(|(_, value)| *value);
         }
         let word = self.text(object, name)?.to_ascii_lowercase();
-        let found = allowed.iter().find(|(known, _)| *known == word);
-        if found.is_none() {
-            let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
-            let message = format!("{name} is {}; allowed: {}", quoted(&word), words.join(", "));
-            self.report.cause(self.place_of(object, name), message);
+        if let Some((_, value)) = allowed.iter().find(|(known, _)| *known == word) {
+            return Some(*value);
         }
-        found.map(|(_, value)| *value)
+        let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
+        let message = format!("{name} is {}; allowed: {}", quoted(&word), words.join(", "));
+        self.fault(object, name, message)
     }
 
     fn to_uv(&self, object: &'a MitsubaObject) -> DAffine2 {

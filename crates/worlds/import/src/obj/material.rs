@@ -87,8 +87,7 @@ impl ObjReader<'_> {
                 let largest = texture.largest();
                 if largest > MAX_SHARE {
                     let message = format!("Kd goes up to {largest}; allowed: 0 to 1");
-                    self.report.cause(&map.place, message);
-                    return None;
+                    return self.report.refuse(&map.place, message);
                 }
                 Some(texture)
             }
@@ -113,8 +112,7 @@ impl ObjReader<'_> {
         if share > MAX_SHARE {
             let message =
                 format!("Kd and Ks reflect up to {share:.4} of the light; allowed: up to 1");
-            self.report.cause(&entry.place, message);
-            return None;
+            return self.report.refuse(&entry.place, message);
         }
         Some(Material::Phong {
             diffuse,

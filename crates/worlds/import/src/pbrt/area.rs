@@ -1,12 +1,11 @@
 //! Emission of surfaces.
 
 use super::entity::{Entity, Read};
-use super::imagemap::upside_down;
+use super::imagemap::{default_curve, upside_down};
 use super::keys::Uv;
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
 use super::shape::PbrtSurface;
-use crate::pictures::TransferCurve;
 use etendue_world::{Bitmap, EmittedRadiance, Filter, Texture, Wrap};
 use std::f64::consts::PI;
 
@@ -14,7 +13,7 @@ impl PbrtReader<'_> {
     /// Returns the emission of a shape before it is scaled to a required power.
     pub(super) fn shape_emission(
         &mut self,
-        shape: &PbrtShape,
+        shape: &PbrtShape<'_>,
         uv: Uv,
         is_in_object: bool,
     ) -> Read<Option<EmittedRadiance>> {
@@ -28,11 +27,11 @@ impl PbrtReader<'_> {
             return Ok(None);
         }
         if area.plugin != "diffuse" {
-            return Err(area.unsupported(self.report, "diffuse"));
+            return Err(area.unsupported("diffuse"));
         }
         if shape.entity.has("alpha") {
             let message = "alpha of a shape that emits light is not supported";
-            return Err(shape.entity.fault(self.report, "alpha", message.to_owned()));
+            return Err(shape.entity.fault("alpha", message));
         }
         match area.has("filename") {
             true => self.shown(area, uv).map(Some),
@@ -41,21 +40,15 @@ impl PbrtReader<'_> {
     }
 
     /// Returns the emission of a surface whose radiance is given by a picture.
-    fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
+    fn shown(&mut self, area: &Entity<'_>, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
                 let message = format!("{name} together with filename is not supported");
-                return Err(area.fault(self.report, name, message));
+                return Err(area.fault(name, message));
             }
         }
         let scale = self.scale_of(area);
-        let name = self.file_name(area)?;
-        let is_png = name.to_ascii_lowercase().ends_with(".png");
-        let curve = if is_png {
-            TransferCurve::Srgb
-        } else {
-            TransferCurve::Linear
-        };
+        let curve = default_curve(self.file_name(area)?);
         let pixels = self.picture(area, curve)?;
         let scale = scale?;
         Ok(Texture::Bitmap(Bitmap {
@@ -70,23 +63,23 @@ impl PbrtReader<'_> {
     /// taken before the transform, except that the area of triangles is taken after the transform.
     pub(super) fn powered(
         &self,
-        area: Option<&Entity>,
+        area: Option<&Entity<'_>>,
         emission: Option<EmittedRadiance>,
         surface: &PbrtSurface,
     ) -> Read<Option<EmittedRadiance>> {
         let (Some(area), Some(Texture::Constant(radiance))) = (area, &emission) else {
             return Ok(emission);
         };
-        let has_power = area.float(self.report, "power")?.is_some_and(|p| p > 0.0);
+        let has_power = area.float("power")?.is_some_and(|p| p > 0.0);
         match surface.area {
             Some(size) => {
-                let sides = f64::from(1 + u8::from(area.truth(self.report, "twosided", false)?));
+                let sides = f64::from(1 + u8::from(area.truth("twosided", false)?));
                 let factor = self.wanted(area, "power", sides * PI * size)?;
                 Ok(Some(Texture::Constant(radiance * factor)))
             }
             None if has_power => {
                 let message = "power of a mesh of several triangles: pbrt gives this power to each triangle; allowed: a mesh of one triangle";
-                Err(area.fault(self.report, "power", message.to_owned()))
+                Err(area.fault("power", message))
             }
             None => Ok(emission),
         }

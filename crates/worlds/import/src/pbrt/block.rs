@@ -1,7 +1,7 @@
 //! Attribute blocks and object definitions.
 
 use super::build::Builder;
-use super::scene::{Instance, PbrtObject};
+use super::scene::{GraphicsState, Instance, PbrtObject};
 use crate::report::{SourcePlace, quoted};
 
 /// Maximum nesting depth of blocks.
@@ -11,36 +11,37 @@ impl Builder<'_> {
     /// Adds a cause for each unclosed block that is nested deeper than a level.
     pub(super) fn refuse_open(&mut self, level: usize) {
         while self.stack.len() > level {
-            if let Some((state, kind, place)) = self.stack.pop() {
-                let word = if kind == 'o' { "Object" } else { "Attribute" };
+            if let Some((state, word, place)) = self.stack.pop() {
                 self.report
                     .cause(&place, format!("{word}Begin without {word}End"));
-                self.state = state;
-                if kind == 'o' {
-                    self.object = None;
-                }
+                self.close(state, word);
             }
         }
     }
 
-    pub(super) fn push(&mut self, kind: char, place: &SourcePlace) -> Result<(), String> {
-        self.within_world("a block")?;
+    /// Returns to the graphics state before a block.
+    fn close(&mut self, state: GraphicsState, word: &str) {
+        self.state = state;
+        if word == "Object" {
+            self.object = None;
+        }
+    }
+
+    pub(super) fn push(&mut self, word: &'static str, place: &SourcePlace) -> Result<(), String> {
+        self.require_world("a block", true)?;
         if self.stack.len() >= MAX_DEPTH {
             return Err(format!("blocks are nested more than {MAX_DEPTH} deep"));
         }
-        self.stack.push((self.state.clone(), kind, place.clone()));
+        self.stack.push((self.state.clone(), word, place.clone()));
         Ok(())
     }
 
-    pub(super) fn pop(&mut self, kind: char) -> Result<(), String> {
-        let word = if kind == 'o' { "Object" } else { "Attribute" };
+    pub(super) fn pop(&mut self, word: &str) -> Result<(), String> {
+        if let Some((state, ..)) = self.stack.pop_if(|(_, begun, _)| *begun == word) {
+            self.close(state, word);
+            return Ok(());
+        }
         match self.stack.last() {
-            Some((_, begun, _)) if *begun == kind => {
-                if let Some((state, ..)) = self.stack.pop() {
-                    self.state = state;
-                }
-                Ok(())
-            }
             Some((.., place)) => Err(format!(
                 "{word}End stands inside the block that line {} opens; this block must end first",
                 place.line
@@ -56,7 +57,7 @@ impl Builder<'_> {
         if self.scene.objects.contains_key(&name) {
             return Err(format!("object {} is defined twice", quoted(&name)));
         }
-        self.push('o', place)?;
+        self.push("Object", place)?;
         let object = PbrtObject {
             place: place.clone(),
             shapes: Vec::new(),
@@ -66,14 +67,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn end_object(&mut self) -> Result<(), String> {
-        self.pop('o')?;
-        self.object = None;
-        Ok(())
-    }
-
     pub(super) fn instance(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
-        self.within_world("ObjectInstance")?;
+        self.require_world("ObjectInstance", true)?;
         if self.object.is_some() {
             return Err("an object contains an instance".to_owned());
         }

@@ -37,11 +37,11 @@ const SETTINGS: [&str; 5] = [
 pub(super) struct Builder<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
-    pub(super) scene: PbrtScene,
+    pub(super) scene: PbrtScene<'a>,
     pub(super) state: GraphicsState,
-    /// Saved graphics states, each with a letter (`a` for an attribute block, `o` for an object)
-    /// and the place where it was saved.
-    pub(super) stack: Vec<(GraphicsState, char, SourcePlace)>,
+    /// Saved graphics states, each with the kind of block, `Attribute` or `Object`, and the place
+    /// where it was saved.
+    pub(super) stack: Vec<(GraphicsState, &'static str, SourcePlace)>,
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
     /// The name of the object to which shapes are added, inside its definition.
@@ -71,7 +71,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Builds the scene that a text describes.
-    pub(super) fn build(mut self, text: &str, name: &str) -> PbrtScene {
+    pub(super) fn build(mut self, text: &str, name: &str) -> PbrtScene<'a> {
         let mut tokens = Tokens::new(text, name);
         self.follow(&mut tokens);
         if !self.is_world {
@@ -98,33 +98,25 @@ impl<'a> Builder<'a> {
     }
 
     pub(super) fn begin_world(&mut self) -> Result<(), String> {
-        self.before_world("WorldBegin")?;
+        self.require_world("WorldBegin", false)?;
         self.is_world = true;
         self.state.to_world = DAffine3::IDENTITY;
         self.coordinate_system("world".to_owned());
         Ok(())
     }
 
-    pub(super) fn before_world(&self, word: &str) -> Result<(), String> {
-        match self.is_world {
-            false => Ok(()),
-            true => Err(format!(
-                "{word} stands after WorldBegin; allowed: before WorldBegin"
-            )),
-        }
-    }
-
-    pub(super) fn within_world(&self, word: &str) -> Result<(), String> {
-        match self.is_world {
+    /// Checks that a directive stands after `WorldBegin` or, if `is_world` is false, before it.
+    pub(super) fn require_world(&self, word: &str, is_world: bool) -> Result<(), String> {
+        let [here, allowed] = match is_world {
+            true => ["before", "after"],
+            false => ["after", "before"],
+        };
+        match self.is_world == is_world {
             true => Ok(()),
             false => Err(format!(
-                "{word} stands before WorldBegin; allowed: after WorldBegin"
+                "{word} stands {here} WorldBegin; allowed: {allowed} WorldBegin"
             )),
         }
-    }
-
-    pub(super) fn named_material(&mut self, name: &str, place: &SourcePlace) {
-        self.state.material = MaterialOf::Named(name.into(), place.clone());
     }
 
     /// Handles a directive with a plugin.
@@ -135,16 +127,8 @@ impl<'a> Builder<'a> {
         own: Vec<Rc<PbrtParameter>>,
         place: &SourcePlace,
     ) -> Result<(), String> {
-        if let Some(kind) = SETTINGS.iter().find(|kind| **kind == word) {
-            self.before_world(word)?;
-            let entity = self.entity(kind, plugin, own, place, None);
-            if self.scene.settings.insert(kind, entity).is_some() {
-                return Err(format!("a second {word}"));
-            }
-            return Ok(());
-        }
+        let setting = SETTINGS.iter().find(|kind| **kind == word);
         match word {
-            "Camera" => return self.camera(plugin, own, place),
             "Attribute" => return self.attribute(&plugin, own),
             "MakeNamedMedium" => {
                 let name = quoted(&plugin);
@@ -152,64 +136,56 @@ impl<'a> Builder<'a> {
                     "medium {name}: participating media are not supported"
                 ));
             }
-            _ => self.within_world(word)?,
+            _ => self.require_world(word, setting.is_none() && word != "Camera")?,
         }
+        let (kind, target) = match word {
+            "Camera" => ("camera", None),
+            "Material" | "MakeNamedMaterial" => ("material", Some(2)),
+            "LightSource" => ("light", Some(1)),
+            "AreaLightSource" => ("area light", Some(1)),
+            _ => setting.map_or(("shape", Some(0)), |setting| (*setting, None)),
+        };
+        let mut entity = self.entity(kind, plugin, own, place, target);
+        let scene = &mut self.scene;
+        let map = self.state.to_world;
         match word {
+            "Camera" => {
+                self.systems.insert("camera".to_owned(), map.inverse());
+                if scene.camera.replace((entity, map)).is_some() {
+                    return Err("a second Camera".to_owned());
+                }
+            }
             "Material" => {
-                let entity = self.entity("material", plugin, own, place, Some(2));
-                self.state.material = MaterialOf::Number(self.scene.materials.len());
-                self.scene.materials.push(entity);
+                self.state.material = MaterialOf::Number(scene.materials.len());
+                scene.materials.push(entity);
             }
-            "MakeNamedMaterial" => return self.make_named(plugin, own, place),
-            "LightSource" => {
-                let entity = self.entity("light", plugin, own, place, Some(1));
-                self.scene.lights.push((entity, self.state.to_world));
+            "MakeNamedMaterial" => {
+                let name = std::mem::take(&mut entity.plugin);
+                let shown = quoted(&name);
+                let before = scene.named.insert(name, scene.materials.len());
+                scene.materials.push(entity);
+                if before.is_some() {
+                    return Err(format!("material {shown} is defined twice"));
+                }
             }
+            "LightSource" => scene.lights.push((entity, map)),
             "AreaLightSource" => {
-                let entity = self.entity("area light", plugin, own, place, Some(1));
-                self.state.area = Some(self.scene.areas.len());
-                self.scene.areas.push(entity);
+                self.state.area = Some(scene.areas.len());
+                scene.areas.push(entity);
             }
-            _ => self.shape(plugin, own, place),
+            _ if setting.is_none() => self.shape(entity),
+            _ => {
+                if scene.settings.insert(kind, entity).is_some() {
+                    return Err(format!("a second {word}"));
+                }
+            }
         }
         Ok(())
     }
 
-    fn make_named(
-        &mut self,
-        name: String,
-        own: Vec<Rc<PbrtParameter>>,
-        place: &SourcePlace,
-    ) -> Result<(), String> {
-        let entity = self.entity("material", String::new(), own, place, Some(2));
-        let shown = quoted(&name);
-        let before = self.scene.named.insert(name, self.scene.materials.len());
-        self.scene.materials.push(entity);
-        match before {
-            None => Ok(()),
-            Some(_) => Err(format!("material {shown} is defined twice")),
-        }
-    }
-
-    fn camera(
-        &mut self,
-        plugin: String,
-        own: Vec<Rc<PbrtParameter>>,
-        place: &SourcePlace,
-    ) -> Result<(), String> {
-        self.before_world("Camera")?;
-        let entity = self.entity("camera", plugin, own, place, None);
-        let map = self.state.to_world;
-        self.systems.insert("camera".to_owned(), map.inverse());
-        match self.scene.camera.replace((entity, map)) {
-            None => Ok(()),
-            Some(_) => Err("a second Camera".to_owned()),
-        }
-    }
-
-    fn shape(&mut self, plugin: String, own: Vec<Rc<PbrtParameter>>, place: &SourcePlace) {
+    fn shape(&mut self, entity: Entity<'a>) {
         let shape = PbrtShape {
-            entity: self.entity("shape", plugin, own, place, Some(0)),
+            entity,
             to_world: self.state.to_world,
             is_reversed: self.state.is_reversed,
             material: self.state.material.clone(),
@@ -224,11 +200,8 @@ impl<'a> Builder<'a> {
 
     fn attribute(&mut self, target: &str, own: Vec<Rc<PbrtParameter>>) -> Result<(), String> {
         let Some(at) = TARGETS.iter().position(|known| *known == target) else {
-            let allowed = TARGETS.join(", ");
-            return Err(format!(
-                "attributes of {}; allowed: {allowed}",
-                quoted(target)
-            ));
+            let (target, allowed) = (quoted(target), TARGETS.join(", "));
+            return Err(format!("attributes of {target}; allowed: {allowed}"));
         };
         let defaults = Rc::make_mut(&mut self.state.defaults[at]);
         if defaults.len() + own.len() > MOST_DEFAULTS {
@@ -241,41 +214,17 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    pub(super) fn make_texture(
-        &mut self,
-        name: String,
-        kind: &str,
-        plugin: String,
-        own: Vec<Rc<PbrtParameter>>,
-        place: &SourcePlace,
-    ) -> Result<(), String> {
-        self.within_world("Texture")?;
-        let is_spectrum = match kind {
-            "spectrum" => true,
-            "float" => false,
-            _ => {
-                let kind = quoted(kind);
-                return Err(format!("a texture of {kind}; allowed: float, spectrum"));
-            }
-        };
-        let entity = self.entity("texture", plugin, own, place, Some(4));
-        let shown = quoted(&name);
-        match self.scene.textures.insert((is_spectrum, name), entity) {
-            None => Ok(()),
-            Some(_) => Err(format!("a second {kind} texture {shown}")),
-        }
-    }
-
-    fn entity(
+    pub(super) fn entity(
         &self,
         kind: &'static str,
         plugin: String,
         own: Vec<Rc<PbrtParameter>>,
         place: &SourcePlace,
         target: Option<usize>,
-    ) -> Entity {
+    ) -> Entity<'a> {
         let defaults = target.map(|at| Rc::clone(&self.state.defaults[at]));
         Entity {
+            report: self.report,
             kind,
             plugin,
             place: place.clone(),

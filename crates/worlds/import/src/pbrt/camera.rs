@@ -37,28 +37,30 @@ const SQUARE: f64 = 1e-4;
 
 impl PbrtReader<'_> {
     pub(super) fn camera(&mut self, whole: &SourcePlace) {
-        let default = || Entity::default("camera", "perspective", whole.clone());
-        let found = self.scene.camera.clone();
-        let (entity, map) = found.unwrap_or_else(|| (default(), DAffine3::IDENTITY));
-        if let Some((entity, _)) = &self.scene.camera {
-            entity.is_used.set(true);
-        }
+        let default = Entity::default(self.report, "camera", "perspective", whole.clone());
+        let default = (default, DAffine3::IDENTITY);
+        let (entity, map) = self.scene.camera.as_ref().unwrap_or(&default);
+        entity.is_used.set(true);
         let size = self.film(whole);
-        if let Ok(camera) = self.camera_of(&entity, map, size) {
+        if let Ok(camera) = self.camera_of(entity, *map, size) {
             self.world.cameras.push(camera);
         }
     }
 
-    fn camera_of(&self, entity: &Entity, map: DAffine3, size: Read<[usize; 2]>) -> Read<Camera> {
+    fn camera_of(
+        &self,
+        entity: &Entity<'_>,
+        map: DAffine3,
+        size: Read<[usize; 2]>,
+    ) -> Read<Camera> {
         let is_flat = match entity.plugin.as_str() {
             "perspective" => false,
             "orthographic" => true,
-            _ => return Err(entity.unsupported(self.report, ALLOWED)),
+            _ => return Err(entity.unsupported(ALLOWED)),
         };
         let placed = without_scale(map.inverse()).ok_or_else(|| {
             let message = "the camera has shear, or different scales along its axes";
-            self.report.cause(&entity.place, message);
-            CauseGiven
+            entity.refuse(message)
         });
         self.exposure(entity)?;
         let size = size?;
@@ -85,17 +87,15 @@ impl PbrtReader<'_> {
 
     /// Returns the visible range: minimum and maximum x, then minimum and maximum y. The shorter
     /// side of the visible range is from −1 to 1.
-    fn window(&self, entity: &Entity, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
-        let report = self.report;
-        let above: (_, fn(f64) -> bool) = ("above 0", |a| a > 0.0);
+    fn window(&self, entity: &Entity<'_>, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
         let film = w as f64 / h as f64;
-        let aspect = entity.float_within(report, "frameaspectratio", film, above)?;
+        let aspect = entity.float_within("frameaspectratio", film, "above 0", |a| a > 0.0)?;
         let [x, y] = if aspect > 1.0 {
             [aspect, 1.0]
         } else {
             [1.0, 1.0 / aspect]
         };
-        let window = entity.exactly::<4>(report, "screenwindow", ParameterKind::Float)?;
+        let window = entity.exactly::<4>("screenwindow", ParameterKind::Float)?;
         let window = window.unwrap_or([-x, x, -y, y]);
         let [left, right, low, high] = window;
         let (width, height) = (right - left, high - low);
@@ -106,19 +106,16 @@ impl PbrtReader<'_> {
         let message = format!(
             "the pixels are not square: the screen of {width} × {height} has {w} × {h} pixels"
         );
-        self.report.cause(&entity.place, message);
-        Err(CauseGiven)
+        Err(entity.refuse(message))
     }
 
     /// Returns a perspective projection, where `fov` spans the shorter side, from −1 to 1.
-    fn perspective(&self, entity: &Entity, scale: f64, window: [f64; 4]) -> Read<Projection> {
-        let report = self.report;
-        let angle: (_, fn(f64) -> bool) = ("between 0 and 180 degrees", |a| 0.0 < a && a < 180.0);
-        let fov = entity.float_within(report, "fov", 90.0, angle);
-        let radius: (_, fn(f64) -> bool) = ("0 or more", |r| r >= 0.0);
-        let radius = entity.float_within(report, "lensradius", 0.0, radius);
-        let above: (_, fn(f64) -> bool) = ("above 0", |f| f > 0.0);
-        let focus = entity.float_within(report, "focaldistance", 1e6, above);
+    fn perspective(&self, entity: &Entity<'_>, scale: f64, window: [f64; 4]) -> Read<Projection> {
+        let fov = entity.float_within("fov", 90.0, "between 0 and 180 degrees", |a| {
+            0.0 < a && a < 180.0
+        });
+        let radius = entity.float_within("lensradius", 0.0, "0 or more", |r| r >= 0.0);
+        let focus = entity.float_within("focaldistance", 1e6, "above 0", |f| f > 0.0);
         let tangent = libm::tan(fov?.to_radians() / 2.0);
         let (radius, focus) = (radius? * scale, focus? * scale);
         let [left, right, low, high] = window;
@@ -137,14 +134,14 @@ impl PbrtReader<'_> {
     /// of the picture.
     fn flat(
         &self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         rigid: DAffine3,
         scale: f64,
         [left, right, low, high]: [f64; 4],
     ) -> Read<DAffine3> {
-        if entity.float_or(self.report, "lensradius", 0.0)? > 0.0 {
-            let message = "a lens of an orthographic camera is not supported".to_owned();
-            return Err(entity.fault(self.report, "lensradius", message));
+        if entity.float_or("lensradius", 0.0)? > 0.0 {
+            let message = "a lens of an orthographic camera is not supported";
+            return Err(entity.fault("lensradius", message));
         }
         let middle = scale * DVec3::new(-(left + right) / 2.0, (low + high) / 2.0, 0.0);
         let half = scale * (right - left) / 2.0;
@@ -153,11 +150,11 @@ impl PbrtReader<'_> {
     }
 
     /// Adds a note if pbrt multiplies the radiance by a factor for the exposure.
-    fn exposure(&self, entity: &Entity) -> Read<()> {
-        let open = entity.float_or(self.report, "shutteropen", 0.0)?;
-        let close = entity.float_or(self.report, "shutterclose", 1.0)?;
+    fn exposure(&self, entity: &Entity<'_>) -> Read<()> {
+        let open = entity.float_or("shutteropen", 0.0)?;
+        let close = entity.float_or("shutterclose", 1.0)?;
         let film = self.scene.settings.get("Film");
-        let iso = film.map_or(Ok(100.0), |film| film.float_or(self.report, "iso", 100.0))?;
+        let iso = film.map_or(Ok(100.0), |film| film.float_or("iso", 100.0))?;
         let ratio = (close - open) * iso / 100.0;
         if (ratio - 1.0).abs() > 1e-9 {
             let message = format!(
@@ -173,34 +170,27 @@ impl PbrtReader<'_> {
         let Some(film) = self.scene.settings.get("Film") else {
             return Ok(SIZE);
         };
-        let report = self.report;
         film.is_used.set(true);
         let pixels = |i: usize, name| {
             let default = i64::try_from(SIZE[i]).unwrap_or_default();
-            let value = film.integer_or(report, name, default)?;
+            let value = film.integer_or(name, default)?;
             let fits = usize::try_from(value)
                 .ok()
                 .filter(|_| (1..=MAX_PIXELS).contains(&value));
-            fits.ok_or_else(|| {
-                film.fault(
-                    report,
-                    name,
-                    format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}"),
-                )
-            })
+            let message = format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}");
+            fits.ok_or_else(|| film.fault(name, message))
         };
         let [w, h] = [pixels(0, "xresolution"), pixels(1, "yresolution")];
-        let crop = film.exactly::<4>(report, "cropwindow", ParameterKind::Float)?;
-        if crop.is_some_and(|crop| is_part(crop, [0.0, 1.0, 0.0, 1.0])) {
-            let message = "parts of a film are not supported".to_owned();
-            return Err(film.fault(report, "cropwindow", message));
-        }
+        let check_part = |name, kind, [right, low]: [f64; 2]| {
+            let part = film.exactly::<4>(name, kind)?;
+            match part.is_some_and(|part| is_part(part, [0.0, right, 0.0, low])) {
+                true => Err(film.fault(name, "parts of a film are not supported")),
+                false => Ok(()),
+            }
+        };
+        check_part("cropwindow", ParameterKind::Float, [1.0, 1.0])?;
         let (w, h) = (w?, h?);
-        let bounds = film.exactly::<4>(report, "pixelbounds", ParameterKind::Integer)?;
-        if bounds.is_some_and(|b| is_part(b, [0.0, w as f64, 0.0, h as f64])) {
-            let message = "parts of a film are not supported".to_owned();
-            return Err(film.fault(report, "pixelbounds", message));
-        }
+        check_part("pixelbounds", ParameterKind::Integer, [w as f64, h as f64])?;
         if !self.scene.settings.contains_key("PixelFilter") {
             let message = "filter `gaussian`, the default, is approximated by the box filter";
             self.report.note(whole, message);
@@ -228,10 +218,10 @@ impl PbrtReader<'_> {
     }
 
     /// Checks the width of a box filter, and adds a note if the width is not one pixel.
-    fn check_box(&self, entity: &Entity) {
+    fn check_box(&self, entity: &Entity<'_>) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {
-            let radius = entity.float_or(self.report, name, 0.5);
+            let radius = entity.float_or(name, 0.5);
             if radius.is_ok_and(|radius| (radius - 0.5).abs() > 1e-9) {
                 let message = format!("{name} is approximated by 0.5, a box of one pixel");
                 self.report.note(entity.place_of(name), message);
@@ -245,16 +235,16 @@ impl PbrtReader<'_> {
         if let Some(entity) = self.scene.settings.get("Integrator") {
             entity.is_used.set(true);
             if !PATHS.contains(&entity.plugin.as_str()) {
-                entity.unsupported(self.report, &PATHS.join(", "));
+                entity.unsupported(&PATHS.join(", "));
                 return;
             }
-            depth = match entity.integer_or(self.report, "maxdepth", DEPTH) {
+            depth = match entity.integer_or("maxdepth", DEPTH) {
                 Ok(depth) => depth,
                 Err(CauseGiven) => return,
             };
             if depth < 0 {
                 let message = format!("maxdepth is {depth}; allowed: 0 or more");
-                entity.fault(self.report, "maxdepth", message);
+                entity.fault("maxdepth", message);
             }
         }
         self.world.depth = u32::try_from(depth).ok();

@@ -2,6 +2,7 @@
 
 use super::build::Builder;
 use super::parameter::parameters;
+use super::scene::MaterialOf;
 use super::token::{Token, Tokens, number};
 use super::transform::{look_at, matrix, rotation};
 use super::words::is_directive;
@@ -29,9 +30,7 @@ impl Builder<'_> {
                 self.report.cause(&place, error);
                 // The tokens up to the next directive belong to the unknown directive, and are
                 // skipped.
-                while tokens.peek().is_some_and(
-                    |(token, _)| !matches!(token, Token::Word(word) if is_directive(word)),
-                ) {
+                while tokens.peek_value().is_some() {
                     tokens.next();
                 }
             }
@@ -46,8 +45,10 @@ impl Builder<'_> {
     ) -> Result<(), String> {
         match word {
             "Identity" => self.state.to_world = DAffine3::IDENTITY,
-            "Translate" => self.concat(DAffine3::from_translation(vector(tokens)?))?,
-            "Scale" => self.concat(DAffine3::from_scale(vector(tokens)?))?,
+            "Translate" => self.concat(DAffine3::from_translation(DVec3::from_array(numbers(
+                tokens,
+            )?)))?,
+            "Scale" => self.concat(DAffine3::from_scale(DVec3::from_array(numbers(tokens)?)))?,
             "Rotate" => self.concat(rotation(numbers(tokens)?)?)?,
             "LookAt" => self.concat(look_at(numbers(tokens)?)?)?,
             "ConcatTransform" => self.concat(matrix(&in_brackets(tokens)?)?)?,
@@ -59,19 +60,25 @@ impl Builder<'_> {
                 numbers::<2>(tokens)?;
             }
             "WorldBegin" => self.begin_world()?,
-            "AttributeBegin" | "TransformBegin" => self.push('a', place)?,
-            "AttributeEnd" | "TransformEnd" => self.pop('a')?,
+            "AttributeBegin" | "TransformBegin" => self.push("Attribute", place)?,
+            "AttributeEnd" | "TransformEnd" => self.pop("Attribute")?,
             "ReverseOrientation" => self.state.is_reversed = !self.state.is_reversed,
             "ObjectBegin" => self.begin_object(text(tokens)?, place)?,
-            "ObjectEnd" => self.end_object()?,
+            "ObjectEnd" => self.pop("Object")?,
             "ObjectInstance" => self.instance(text(tokens)?, place)?,
-            "NamedMaterial" => self.named_material(&text(tokens)?, place),
+            "NamedMaterial" => {
+                self.state.material = MaterialOf::Named(text(tokens)?.into(), place.clone());
+            }
             "MediumInterface" => self.media(tokens, place)?,
             "ColorSpace" => color_space(&text(tokens)?)?,
             "Option" => self.option(tokens, place)?,
             "Include" | "Import" => self.include(word, &text(tokens)?, place)?,
             "Texture" => self.texture(tokens, place)?,
-            _ => self.plugin(word, tokens, place)?,
+            _ => {
+                let plugin = text(tokens)?;
+                let own = parameters(tokens, self.report);
+                self.make(word, plugin, own, place)?;
+            }
         }
         Ok(())
     }
@@ -87,24 +94,21 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Parses a directive with a plugin name and parameters.
-    fn plugin(
-        &mut self,
-        word: &str,
-        tokens: &mut Tokens<'_>,
-        place: &SourcePlace,
-    ) -> Result<(), String> {
-        let name = text(tokens)?;
-        let own = parameters(tokens, self.report);
-        self.make(word, name, own, place)
-    }
-
     fn texture(&mut self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
-        let name = text(tokens)?;
-        let kind = text(tokens)?;
-        let plugin = text(tokens)?;
+        let [name, kind, plugin] = [text(tokens)?, text(tokens)?, text(tokens)?];
         let own = parameters(tokens, self.report);
-        self.make_texture(name, &kind, plugin, own, place)
+        self.require_world("Texture", true)?;
+        let is_spectrum = kind == "spectrum";
+        if !is_spectrum && kind != "float" {
+            let kind = quoted(&kind);
+            return Err(format!("a texture of {kind}; allowed: float, spectrum"));
+        }
+        let entity = self.entity("texture", plugin, own, place, Some(4));
+        let shown = quoted(&name);
+        match self.scene.textures.insert((is_spectrum, name), entity) {
+            None => Ok(()),
+            Some(_) => Err(format!("a second {kind} texture {shown}")),
+        }
     }
 
     fn media(&self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
@@ -114,10 +118,8 @@ impl Builder<'_> {
             names.push(second.into_owned());
         }
         if let Some(name) = names.iter().find(|name| !name.is_empty()) {
-            let message = format!(
-                "medium {}: participating media are not supported",
-                quoted(name)
-            );
+            let name = quoted(name);
+            let message = format!("medium {name}: participating media are not supported");
             self.report.cause(place, message);
         }
         Ok(())
@@ -125,13 +127,10 @@ impl Builder<'_> {
 
     fn option(&self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
         let name = text(tokens)?;
-        match tokens.peek() {
-            Some((Token::Word(word), _)) if is_directive(word) => {
-                return Err("an option has no value".to_owned());
-            }
-            None => return Err("an option has no value".to_owned()),
-            Some(_) => tokens.next(),
-        };
+        if tokens.peek_value().is_none() {
+            return Err("an option has no value".to_owned());
+        }
+        tokens.next();
         let message = format!("option {} is left out", quoted(&name));
         self.report.note(place, message);
         Ok(())
@@ -170,20 +169,14 @@ fn text(tokens: &mut Tokens<'_>) -> Result<String, String> {
     }
 }
 
-fn vector(tokens: &mut Tokens<'_>) -> Result<DVec3, String> {
-    numbers(tokens).map(DVec3::from_array)
-}
-
 fn numbers<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N], String> {
     let mut all = [0.0; N];
     for value in &mut all {
-        match tokens.peek().cloned() {
-            Some((Token::Word(word), _)) if !is_directive(word) => {
-                *value = in_range(number(word)?)?;
-                tokens.next();
-            }
-            _ => return Err(format!("allowed: {N} numbers")),
-        }
+        let Some((Token::Word(word), _)) = tokens.peek_value() else {
+            return Err(format!("allowed: {N} numbers"));
+        };
+        *value = in_range(number(word)?)?;
+        tokens.next();
     }
     Ok(all)
 }

@@ -15,7 +15,9 @@ pub(super) type Read<T> = Result<T, CauseGiven>;
 
 /// A camera, light, shape or other entity that pbrt implements by a plugin.
 #[derive(Clone, Debug)]
-pub(super) struct Entity {
+pub(super) struct Entity<'a> {
+    /// Where causes of refusal are added.
+    pub(super) report: &'a Report,
     /// The name of the directive.
     pub(super) kind: &'static str,
     /// The name of the plugin.
@@ -29,10 +31,16 @@ pub(super) struct Entity {
     pub(super) is_used: Cell<bool>,
 }
 
-impl Entity {
+impl<'a> Entity<'a> {
     /// Returns the default plugin of pbrt, which is used if a file names no plugin.
-    pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
+    pub(super) fn default(
+        report: &'a Report,
+        kind: &'static str,
+        plugin: &str,
+        place: SourcePlace,
+    ) -> Self {
         Self {
+            report,
             kind,
             plugin: plugin.to_owned(),
             place,
@@ -62,21 +70,25 @@ impl Entity {
     }
 
     /// Adds a cause at a parameter.
-    pub(super) fn fault(&self, report: &Report, name: &str, message: String) -> CauseGiven {
-        report.cause(self.place_of(name), message);
+    pub(super) fn fault(&self, name: &str, message: impl Into<String>) -> CauseGiven {
+        self.report.cause(self.place_of(name), message);
+        CauseGiven
+    }
+
+    /// Adds a cause at the directive.
+    pub(super) fn refuse(&self, message: impl Into<String>) -> CauseGiven {
+        self.report.cause(&self.place, message);
         CauseGiven
     }
 
     /// Adds a cause that lists the supported plugins.
-    pub(super) fn unsupported(&self, report: &Report, allowed: &str) -> CauseGiven {
+    pub(super) fn unsupported(&self, allowed: &str) -> CauseGiven {
         let plugin = quoted(&self.plugin);
-        let message = format!(
-            "{} {plugin} is not supported; allowed: {allowed}",
-            self.kind
-        );
-        report.cause(&self.place, message);
+        let kind = self.kind;
         self.drop_all();
-        CauseGiven
+        self.refuse(format!(
+            "{kind} {plugin} is not supported; allowed: {allowed}"
+        ))
     }
 
     /// Marks all parameters as read, after a message that covers all of them.
@@ -89,12 +101,7 @@ impl Entity {
 
     /// Returns the values of a parameter, which must have one of the given types, or `None` if
     /// the parameter is missing.
-    fn values(
-        &self,
-        report: &Report,
-        name: &str,
-        kinds: &[ParameterKind],
-    ) -> Read<Option<&ParameterValues>> {
+    fn values(&self, name: &str, kinds: &[ParameterKind]) -> Read<Option<&ParameterValues>> {
         let Some(parameter) = self.find(name) else {
             return Ok(None);
         };
@@ -107,17 +114,12 @@ impl Entity {
         let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
         let (kind, names) = (parameter.kind.name(), names.join(", "));
         let message = format!("{name} is of type {kind}; allowed: {names}");
-        Err(self.fault(report, name, message))
+        Err(self.fault(name, message))
     }
 
     /// Reads all numbers of a parameter.
-    pub(super) fn numbers(
-        &self,
-        report: &Report,
-        name: &str,
-        kinds: &[ParameterKind],
-    ) -> Read<&[f64]> {
-        match self.values(report, name, kinds)? {
+    pub(super) fn numbers(&self, name: &str, kinds: &[ParameterKind]) -> Read<&[f64]> {
+        match self.values(name, kinds)? {
             Some(ParameterValues::Numbers(all)) => Ok(all),
             _ => Ok(&[]),
         }
@@ -126,98 +128,92 @@ impl Entity {
     /// Reads the `N` numbers of a parameter, if it exists.
     pub(super) fn exactly<const N: usize>(
         &self,
-        report: &Report,
         name: &str,
         kind: ParameterKind,
     ) -> Read<Option<[f64; N]>> {
         if !self.has(name) {
             return Ok(None);
         }
-        let all = self.numbers(report, name, &[kind])?;
+        let all = self.numbers(name, &[kind])?;
         match <[f64; N]>::try_from(all) {
             Ok(numbers) => Ok(Some(numbers)),
             Err(_) => {
                 let message = format!("{name} has {} numbers; allowed: {N}", all.len());
-                Err(self.fault(report, name, message))
+                Err(self.fault(name, message))
             }
         }
     }
 
-    pub(super) fn float(&self, report: &Report, name: &str) -> Read<Option<f64>> {
-        let one = self.exactly::<1>(report, name, ParameterKind::Float)?;
+    pub(super) fn float(&self, name: &str) -> Read<Option<f64>> {
+        let one = self.exactly::<1>(name, ParameterKind::Float)?;
         Ok(one.map(|[value]| value))
     }
 
-    pub(super) fn float_or(&self, report: &Report, name: &str, default: f64) -> Read<f64> {
-        Ok(self.float(report, name)?.unwrap_or(default))
+    pub(super) fn float_or(&self, name: &str, default: f64) -> Read<f64> {
+        Ok(self.float(name)?.unwrap_or(default))
     }
 
     /// Reads a number. A number outside of the range is a cause of refusal; its message states the
     /// range.
     pub(super) fn float_within(
         &self,
-        report: &Report,
         name: &str,
         default: f64,
-        (allowed, is_allowed): (&str, fn(f64) -> bool),
+        allowed: &str,
+        is_allowed: impl Fn(f64) -> bool,
     ) -> Read<f64> {
-        let value = self.float_or(report, name, default)?;
+        let value = self.float_or(name, default)?;
         match is_allowed(value) {
             true => Ok(value),
             false => {
                 let message = format!("{name} is {value}; allowed: {allowed}");
-                Err(self.fault(report, name, message))
+                Err(self.fault(name, message))
             }
         }
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "integers fit 32 bits")]
-    pub(super) fn integer_or(&self, report: &Report, name: &str, default: i64) -> Read<i64> {
-        let one = self.exactly::<1>(report, name, ParameterKind::Integer)?;
+    pub(super) fn integer_or(&self, name: &str, default: i64) -> Read<i64> {
+        let one = self.exactly::<1>(name, ParameterKind::Integer)?;
         Ok(one.map_or(default, |[value]| value as i64))
     }
 
-    pub(super) fn truth(&self, report: &Report, name: &str, default: bool) -> Read<bool> {
-        match self.values(report, name, &[ParameterKind::Bool])? {
+    pub(super) fn truth(&self, name: &str, default: bool) -> Read<bool> {
+        match self.values(name, &[ParameterKind::Bool])? {
             None => Ok(default),
             Some(ParameterValues::Truths(all)) if all.len() == 1 => Ok(all[0]),
-            Some(_) => Err(self.fault(report, name, format!("{name} is not one boolean"))),
+            Some(_) => Err(self.fault(name, format!("{name} is not one boolean"))),
         }
     }
 
     /// Reads all strings of a parameter.
-    pub(super) fn texts(&self, report: &Report, name: &str) -> Read<&[String]> {
-        match self.values(report, name, &[ParameterKind::Text])? {
+    pub(super) fn texts(&self, name: &str) -> Read<&[String]> {
+        match self.values(name, &[ParameterKind::Text])? {
             Some(ParameterValues::Texts(all)) => Ok(all),
             _ => Ok(&[]),
         }
     }
 
     /// Reads the name of the texture in a parameter of type texture.
-    pub(super) fn texture_name(&self, report: &Report, name: &str) -> Read<&str> {
-        match self.values(report, name, &[ParameterKind::Texture])? {
+    pub(super) fn texture_name(&self, name: &str) -> Read<&str> {
+        match self.values(name, &[ParameterKind::Texture])? {
             Some(ParameterValues::Texts(all)) if all.len() == 1 => Ok(&all[0]),
-            _ => Err(self.fault(report, name, format!("{name} is not one texture"))),
+            _ => Err(self.fault(name, format!("{name} is not one texture"))),
         }
     }
 
     /// Reads the only string of a parameter, if it exists.
-    pub(super) fn text(&self, report: &Report, name: &str) -> Read<Option<&str>> {
-        match self.texts(report, name)? {
+    pub(super) fn text(&self, name: &str) -> Read<Option<&str>> {
+        match self.texts(name)? {
             [] if !self.has(name) => Ok(None),
             [one] => Ok(Some(one)),
-            _ => Err(self.fault(report, name, format!("{name} is not one string"))),
+            _ => Err(self.fault(name, format!("{name} is not one string"))),
         }
     }
 
     /// Reads one of several keywords, of which the first is the default.
-    pub(super) fn choice<T: Copy>(
-        &self,
-        report: &Report,
-        name: &str,
-        allowed: &[(&str, T)],
-    ) -> Read<T> {
-        let word = self.text(report, name)?;
+    pub(super) fn choice<T: Copy>(&self, name: &str, allowed: &[(&str, T)]) -> Read<T> {
+        let word = self.text(name)?;
         let found = allowed
             .iter()
             .find(|(known, _)| word.is_none_or(|word| word == *known));
@@ -225,28 +221,23 @@ impl Entity {
             let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
             let word = quoted(word.unwrap_or_default());
             let message = format!("{name} is {word}; allowed: {}", words.join(", "));
-            self.fault(report, name, message)
+            self.fault(name, message)
         })
     }
 
-    pub(super) fn point_or(&self, report: &Report, name: &str, default: DVec3) -> Read<DVec3> {
-        let found = self.exactly::<3>(report, name, ParameterKind::Point3)?;
+    pub(super) fn point_or(&self, name: &str, default: DVec3) -> Read<DVec3> {
+        let found = self.exactly::<3>(name, ParameterKind::Point3)?;
         Ok(found.map_or(default, DVec3::from))
     }
 
-    pub(super) fn points(
-        &self,
-        report: &Report,
-        name: &str,
-        kind: ParameterKind,
-    ) -> Read<Vec<DVec3>> {
-        let all = self.numbers(report, name, &[kind])?.chunks_exact(3);
+    pub(super) fn points(&self, name: &str, kind: ParameterKind) -> Read<Vec<DVec3>> {
+        let all = self.numbers(name, &[kind])?.chunks_exact(3);
         Ok(all.map(DVec3::from_slice).collect())
     }
 
-    pub(super) fn pairs(&self, report: &Report, name: &str) -> Read<Vec<DVec2>> {
+    pub(super) fn pairs(&self, name: &str) -> Read<Vec<DVec2>> {
         let kinds = [ParameterKind::Point2, ParameterKind::Vector2];
-        let all = self.numbers(report, name, &kinds)?.chunks_exact(2);
+        let all = self.numbers(name, &kinds)?.chunks_exact(2);
         Ok(all.map(DVec2::from_slice).collect())
     }
 }

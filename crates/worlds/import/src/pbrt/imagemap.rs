@@ -4,6 +4,7 @@ use super::entity::{Entity, Read};
 use super::keys::Uv;
 use super::reader::PbrtReader;
 use super::texture::Ask;
+use crate::files::has_extension;
 use crate::pictures::TransferCurve;
 use crate::report::quoted;
 use crate::spectrum::Role;
@@ -14,14 +15,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl PbrtReader<'_> {
-    pub(super) fn imagemap(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
-        let report = self.report;
+    pub(super) fn imagemap(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         let to_uv = self.mapping(entity, uv);
         let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp)];
-        let wrap = entity.choice(report, "wrap", &wraps);
+        let wrap = entity.choice("wrap", &wraps);
         let filter = self.filter(entity);
-        let scale = entity.float_or(report, "scale", 1.0);
-        let inverts = entity.truth(report, "invert", false);
+        let scale = entity.float_or("scale", 1.0);
+        let inverts = entity.truth("invert", false);
         let pixels = self.texels(entity)?;
         let (scale, inverts) = (scale?, inverts?);
         let clamps = ask == Ask::Spectrum(Role::Reflectance);
@@ -30,8 +30,7 @@ impl PbrtReader<'_> {
             let v = if inverts { 1.0 - v } else { v }.max(0.0);
             if clamps { v.min(1.0) } else { v }
         };
-        let is_changed = pixels.values().iter().any(|v| (of(*v) - v).abs() > 0.0);
-        let pixels = match is_changed {
+        let pixels = match pixels.values().iter().any(|v| (of(*v) - v).abs() > 0.0) {
             true => self.mapped_pixels(entity, &pixels, of)?,
             false => pixels,
         };
@@ -47,7 +46,7 @@ impl PbrtReader<'_> {
         }))
     }
 
-    fn filter(&self, entity: &Entity) -> Read<Filter> {
+    fn filter(&self, entity: &Entity<'_>) -> Read<Filter> {
         let filters = [
             ("bilinear", (Filter::Bilinear, false)),
             ("point", (Filter::Nearest, false)),
@@ -55,7 +54,7 @@ impl PbrtReader<'_> {
             ("ewa", (Filter::Bilinear, true)),
             ("EWA", (Filter::Bilinear, true)),
         ];
-        let (filter, is_near) = entity.choice(self.report, "filter", &filters)?;
+        let (filter, is_near) = entity.choice("filter", &filters)?;
         if is_near {
             let message =
                 "filter is approximated by bilinear interpolation of the picture at its full size";
@@ -64,32 +63,40 @@ impl PbrtReader<'_> {
         Ok(filter)
     }
 
-    fn texels(&mut self, entity: &Entity) -> Read<Arc<Raster>> {
-        let is_png = |name: &str| {
-            let extension = Path::new(name).extension();
-            extension.is_some_and(|e| e.eq_ignore_ascii_case("png"))
-        };
+    fn texels(&mut self, entity: &Entity<'_>) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
-        let curve = match entity.text(self.report, "encoding")? {
-            None if is_png(name) => TransferCurve::Srgb,
-            None | Some("linear") => TransferCurve::Linear,
+        let curve = match entity.text("encoding")? {
+            None => default_curve(name),
+            Some("linear") => TransferCurve::Linear,
             Some("sRGB") => TransferCurve::Srgb,
             Some(other) => gamma(other).ok_or_else(|| {
                 let other = quoted(other);
                 let message = format!("encoding is {other}; allowed: linear, sRGB, gamma NUMBER");
-                entity.fault(self.report, "encoding", message)
+                entity.fault("encoding", message)
             })?,
         };
         self.picture(entity, curve)
     }
 
     /// Returns the picture given by `filename`.
-    pub(super) fn picture(&mut self, entity: &Entity, curve: TransferCurve) -> Read<Arc<Raster>> {
+    pub(super) fn picture(
+        &mut self,
+        entity: &Entity<'_>,
+        curve: TransferCurve,
+    ) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);
         let read =
             found.and_then(|path| self.pictures.read_by(self.files, &path, self.color, curve));
         read.map_err(|error| self.unread(entity, name, &error))
+    }
+}
+
+/// Returns the curve of a picture whose encoding is not given: only PNG files are sRGB.
+pub(super) fn default_curve(name: &str) -> TransferCurve {
+    match has_extension(Path::new(name), "png") {
+        true => TransferCurve::Srgb,
+        false => TransferCurve::Linear,
     }
 }
 

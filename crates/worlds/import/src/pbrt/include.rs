@@ -2,7 +2,7 @@
 
 use super::build::{Builder, DEEPEST_FILES, MOST_FILES};
 use super::token::Tokens;
-use crate::files::{Files, text};
+use crate::files::{Files, has_extension, text};
 use crate::report::{SourcePlace, quoted};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
@@ -18,10 +18,11 @@ impl Builder<'_> {
         name: &str,
         place: &SourcePlace,
     ) -> Result<(), String> {
-        let path = self.files.find(std::slice::from_ref(&self.folder), name);
-        let path = path.map_err(|error| format!("file {} {error}", quoted(name)))?;
+        let told = |error: String| format!("file {} {error}", quoted(name));
+        let folders = std::slice::from_ref(&self.folder);
+        let path = self.files.find(folders, name).map_err(told)?;
         if self.open.contains(&path) {
-            return Err(format!("file {} includes itself", quoted(name)));
+            return Err(told("includes itself".to_owned()));
         }
         if self.open.len() >= DEEPEST_FILES {
             return Err(format!(
@@ -36,10 +37,10 @@ impl Builder<'_> {
                 false => Ok(()),
             };
         }
-        let text = read(self.files, &path).map_err(|e| format!("file {} {e}", quoted(name)))?;
+        let text = read(self.files, &path).map_err(told)?;
         let before = (word == "Import").then(|| (self.state.clone(), self.stack.len()));
         if before.is_some() {
-            self.within_world(word)?;
+            self.require_world(word, true)?;
         }
         self.open.push(path);
         self.follow(&mut Tokens::new(&text, name));
@@ -47,10 +48,8 @@ impl Builder<'_> {
         if let Some((state, level)) = before {
             self.refuse_open(level);
             if self.stack.len() < level {
-                self.report.cause(
-                    place,
-                    format!("file {} closes more blocks than it opens", quoted(name)),
-                );
+                let message = told("closes more blocks than it opens".to_owned());
+                self.report.cause(place, message);
             }
             self.state = state;
         }
@@ -66,10 +65,7 @@ pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
 /// Returns the bytes of a file, unpacked if its name ends in .gz.
 pub(super) fn bytes(files: &Files, path: &Path) -> Result<Vec<u8>, String> {
     let packed = files.read(path)?;
-    if path
-        .extension()
-        .is_none_or(|e| !e.eq_ignore_ascii_case("gz"))
-    {
+    if !has_extension(path, "gz") {
         return Ok(packed);
     }
     let most = files.left();

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 
 /// Adds a note for each parameter that was not read, and for each object that is not in the world.
-pub(super) fn tell(scene: &PbrtScene, report: &Report) {
+pub(super) fn tell(scene: &PbrtScene<'_>, report: &Report) {
     let camera = scene.camera.iter().map(|(camera, _)| camera);
     let lights = scene.lights.iter().map(|(light, _)| light);
     let all = camera
@@ -34,7 +34,7 @@ pub(super) fn tell(scene: &PbrtScene, report: &Report) {
     parameters(&scene.defaults, "attributes", report);
 }
 
-fn entity_left(entity: &Entity, report: &Report) {
+fn entity_left(entity: &Entity<'_>, report: &Report) {
     let plugin = quoted(&entity.plugin);
     let name = match entity.plugin.as_str() {
         "" => entity.kind.to_owned(),

@@ -2,11 +2,12 @@
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::keys::Uv;
+use super::parameter::ParameterKind;
 use super::reader::PbrtReader;
 use super::scene::MaterialOf;
 use super::texture::Ask;
 use crate::range::MAX_SHARE;
-use crate::report::quoted;
+use crate::report::{SourcePlace, quoted};
 use crate::spectrum::Role;
 use etendue_world::{
     Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
@@ -39,7 +40,7 @@ impl PbrtReader<'_> {
                 Some(number) => *number,
                 None => {
                     let message = format!("material {} is not known", quoted(name));
-                    self.cause_once(place, message);
+                    self.cause_once(place, &message);
                     return Err(CauseGiven);
                 }
             },
@@ -63,8 +64,8 @@ impl PbrtReader<'_> {
         made
     }
 
-    fn cause_once(&self, place: &crate::report::SourcePlace, message: String) {
-        if self.is_first(place, &message) {
+    fn cause_once(&self, place: &SourcePlace, message: &str) {
+        if self.is_first(place, message) {
             self.report.cause(place, message);
         }
     }
@@ -74,23 +75,23 @@ impl PbrtReader<'_> {
         self.world.materials.len() - 1
     }
 
-    fn make_material(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Material>> {
+    fn make_material(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Option<Material>> {
         entity.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS || self.depth > MAX_DEPTH {
             let message = "the material contains itself, or too many materials are nested";
-            self.cause_once(&entity.place, message.to_owned());
+            self.cause_once(&entity.place, message);
             return Err(CauseGiven);
         }
         for name in ["displacement", "normalmap"] {
             if entity.has(name) {
                 let message = format!("{name} is not supported: normals are those of the shape");
-                return Err(entity.fault(self.report, name, message));
+                return Err(entity.fault(name, message));
             }
         }
         // A named material has its type in a parameter.
         let plugin = match entity.plugin.as_str() {
-            "" => entity.text(self.report, "type")?.unwrap_or_default(),
+            "" => entity.text("type")?.unwrap_or_default(),
             plugin => plugin,
         };
         Ok(Some(match plugin {
@@ -105,20 +106,16 @@ impl PbrtReader<'_> {
             "thindielectric" => Material::Dielectric(self.dielectric(entity, true, uv)?),
             "mix" => self.mixed(entity, uv)?,
             other => {
-                let message = format!(
-                    "material {} is not supported; allowed: {ALLOWED}",
-                    quoted(other)
-                );
-                self.report.cause(&entity.place, message);
+                let other = quoted(other);
                 entity.drop_all();
-                return Err(CauseGiven);
+                let message = format!("material {other} is not supported; allowed: {ALLOWED}");
+                return Err(entity.refuse(message));
             }
         }))
     }
 
-    fn translucent(&mut self, entity: &Entity, uv: Uv) -> Read<Material> {
-        let one: (_, fn(f64) -> bool) = ("1", |scale| (scale - 1.0).abs() <= 0.0);
-        let scale = entity.float_within(self.report, "scale", 1.0, one);
+    fn translucent(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Material> {
+        let scale = entity.float_within("scale", 1.0, "1", |scale| (scale - 1.0).abs() <= 0.0);
         let reflectance = self.albedo_or(entity, "reflectance", 0.25, uv);
         let transmittance = self.albedo_or(entity, "transmittance", 0.25, uv);
         scale?;
@@ -127,7 +124,7 @@ impl PbrtReader<'_> {
         if sum > MAX_SHARE {
             let message =
                 format!("reflectance and transmittance together go up to {sum}; allowed: 0 to 1");
-            return Err(entity.fault(self.report, "transmittance", message));
+            return Err(entity.fault("transmittance", message));
         }
         Ok(Material::DiffuseTransmission {
             reflectance,
@@ -135,7 +132,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn conductor(&mut self, entity: &Entity, uv: Uv) -> Read<Conductor> {
+    fn conductor(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Conductor> {
         let index = self.metal(entity);
         let roughness = self.roughness(entity, uv);
         Ok(Conductor {
@@ -147,13 +144,12 @@ impl PbrtReader<'_> {
 
     /// Returns n and k. If the file states a reflectance instead, n is 1, and k gives this
     /// reflectance at normal incidence.
-    fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
+    fn metal(&mut self, entity: &Entity<'_>) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
             if entity.has("eta") || entity.has("k") {
-                let message =
-                    "reflectance is given together with eta or k; allowed: one of them".to_owned();
-                return Err(entity.fault(self.report, "reflectance", message));
+                let message = "reflectance is given together with eta or k; allowed: one of them";
+                return Err(entity.fault("reflectance", message));
             }
             let share = self.constant_or(entity, "reflectance", ALBEDO, 1.0)?;
             let share = share.clamp(0.0, 0.9999);
@@ -166,7 +162,7 @@ impl PbrtReader<'_> {
         Ok([n?, k?])
     }
 
-    fn coated(&mut self, entity: &Entity, uv: Uv) -> Read<Plastic> {
+    fn coated(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Plastic> {
         let message = "approximated: the material is a plastic, whose rough coat does not blur the light from the base; pbrt-v4 traces random walks between the layers";
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
@@ -177,7 +173,7 @@ impl PbrtReader<'_> {
         }
         if albedo? > 0.0 {
             let message = "a medium between the layers is not supported; allowed: albedo 0";
-            return Err(entity.fault(self.report, "albedo", message.to_owned()));
+            return Err(entity.fault("albedo", message));
         }
         let index = self.index(entity);
         let diffuse = self.albedo_or(entity, "reflectance", 0.5, uv);
@@ -191,7 +187,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn dielectric(&mut self, entity: &Entity, is_thin: bool, uv: Uv) -> Read<Dielectric> {
+    fn dielectric(&mut self, entity: &Entity<'_>, is_thin: bool, uv: Uv) -> Read<Dielectric> {
         let index = self.index(entity);
         let roughness = match is_thin {
             true => Ok(None),
@@ -208,33 +204,27 @@ impl PbrtReader<'_> {
 
     /// Returns the ratio of the index of refraction behind the surface to the index on the side
     /// of the normal.
-    fn index(&mut self, entity: &Entity) -> Read<f64> {
-        let is_float =
-            |p: &super::parameter::PbrtParameter| p.kind == super::parameter::ParameterKind::Float;
+    fn index(&mut self, entity: &Entity<'_>) -> Read<f64> {
         let index = match entity.find("eta") {
-            Some(parameter) if !is_float(parameter) => {
+            Some(parameter) if parameter.kind != ParameterKind::Float => {
                 let message = "approximated: eta is the same at all wavelengths";
                 self.note_once(&parameter.place, message);
-                let found = self.number_of(entity, "eta", Role::Number)?;
-                found.unwrap_or(1.5)
+                self.number_of(entity, "eta", Role::Number)?.unwrap_or(1.5)
             }
-            _ => entity.float_or(self.report, "eta", 1.5)?,
+            _ => entity.float_or("eta", 1.5)?,
         };
         match index > 0.0 {
             true => Ok(index),
-            false => {
-                let message = format!("eta is {index}; allowed: above 0");
-                Err(entity.fault(self.report, "eta", message))
-            }
+            false => Err(entity.fault("eta", format!("eta is {index}; allowed: above 0"))),
         }
     }
 
-    fn mixed(&mut self, entity: &Entity, uv: Uv) -> Read<Material> {
+    fn mixed(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Material> {
         let weight = self.texture_or(entity, "amount", Ask::Float, 0.5, uv);
-        let names = entity.texts(self.report, "materials")?;
+        let names = entity.texts("materials")?;
         let [first, second] = names else {
             let message = format!("a mix has {} materials; allowed: 2", names.len());
-            return Err(entity.fault(self.report, "materials", message));
+            return Err(entity.fault("materials", message));
         };
         let [first, second] = [first, second].map(|name| self.part(entity, name, uv));
         Ok(Material::Blend {
@@ -243,11 +233,11 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn part(&mut self, entity: &Entity, name: &str, uv: Uv) -> Read<Material> {
+    fn part(&mut self, entity: &Entity<'_>, name: &str, uv: Uv) -> Read<Material> {
         let known = self.scene.named.get(name);
         let fault = |what: &str| {
             let message = format!("material {} {what}", quoted(name));
-            entity.fault(self.report, "materials", message)
+            entity.fault("materials", message)
         };
         let Some(of) = known.and_then(|number| self.scene.materials.get(*number)) else {
             return Err(fault("is not known"));
@@ -255,18 +245,16 @@ impl PbrtReader<'_> {
         self.depth += 1;
         let made = self.make_material(of, uv);
         self.depth -= 1;
-        made?.ok_or_else(|| {
-            let message = format!("material {} does not describe a surface", quoted(name));
-            entity.fault(self.report, "materials", message)
-        })
+        made?.ok_or_else(|| fault("does not describe a surface"))
     }
 
     /// Returns the roughness, or `None` for a smooth surface.
-    fn roughness(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Roughness>> {
-        let remaps = entity.truth(self.report, "remaproughness", true);
-        let names = ["uroughness", "vroughness"];
-        let names = names.map(|name| if entity.has(name) { name } else { "roughness" });
-        let both = names.map(|name| self.texture_or(entity, name, Ask::Float, 0.0, uv));
+    fn roughness(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Option<Roughness>> {
+        let remaps = entity.truth("remaproughness", true);
+        let both = ["uroughness", "vroughness"].map(|name| {
+            let name = if entity.has(name) { name } else { "roughness" };
+            self.texture_or(entity, name, Ask::Float, 0.0, uv)
+        });
         let remaps = remaps?;
         let alpha = |v: f64| if remaps { v.max(0.0).sqrt() } else { v };
         let [u, v] = both;
@@ -276,21 +264,16 @@ impl PbrtReader<'_> {
                 "approximated: pixels of a roughness are remapped before they are interpolated";
             self.note_once(entity.place_of("remaproughness"), message);
         }
-        let alpha = [
-            self.mapped(entity, u, alpha)?,
-            self.mapped(entity, v, alpha)?,
-        ];
-        if alpha.iter().all(|alpha| alpha.largest() < SMOOTH) {
+        let [u, v] = [u, v].map(|texture| self.mapped(entity, texture, alpha));
+        let [u, v] = [u?, v?];
+        if u.largest().max(v.largest()) < SMOOTH {
             return Ok(None);
         }
-        let [u, v] = alpha;
         let rough = |v: f64| v.max(1e-4);
+        let [u, v] = [u, v].map(|texture| self.mapped(entity, texture, rough));
         Ok(Some(Roughness {
             distribution: MicrofacetDistribution::Ggx,
-            alpha: [
-                self.mapped(entity, u, rough)?,
-                self.mapped(entity, v, rough)?,
-            ],
+            alpha: [u?, v?],
         }))
     }
 }

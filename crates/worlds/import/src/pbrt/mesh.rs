@@ -5,6 +5,7 @@ use super::include;
 use super::parameter::ParameterKind;
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
+use crate::files::has_extension;
 use crate::meshes::{MeshParts, NO_AREA};
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
@@ -30,7 +31,7 @@ pub(super) struct PbrtMesh {
 }
 
 impl PbrtReader<'_> {
-    pub(super) fn mesh(&mut self, shape: &PbrtShape, needs_uv: bool) -> Read<PbrtMesh> {
+    pub(super) fn mesh(&mut self, shape: &PbrtShape<'_>, needs_uv: bool) -> Read<PbrtMesh> {
         let entity = &shape.entity;
         let (triangles, each) = match entity.plugin.as_str() {
             "trianglemesh" => (self.triangle_mesh(entity, needs_uv)?, 1),
@@ -42,10 +43,10 @@ impl PbrtReader<'_> {
         Ok(PbrtMesh { triangles, area })
     }
 
-    fn ply(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
+    fn ply(&mut self, entity: &Entity<'_>, needs_uv: bool) -> Read<Arc<Triangles>> {
         if entity.has("displacement") {
-            let message = "displacement of a mesh is not supported".to_owned();
-            return Err(entity.fault(self.report, "displacement", message));
+            let message = "displacement of a mesh is not supported";
+            return Err(entity.fault("displacement", message));
         }
         let name = self.file_name(entity)?;
         let unread = |error: &String| self.unread(entity, name, error);
@@ -56,27 +57,18 @@ impl PbrtReader<'_> {
         }
         let parts = self.ply_parts(&key.0);
         let made = parts.and_then(|parts| self.finish(parts, needs_uv));
-        let made = made.map_err(|error| self.unread_once(entity, name, error));
+        let made = made.inspect_err(|error| {
+            unread(error);
+        });
         self.meshes.insert(key, made.clone());
         made.map_err(|_| CauseGiven)
     }
 
-    /// Adds a cause for a file that cannot be used, and returns an error. The error is cached, so
-    /// that the cause is added only once.
-    fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
-        self.unread(entity, name, &error);
-        error
-    }
-
     fn ply_parts(&self, path: &Path) -> Result<MeshParts, String> {
         let bytes = include::bytes(self.files, path)?;
-        let is_gz = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("gz"));
-        let inner = if is_gz {
-            path.with_extension("")
-        } else {
-            path.to_owned()
+        let inner = match has_extension(path, "gz") {
+            true => path.with_extension(""),
+            false => path.to_owned(),
         };
         let extension = inner.extension().unwrap_or_default();
         if !extension.eq_ignore_ascii_case("ply") {
@@ -88,50 +80,36 @@ impl PbrtReader<'_> {
             .map_err(|fault| format!("is not a valid mesh: {fault}"))
     }
 
-    fn triangle_mesh(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
-        let (vertices, indices) = self.indexed::<3>(entity)?;
-        let parts = MeshParts {
-            normals: self.beside(entity, "N", &vertices, |e, r| {
-                e.points(r, "N", ParameterKind::Normal)
-            })?,
-            uvs: self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?,
-            vertices,
-            corners: indices,
-        };
+    fn triangle_mesh(&mut self, entity: &Entity<'_>, needs_uv: bool) -> Read<Arc<Triangles>> {
+        let (mut parts, corners) = self.indexed::<3>(entity)?;
+        parts.corners = corners;
         self.made(entity, parts, needs_uv)
     }
 
     /// Converts bilinear patches to meshes with two triangles for each patch.
-    fn bilinear(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
-        let (vertices, patches) = self.indexed::<4>(entity)?;
-        let normals = self.beside(entity, "N", &vertices, |e, r| {
-            e.points(r, "N", ParameterKind::Normal)
-        })?;
-        let uvs = self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?;
+    fn bilinear(&mut self, entity: &Entity<'_>, needs_uv: bool) -> Read<Arc<Triangles>> {
+        let (shared, patches) = self.indexed::<4>(entity)?;
         let mut parts = MeshParts {
             vertices: Vec::new(),
             corners: Vec::new(),
-            normals: normals.as_ref().map(|_| Vec::new()),
+            normals: shared.normals.as_ref().map(|_| Vec::new()),
             uvs: Some(Vec::new()),
         };
         for patch in patches {
             let at = patch.map(|i| i as usize);
-            self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
+            let corners = at.map(|i| shared.vertices[i]);
+            self.check_patch(entity, corners, needs_uv)?;
             // The number of vertices is below 2³², since each index of the file gives one vertex.
             let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
-            parts.vertices.extend(at.map(|i| vertices[i]));
-            if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
+            parts.vertices.extend(corners);
+            if let (Some(to), Some(of)) = (&mut parts.normals, &shared.normals) {
                 to.extend(at.map(|i| of[i]));
             }
-            let uv = |k: usize| uvs.as_ref().map_or(PATCH[k], |uvs| uvs[at[k]]);
-            parts
-                .uvs
-                .get_or_insert_default()
-                .extend([0, 1, 2, 3].map(uv));
-            let triangles = [[0, 1, 3], [0, 3, 2]];
-            parts
-                .corners
-                .extend(triangles.map(|t| t.map(|k: u32| first + k)));
+            let uv = |k: usize| shared.uvs.as_ref().map_or(PATCH[k], |uvs| uvs[at[k]]);
+            let uvs = parts.uvs.get_or_insert_default();
+            uvs.extend([0, 1, 2, 3].map(uv));
+            let triangles = [[0, 1, 3], [0, 3, 2]].map(|t| t.map(|k: u32| first + k));
+            parts.corners.extend(triangles);
         }
         self.made(entity, parts, needs_uv)
     }
@@ -139,13 +117,18 @@ impl PbrtReader<'_> {
     /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a cause
     /// of refusal. A planar patch that is not a parallelogram gets a note, because texture
     /// coordinates inside the patch differ from pbrt's.
-    fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
+    fn check_patch(
+        &self,
+        entity: &Entity<'_>,
+        [a, b, c, d]: [DVec3; 4],
+        needs_uv: bool,
+    ) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
         let size = along.length().max(across.length()).max(diagonal.length());
         let volume = along.cross(across).dot(diagonal).abs();
         if volume > FLAT * size * size * size {
-            let message = "a patch is not flat; allowed: flat patches".to_owned();
-            return Err(entity.fault(self.report, "P", message));
+            let message = "a patch is not flat; allowed: flat patches";
+            return Err(entity.fault("P", message));
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
             let message = "approximated: a patch that is not a parallelogram has the texture coordinates of two triangles";
@@ -154,63 +137,48 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Reads the positions of the vertices, and the indices of each face of `N` corners.
-    fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
-        let report = self.report;
-        let vertices = entity.points(report, "P", ParameterKind::Point3)?;
-        let indices = entity.numbers(report, "indices", &[ParameterKind::Integer])?;
-        if indices.is_empty() && vertices.len() == N {
-            #[expect(clippy::cast_possible_truncation, reason = "3 or 4")]
-            let all = std::array::from_fn(|i| i as u32);
-            return Ok((vertices, vec![all]));
-        }
-        if indices.is_empty() || !indices.len().is_multiple_of(N) {
-            let count = indices.len();
-            let message = format!("{count} indices are given; allowed: {N} for each face");
-            return Err(entity.fault(report, "indices", message));
-        }
-        let count = vertices.len() as f64;
-        if let Some(wrong) = indices.iter().find(|i| !(0.0..count).contains(*i)) {
-            let message = format!("an index is {wrong}, but there are only {count} vertices");
-            return Err(entity.fault(report, "indices", message));
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "each number is the index of a vertex"
-        )]
-        let face = |face: &[f64]| std::array::from_fn(|k| face[k] as u32);
-        Ok((vertices, indices.chunks_exact(N).map(face).collect()))
+    /// Reads the vertices with their attributes, and the indices of each face of `N` corners.
+    fn indexed<const N: usize>(&self, entity: &Entity<'_>) -> Read<(MeshParts, Vec<[u32; N]>)> {
+        let vertices = entity.points("P", ParameterKind::Point3)?;
+        let indices = entity.numbers("indices", &[ParameterKind::Integer])?;
+        let faces = faces(entity, indices, vertices.len())?;
+        let parts = MeshParts {
+            normals: self.beside(
+                entity,
+                "N",
+                &vertices,
+                entity.points("N", ParameterKind::Normal)?,
+            ),
+            uvs: self.beside(entity, "uv", &vertices, entity.pairs("uv")?),
+            vertices,
+            corners: Vec::new(),
+        };
+        Ok((parts, faces))
     }
 
-    /// Reads an attribute of the vertices. As in pbrt, an attribute with a wrong number of values
+    /// Returns an attribute of the vertices. As in pbrt, an attribute with a wrong number of values
     /// is left out.
     fn beside<T>(
         &self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         name: &str,
         vertices: &[DVec3],
-        read: impl Fn(&Entity, &crate::report::Report) -> Read<Vec<T>>,
-    ) -> Read<Option<Vec<T>>> {
-        let all = read(entity, self.report)?;
+        all: Vec<T>,
+    ) -> Option<Vec<T>> {
         if all.len() != vertices.len() && !all.is_empty() {
             let (found, count) = (all.len(), vertices.len());
             let message = format!(
                 "{name} is left out: the mesh has {count} vertices, but {name} has values for {found}"
             );
             self.note_once(entity.place_of(name), &message);
-            return Ok(None);
+            return None;
         }
-        Ok((!all.is_empty()).then_some(all))
+        (!all.is_empty()).then_some(all)
     }
 
-    fn made(&self, entity: &Entity, parts: MeshParts, needs_uv: bool) -> Read<Arc<Triangles>> {
+    fn made(&self, entity: &Entity<'_>, parts: MeshParts, needs_uv: bool) -> Read<Arc<Triangles>> {
         let made = self.finish(parts, needs_uv);
-        made.map_err(|error| {
-            self.report
-                .cause(&entity.place, format!("the mesh {error}"));
-            CauseGiven
-        })
+        made.map_err(|error| entity.refuse(format!("the mesh {error}")))
     }
 
     fn finish(&self, mut parts: MeshParts, needs_uv: bool) -> Result<Arc<Triangles>, String> {
@@ -226,6 +194,36 @@ impl PbrtReader<'_> {
         let made = parts.finish().map(Arc::new);
         made.ok_or_else(|| NO_AREA.to_owned())
     }
+}
+
+/// Returns the indices of each face of `N` corners, among `count` vertices.
+fn faces<const N: usize>(
+    entity: &Entity<'_>,
+    indices: &[f64],
+    count: usize,
+) -> Read<Vec<[u32; N]>> {
+    if indices.is_empty() && count == N {
+        #[expect(clippy::cast_possible_truncation, reason = "3 or 4")]
+        let all = std::array::from_fn(|i| i as u32);
+        return Ok(vec![all]);
+    }
+    if indices.is_empty() || !indices.len().is_multiple_of(N) {
+        let count = indices.len();
+        let message = format!("{count} indices are given; allowed: {N} for each face");
+        return Err(entity.fault("indices", message));
+    }
+    let count = count as f64;
+    if let Some(wrong) = indices.iter().find(|i| !(0.0..count).contains(*i)) {
+        let message = format!("an index is {wrong}, but there are only {count} vertices");
+        return Err(entity.fault("indices", message));
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "each number is the index of a vertex"
+    )]
+    let face = |face: &[f64]| std::array::from_fn(|k| face[k] as u32);
+    Ok(indices.chunks_exact(N).map(face).collect())
 }
 
 /// Returns the triangles without shared vertices, and with pbrt's default texture coordinates.

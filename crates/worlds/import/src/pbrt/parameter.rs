@@ -1,7 +1,6 @@
 //! Parsing of parameter lists, such as `"float radius" 2`.
 
-use super::token::{LineColumn, Token, Tokens, number};
-use super::words::is_directive;
+use super::token::{Token, Tokens, number};
 use crate::range::MAX_NUMBER;
 use crate::report::{Report, SourcePlace, quoted};
 use std::cell::Cell;
@@ -113,86 +112,54 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Pbr
 
 /// Parses one value, or a list of values in brackets.
 fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> ParameterValues {
-    let mut list = List::default();
-    match tokens.peek().cloned() {
-        Some((Token::Open, _)) => {
-            tokens.next();
-            loop {
-                match tokens.peek().cloned() {
-                    Some((Token::Close, _)) => {
-                        tokens.next();
-                        return list.finish();
-                    }
-                    Some((Token::Word(word), _)) if is_directive(word) => break,
-                    Some((token, at)) => {
-                        tokens.next();
-                        list.add(token, at, tokens, report);
-                    }
-                    None => break,
-                }
-            }
-            report.cause(place, "a list does not end with ]");
+    let mut found = None;
+    let is_list = matches!(tokens.peek(), Some((Token::Open, _)));
+    if is_list {
+        tokens.next();
+    }
+    loop {
+        let Some((token, at)) = tokens.peek_value() else {
+            let fault = match is_list {
+                true => "a list does not end with ]",
+                false => "a parameter has no value",
+            };
+            report.cause(place, fault);
             return ParameterValues::Broken;
-        }
-        Some((Token::Word(word), _)) if is_directive(word) => {}
-        Some((token, at)) => {
-            tokens.next();
-            list.add(token, at, tokens, report);
-            return list.finish();
-        }
-        None => {}
-    }
-    report.cause(place, "a parameter has no value");
-    ParameterValues::Broken
-}
-
-/// Values of one type, collected in order.
-#[derive(Default)]
-struct List {
-    found: Option<ParameterValues>,
-}
-
-impl List {
-    fn add(&mut self, token: Token<'_>, at: LineColumn, tokens: &Tokens<'_>, report: &Report) {
-        let error = match (self.found.as_mut(), token) {
-            // One message for each faulty parameter is sufficient.
-            (Some(ParameterValues::Broken), _) => return,
-            (_, Token::Broken(what)) => what.to_owned(),
-            (_, Token::Open | Token::Close) => "a bracket stands in place of a value".to_owned(),
-            (None, Token::Text(text)) => {
-                self.found = Some(ParameterValues::Texts(vec![text.into_owned()]));
-                return;
-            }
-            (Some(ParameterValues::Texts(all)), Token::Text(text)) => {
-                return all.push(text.into_owned());
-            }
-            (None, Token::Word(word @ ("true" | "false"))) => {
-                self.found = Some(ParameterValues::Truths(vec![word == "true"]));
-                return;
-            }
-            (Some(ParameterValues::Truths(all)), Token::Word(word @ ("true" | "false"))) => {
-                return all.push(word == "true");
-            }
-            (None, Token::Word(word)) => match number(word) {
-                Ok(value) => {
-                    self.found = Some(ParameterValues::Numbers(vec![value]));
-                    return;
-                }
-                Err(error) => error,
-            },
-            (Some(ParameterValues::Numbers(all)), Token::Word(word)) => match number(word) {
-                Ok(value) => return all.push(value),
-                Err(error) => error,
-            },
-            (Some(_), _) => "a list has values of different types".to_owned(),
         };
-        report.cause(&tokens.place(at), error);
-        self.found = Some(ParameterValues::Broken);
+        tokens.next();
+        let is_end = is_list && token == Token::Close;
+        if !is_end && let Err(error) = add(&mut found, token) {
+            report.cause(&tokens.place(at), error);
+            found = Some(ParameterValues::Broken);
+        }
+        if is_end || !is_list {
+            return found.unwrap_or(ParameterValues::Numbers(Vec::new()));
+        }
     }
+}
 
-    fn finish(self) -> ParameterValues {
-        self.found.unwrap_or(ParameterValues::Numbers(Vec::new()))
+/// Adds a value to values of one type; `Err` describes a fault.
+fn add(found: &mut Option<ParameterValues>, token: Token<'_>) -> Result<(), String> {
+    let values = found.get_or_insert_with(|| match token {
+        Token::Text(_) => ParameterValues::Texts(Vec::new()),
+        Token::Word("true" | "false") => ParameterValues::Truths(Vec::new()),
+        _ => ParameterValues::Numbers(Vec::new()),
+    });
+    match (values, token) {
+        // One message for each faulty parameter is sufficient.
+        (ParameterValues::Broken, _) => {}
+        (_, Token::Broken(what)) => return Err(what.to_owned()),
+        (_, Token::Open | Token::Close) => {
+            return Err("a bracket stands in place of a value".to_owned());
+        }
+        (ParameterValues::Texts(all), Token::Text(text)) => all.push(text.into_owned()),
+        (ParameterValues::Truths(all), Token::Word(word @ ("true" | "false"))) => {
+            all.push(word == "true");
+        }
+        (ParameterValues::Numbers(all), Token::Word(word)) => all.push(number(word)?),
+        _ => return Err("a list has values of different types".to_owned()),
     }
+    Ok(())
 }
 
 /// Returns the values if they match the type; otherwise adds a cause of refusal.

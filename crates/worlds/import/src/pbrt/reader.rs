@@ -19,7 +19,7 @@ pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts a scene to a world.
 pub(super) struct PbrtReader<'a> {
-    pub(super) scene: &'a PbrtScene,
+    pub(super) scene: &'a PbrtScene<'a>,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
     pub(super) color: Color,
@@ -51,7 +51,7 @@ impl Uv {
 
 impl<'a> PbrtReader<'a> {
     pub(super) fn new(
-        scene: &'a PbrtScene,
+        scene: &'a PbrtScene<'a>,
         files: &'a Files,
         report: &'a Report,
         color: Color,
@@ -107,21 +107,21 @@ impl<'a> PbrtReader<'a> {
     }
 
     /// Returns the file name parameter of an entity.
-    pub(super) fn file_name<'b>(&self, entity: &'b Entity) -> Read<&'b str> {
-        let name = entity.text(self.report, "filename")?;
+    pub(super) fn file_name<'b>(&self, entity: &'b Entity<'_>) -> Read<&'b str> {
+        let name = entity.text("filename")?;
         name.ok_or_else(|| {
             let message = format!(
                 "{} {} without filename",
                 entity.kind,
                 quoted(&entity.plugin)
             );
-            entity.fault(self.report, "filename", message)
+            entity.fault("filename", message)
         })
     }
 
     /// Adds a cause for a file that cannot be used.
-    pub(super) fn unread(&self, entity: &Entity, name: &str, error: &str) -> CauseGiven {
+    pub(super) fn unread(&self, entity: &Entity<'_>, name: &str, error: &str) -> CauseGiven {
         let message = format!("file {} {error}", quoted(name));
-        entity.fault(self.report, "filename", message)
+        entity.fault("filename", message)
     }
 }

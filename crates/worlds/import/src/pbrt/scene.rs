@@ -10,21 +10,21 @@ use std::rc::Rc;
 
 /// The scene described by all files together.
 #[derive(Debug, Default)]
-pub(super) struct PbrtScene {
+pub(super) struct PbrtScene<'a> {
     /// The camera, and the map from world to camera coordinates.
-    pub(super) camera: Option<(Entity, DAffine3)>,
+    pub(super) camera: Option<(Entity<'a>, DAffine3)>,
     /// The last entity of each of the directives Film, Sampler, Integrator, PixelFilter and
     /// Accelerator.
-    pub(super) settings: BTreeMap<&'static str, Entity>,
-    pub(super) materials: Vec<Entity>,
+    pub(super) settings: BTreeMap<&'static str, Entity<'a>>,
+    pub(super) materials: Vec<Entity<'a>>,
     /// Named materials, by index.
     pub(super) named: BTreeMap<String, usize>,
     /// Textures by name; the flag is `true` for spectrum textures.
-    pub(super) textures: BTreeMap<(bool, String), Entity>,
-    pub(super) areas: Vec<Entity>,
-    pub(super) lights: Vec<(Entity, DAffine3)>,
-    pub(super) shapes: Vec<PbrtShape>,
-    pub(super) objects: BTreeMap<String, PbrtObject>,
+    pub(super) textures: BTreeMap<(bool, String), Entity<'a>>,
+    pub(super) areas: Vec<Entity<'a>>,
+    pub(super) lights: Vec<(Entity<'a>, DAffine3)>,
+    pub(super) shapes: Vec<PbrtShape<'a>>,
+    pub(super) objects: BTreeMap<String, PbrtObject<'a>>,
     pub(super) instances: Vec<Instance>,
     /// Parameters of `Attribute` directives.
     pub(super) defaults: Vec<Rc<PbrtParameter>>,
@@ -32,8 +32,8 @@ pub(super) struct PbrtScene {
 
 /// A shape with the graphics state in which it was defined.
 #[derive(Debug)]
-pub(super) struct PbrtShape {
-    pub(super) entity: Entity,
+pub(super) struct PbrtShape<'a> {
+    pub(super) entity: Entity<'a>,
     pub(super) to_world: DAffine3,
     /// `ReverseOrientation`
     pub(super) is_reversed: bool,
@@ -54,9 +54,9 @@ pub(super) enum MaterialOf {
 
 /// An object defined between `ObjectBegin` and `ObjectEnd`.
 #[derive(Debug)]
-pub(super) struct PbrtObject {
+pub(super) struct PbrtObject<'a> {
     pub(super) place: SourcePlace,
-    pub(super) shapes: Vec<PbrtShape>,
+    pub(super) shapes: Vec<PbrtShape<'a>>,
 }
 
 /// An instance of an object.

@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
 
     /// Returns a shape placed by its own transform, or `None` if a cause of refusal was reported,
     /// or if there is no surface.
-    fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
+    fn shape(&mut self, shape: &PbrtShape<'_>, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);
         let uv = match entity.plugin.as_str() {
@@ -117,14 +117,14 @@ impl PbrtReader<'_> {
         let (mut material, mut emission) = (material.ok()?, emission);
         if let Some(part) = surface.part {
             if needs_uv {
-                let message = "phimax of a shape with textures is not supported".to_owned();
-                let _ = entity.fault(self.report, "phimax", message);
+                let message = "phimax of a shape with textures is not supported";
+                let _ = entity.fault("phimax", message);
                 return None;
             }
             emission = emission.map(|emission| times(&part, emission.largest()));
             material = self.masked(material, part);
         }
-        let is_two_sided = |area: &Entity| area.truth(self.report, "twosided", false);
+        let is_two_sided = |area: &Entity<'_>| area.truth("twosided", false);
         let emits_on_both_sides = area.map_or(Ok(false), is_two_sided).ok()?;
         Some(etendue_world::Shape {
             name: String::new(),
@@ -151,7 +151,7 @@ impl PbrtReader<'_> {
     /// pbrt computes normals of meshes after placement, so a mirroring placement keeps the front of
     /// meshes, but flips the normals of other shapes. If a mirrored shape emits, pbrt shows the
     /// light on one side and emits it from the other. The import uses the side that emits.
-    fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
+    fn is_flipped(&self, shape: &PbrtShape<'_>, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
         if turns && shines {
@@ -161,7 +161,7 @@ impl PbrtReader<'_> {
         shape.is_reversed != (turns && !shines)
     }
 
-    fn surface(&mut self, shape: &PbrtShape, needs_uv: bool) -> Read<PbrtSurface> {
+    fn surface(&mut self, shape: &PbrtShape<'_>, needs_uv: bool) -> Read<PbrtSurface> {
         let entity = &shape.entity;
         let meshed = |PbrtMesh { triangles, area }| PbrtSurface {
             geometry: Geometry::Mesh(triangles),
@@ -174,30 +174,31 @@ impl PbrtReader<'_> {
             "disk" => self.disk(entity),
             "cylinder" => self.cylinder(entity),
             "trianglemesh" | "plymesh" | "bilinearmesh" => self.mesh(shape, needs_uv).map(meshed),
-            _ => Err(entity.unsupported(self.report, ALLOWED)),
+            _ => Err(entity.unsupported(ALLOWED)),
         }
     }
 
-    fn radius(&self, entity: &Entity) -> Read<f64> {
-        let above: (_, fn(f64) -> bool) = ("above 0", |r| r > 0.0);
-        entity.float_within(self.report, "radius", 1.0, above)
+    fn radius(&self, entity: &Entity<'_>) -> Read<f64> {
+        entity.float_within("radius", 1.0, "above 0", |r| r > 0.0)
     }
 
     /// Returns the share of a full revolution that a shape covers.
-    fn revolution(&self, entity: &Entity) -> Read<f64> {
-        let within: (_, fn(f64) -> bool) = ("above 0 to 360", |a| a > 0.0 && a <= 360.0);
-        Ok(entity.float_within(self.report, "phimax", 360.0, within)? / 360.0)
+    fn revolution(&self, entity: &Entity<'_>) -> Read<f64> {
+        Ok(
+            entity.float_within("phimax", 360.0, "above 0 to 360", |a| a > 0.0 && a <= 360.0)?
+                / 360.0,
+        )
     }
 
-    fn sphere(&self, entity: &Entity) -> Read<PbrtSurface> {
+    fn sphere(&self, entity: &Entity<'_>) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
         let around = self.revolution(entity)?;
         let radius = radius?;
         for (name, end) in [("zmin", -radius), ("zmax", radius)] {
-            let z = entity.float_or(self.report, name, end)?;
+            let z = entity.float_or(name, end)?;
             if (z - end) * end.signum() < 0.0 {
                 let message = format!("{name} is {z}: parts of spheres are not supported");
-                return Err(entity.fault(self.report, name, message));
+                return Err(entity.fault(name, message));
             }
         }
         Ok(PbrtSurface {
@@ -208,11 +209,10 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn disk(&self, entity: &Entity) -> Read<PbrtSurface> {
+    fn disk(&self, entity: &Entity<'_>) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
-        let height = entity.float_or(self.report, "height", 0.0);
-        let none: (_, fn(f64) -> bool) = ("0", |r| r == 0.0);
-        let inner = entity.float_within(self.report, "innerradius", 0.0, none);
+        let height = entity.float_or("height", 0.0);
+        let inner = entity.float_within("innerradius", 0.0, "0", |r| r == 0.0);
         let around = self.revolution(entity)?;
         let (radius, height) = (radius?, height?);
         inner?;
@@ -225,10 +225,9 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn cylinder(&self, entity: &Entity) -> Read<PbrtSurface> {
+    fn cylinder(&self, entity: &Entity<'_>) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
-        let ends = [("zmin", -1.0), ("zmax", 1.0)]
-            .map(|(name, end)| entity.float_or(self.report, name, end));
+        let ends = [("zmin", -1.0), ("zmax", 1.0)].map(|(name, end)| entity.float_or(name, end));
         let around = self.revolution(entity)?;
         let radius = radius?;
         let [a, b] = ends;

@@ -2,9 +2,9 @@
 //! equal-area mapping of the (hemi)sphere using SIMD*).
 
 use super::entity::{CauseGiven, Entity, Read};
+use super::imagemap::default_curve;
 use super::reader::PbrtReader;
 use super::transform::without_scale;
-use crate::pictures::TransferCurve;
 use etendue_field::{LatLong, Raster};
 use etendue_world::{Light, SkyMap};
 use glam::{DAffine3, DVec3};
@@ -19,24 +19,15 @@ const MAX_PIXELS: usize = 2048;
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
-    pub(super) fn sky(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
+    pub(super) fn sky(&mut self, entity: &Entity<'_>, to_world: DAffine3) -> Read<Light> {
         if entity.has("L") {
-            let message = "L is given together with filename; allowed: one of them".to_owned();
-            return Err(entity.fault(self.report, "L", message));
+            let message = "L is given together with filename; allowed: one of them";
+            return Err(entity.fault("L", message));
         }
         let scale = self.scale_of(entity);
-        let turned = without_scale(to_world).ok_or_else(|| {
-            let message = "the sky has shear, or different scales along its axes";
-            self.report.cause(&entity.place, message);
-            CauseGiven
-        });
-        let name = self.file_name(entity)?;
-        let is_png = name.to_ascii_lowercase().ends_with(".png");
-        let curve = if is_png {
-            TransferCurve::Srgb
-        } else {
-            TransferCurve::Linear
-        };
+        let turned = without_scale(to_world)
+            .ok_or_else(|| entity.refuse("the sky has shear, or different scales along its axes"));
+        let curve = default_curve(self.file_name(entity)?);
         let square = self.picture(entity, curve)?;
         let side = square.width();
         if side != square.height() || side > MAX_PIXELS {
@@ -44,12 +35,12 @@ impl PbrtReader<'_> {
             let message = format!(
                 "{w} × {h} pixels; allowed: squares of at most {MAX_PIXELS} × {MAX_PIXELS}"
             );
-            return Err(entity.fault(self.report, "filename", message));
+            return Err(entity.fault("filename", message));
         }
         let factor = self.wanted(entity, "illuminance", illuminance(&square))?;
         let bytes = (8 * side * (2 * side + 1) * size_of::<f64>()) as u64;
         let spent = self.files.spend(bytes);
-        spent.map_err(|error| entity.fault(self.report, "filename", error))?;
+        spent.map_err(|error| entity.fault("filename", error))?;
         let radiance = longitudes(&square, scale? * factor).ok_or(CauseGiven)?;
         let (w, h) = (radiance.width(), radiance.height());
         let message = format!(

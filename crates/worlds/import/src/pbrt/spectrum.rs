@@ -28,11 +28,16 @@ enum PbrtSpectrum {
 
 impl PbrtReader<'_> {
     /// Returns the number for a colour or spectrum, or `None` if the parameter is missing.
-    pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
+    pub(super) fn number_of(
+        &self,
+        entity: &Entity<'_>,
+        name: &str,
+        role: Role,
+    ) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
             return Ok(None);
         };
-        let fault = |what: &str| entity.fault(self.report, name, format!("{name} {what}"));
+        let fault = |what: &str| entity.fault(name, format!("{name} {what}"));
         let color = match (role, spectrum) {
             (Role::Emission, spectrum) => self.light_color(spectrum, &fault)?,
             (Role::Reflectance, PbrtSpectrum::Rgb(rgb)) if rgb.iter().any(|v| *v > 1.0) => {
@@ -40,15 +45,8 @@ impl PbrtReader<'_> {
             }
             (_, PbrtSpectrum::Rgb(rgb)) => rgb,
             (role, PbrtSpectrum::Sampled(samples)) => rgb(&samples, role),
-            (_, PbrtSpectrum::Named(name)) => match named::index(&name) {
-                Some(rgb) => rgb,
-                None => {
-                    return Err(fault(
-                        "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
-                    ));
-                }
-            },
-            (_, PbrtSpectrum::Blackbody(_)) => {
+            (_, PbrtSpectrum::Named(name)) if let Some(rgb) = named::index(&name) => rgb,
+            (_, PbrtSpectrum::Named(_) | PbrtSpectrum::Blackbody(_)) => {
                 return Err(fault(
                     "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
                 ));
@@ -97,11 +95,11 @@ impl PbrtReader<'_> {
         }
     }
 
-    fn spectrum(&self, entity: &Entity, name: &str) -> Read<Option<PbrtSpectrum>> {
+    fn spectrum(&self, entity: &Entity<'_>, name: &str) -> Read<Option<PbrtSpectrum>> {
         let Some(parameter) = entity.find(name) else {
             return Ok(None);
         };
-        let fault = |message: String| entity.fault(self.report, name, message);
+        let fault = |message: String| entity.fault(name, message);
         let found = match (parameter.kind, &parameter.values) {
             (_, ParameterValues::Broken) => return Err(CauseGiven),
             (ParameterKind::Rgb, ParameterValues::Numbers(all)) => match all[..] {

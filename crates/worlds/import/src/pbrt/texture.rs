@@ -29,7 +29,7 @@ impl PbrtReader<'_> {
     /// Returns the texture of a parameter, or a constant if the parameter is missing.
     pub(super) fn texture_or(
         &mut self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         name: &str,
         ask: Ask,
         default: f64,
@@ -39,13 +39,11 @@ impl PbrtReader<'_> {
             return Ok(Texture::Constant(default));
         };
         if parameter.kind == ParameterKind::Texture {
-            let asked = entity.texture_name(self.report, name)?;
+            let asked = entity.texture_name(name)?;
             return self.named_texture(entity, name, asked, ask, uv);
         }
         match ask {
-            Ask::Float => entity
-                .float_or(self.report, name, default)
-                .map(Texture::Constant),
+            Ask::Float => entity.float_or(name, default).map(Texture::Constant),
             Ask::Spectrum(role) => {
                 let value = self.number_of(entity, name, role)?;
                 Ok(Texture::Constant(value.unwrap_or(default)))
@@ -56,7 +54,7 @@ impl PbrtReader<'_> {
     /// Reads a texture like [`Self::texture_or`], but for an albedo, which must be from 0 to 1.
     pub(super) fn albedo_or(
         &mut self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         name: &str,
         default: f64,
         uv: Uv,
@@ -68,13 +66,13 @@ impl PbrtReader<'_> {
             return Ok(texture);
         }
         let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
-        Err(entity.fault(self.report, name, message))
+        Err(entity.fault(name, message))
     }
 
     /// Reads one number; a varying texture is a cause of refusal.
     pub(super) fn constant_or(
         &mut self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         name: &str,
         ask: Ask,
         default: f64,
@@ -83,14 +81,14 @@ impl PbrtReader<'_> {
             Texture::Constant(value) => Ok(value),
             _ => {
                 let message = format!("{name} varies; allowed: one value");
-                Err(entity.fault(self.report, name, message))
+                Err(entity.fault(name, message))
             }
         }
     }
 
     fn named_texture(
         &mut self,
-        asked_by: &Entity,
+        asked_by: &Entity<'_>,
         parameter: &str,
         name: &str,
         ask: Ask,
@@ -107,7 +105,7 @@ impl PbrtReader<'_> {
         }
         let fault = |message: &str| {
             let message = format!("texture {} {message}", quoted(name));
-            asked_by.fault(self.report, parameter, message)
+            asked_by.fault(parameter, message)
         };
         let found = self.scene.textures.get(&(is_spectrum, name.to_owned()));
         let Some(entity) = found else {
@@ -125,23 +123,23 @@ impl PbrtReader<'_> {
         made
     }
 
-    fn make_texture(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
+    fn make_texture(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         match entity.plugin.as_str() {
             "constant" => self.texture_or(entity, "value", ask, 1.0, uv),
             "checkerboard" => self.checkerboard(entity, ask, uv),
             "scale" => self.scale(entity, ask, uv),
             "mix" => self.mix(entity, ask),
             "imagemap" => self.imagemap(entity, ask, uv),
-            _ => Err(entity.unsupported(self.report, ALLOWED)),
+            _ => Err(entity.unsupported(ALLOWED)),
         }
     }
 
     /// Returns a checkerboard with squares of one unit. The first value applies where the two
     /// coordinates, rounded down, are both even or both odd.
-    fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
-        if entity.integer_or(self.report, "dimension", 2)? != 2 {
-            let message = "a checkerboard has dimension 3; allowed: 2".to_owned();
-            return Err(entity.fault(self.report, "dimension", message));
+    fn checkerboard(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
+        if entity.integer_or("dimension", 2)? != 2 {
+            let message = "a checkerboard has dimension 3; allowed: 2";
+            return Err(entity.fault("dimension", message));
         }
         let first = self.constant_or(entity, "tex1", ask, 1.0);
         let second = self.constant_or(entity, "tex2", ask, 0.0);
@@ -153,7 +151,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    fn scale(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
+    fn scale(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         let texture = self.texture_or(entity, "tex", ask, 1.0, uv);
         let scale = self.texture_or(entity, "scale", Ask::Float, 1.0, uv);
         match (texture?, scale?) {
@@ -162,14 +160,13 @@ impl PbrtReader<'_> {
             }
             _ => {
                 let message =
-                    "both factors of a product are textures that vary; allowed: one of them"
-                        .to_owned();
-                Err(entity.fault(self.report, "tex", message))
+                    "both factors of a product are textures that vary; allowed: one of them";
+                Err(entity.fault("tex", message))
             }
         }
     }
 
-    fn mix(&mut self, entity: &Entity, ask: Ask) -> Read<Texture> {
+    fn mix(&mut self, entity: &Entity<'_>, ask: Ask) -> Read<Texture> {
         let first = self.constant_or(entity, "tex1", ask, 0.0);
         let second = self.constant_or(entity, "tex2", ask, 1.0);
         let amount = self.constant_or(entity, "amount", Ask::Float, 0.5);
@@ -180,10 +177,9 @@ impl PbrtReader<'_> {
     }
 
     /// Returns the map from (u, v) of a surface in a world to (u, v) of the texture.
-    pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
-        let report = self.report;
-        entity.choice(report, "mapping", &[("uv", ())])?;
-        let float = |name, default| entity.float_or(report, name, default);
+    pub(super) fn mapping(&self, entity: &Entity<'_>, uv: Uv) -> Read<DAffine2> {
+        entity.choice("mapping", &[("uv", ())])?;
+        let float = |name, default| entity.float_or(name, default);
         let scale = DVec2::new(float("uscale", 1.0)?, float("vscale", 1.0)?);
         let delta = DVec2::new(float("udelta", 0.0)?, float("vdelta", 0.0)?);
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
@@ -192,7 +188,7 @@ impl PbrtReader<'_> {
     /// Returns a texture with the function `of` applied to each of its values.
     pub(super) fn mapped(
         &self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         texture: Texture,
         of: impl Fn(f64) -> f64,
     ) -> Read<Texture> {
@@ -212,13 +208,13 @@ impl PbrtReader<'_> {
 
     pub(super) fn mapped_pixels(
         &self,
-        entity: &Entity,
+        entity: &Entity<'_>,
         pixels: &Raster,
         of: impl Fn(f64) -> f64,
     ) -> Read<Arc<Raster>> {
         let bytes = size_of_val(pixels.values()) as u64;
         let spent = self.files.spend(bytes);
-        spent.map_err(|error| entity.fault(self.report, "filename", error))?;
+        spent.map_err(|error| entity.fault("filename", error))?;
         let values = pixels.values().iter().map(|v| of(*v)).collect();
         let raster = Raster::new(pixels.width(), pixels.height(), values);
         raster.map(Arc::new).ok_or(CauseGiven)

@@ -1,5 +1,6 @@
 //! Tokens of a pbrt file: words, strings and brackets, with their places.
 
+use super::words::is_directive;
 use crate::report::SourcePlace;
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -67,6 +68,12 @@ impl<'a> Tokens<'a> {
         self.peeked.as_ref()
     }
 
+    /// Returns the next token, unless it begins a directive or the file ends.
+    pub(super) fn peek_value(&mut self) -> Option<(Token<'a>, LineColumn)> {
+        let next = self.peek().cloned();
+        next.filter(|(token, _)| !matches!(token, Token::Word(word) if is_directive(word)))
+    }
+
     /// Consumes the next token; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Option<(Token<'a>, LineColumn)> {
         self.peeked.take().or_else(|| self.read())
@@ -120,14 +127,12 @@ impl<'a> Tokens<'a> {
                 }
                 '\\' => {
                     escaped.get_or_insert_with(|| before.to_owned());
-                    match self.bump().and_then(escape) {
-                        Some(c) => c,
-                        None => {
-                            return Token::Broken(
-                                "a \\ stands before a character that cannot be escaped",
-                            );
-                        }
-                    }
+                    let Some(c) = self.bump().and_then(escape) else {
+                        return Token::Broken(
+                            "a \\ stands before a character that cannot be escaped",
+                        );
+                    };
+                    c
                 }
                 other => other,
             };
