@@ -2,7 +2,7 @@
 
 use crate::lights::LightSampler;
 use crate::numbers::PathNumbers;
-use crate::scatter::{BsdfSample, Scatter};
+use crate::scatter::Scatter;
 use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::World;
 use glam::DVec3;
@@ -267,7 +267,7 @@ impl Paths {
             }
             walk.weight /= share;
         }
-        walk.ray = onward(hit, &bounce);
+        walk.ray = Ray::new(hit.position, (hit.frame * bounce.wi).normalize());
         walk.density = bounce.density;
         walk.first.get_or_insert(bounce.wi);
         true
@@ -322,10 +322,7 @@ impl Paths {
         if value <= 0.0 {
             return (wi, 0.0);
         }
-        let ray = Ray {
-            from: hit.position,
-            along: light.toward,
-        };
+        let ray = Ray::new(hit.position, light.toward);
         let transmittance = self.transmittance(&ray, light.distance);
         if transmittance <= 0.0 {
             return (wi, 0.0);
@@ -359,11 +356,4 @@ fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &m
 fn mis_weight(own: f64, other: f64) -> f64 {
     let ratio = other / own;
     1.0 / (1.0 + ratio * ratio)
-}
-
-fn onward(hit: &Hit, bounce: &BsdfSample) -> Ray {
-    Ray {
-        from: hit.position,
-        along: (hit.frame * bounce.wi).normalize(),
-    }
 }

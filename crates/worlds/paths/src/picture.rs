@@ -102,15 +102,10 @@ impl Paths {
             [0.0; 2]
         };
         let look = camera.look([pixel[0] + x, pixel[1] + y], lens);
-        let ray = Ray {
-            from: look.from,
-            along: look.along,
-        };
+        let ray = Ray::new(look.from, look.along);
         let hit = self.geometry.first(&ray, look.seen);
         let shown = self.shown(&ray, hit.as_ref(), 0);
-        (
-            shown,
-            hit.map(|hit| TracedPath::new(number, (ray, hit), numbers)),
-        )
+        let walk = hit.map(|hit| TracedPath::new(number, (ray, hit), numbers));
+        (shown, walk)
     }
 }

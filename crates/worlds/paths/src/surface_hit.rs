@@ -61,8 +61,7 @@ impl SurfaceHit {
     /// Returns the mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
-        let normal = self.normal();
-        self.ray.along - 2.0 * self.ray.along.dot(normal) * normal
+        self.ray.mirrored(self.normal())
     }
 
     /// Returns the direction to the eye, in the frame of the surface.
@@ -87,10 +86,7 @@ impl Paths {
     /// Traces a camera ray to its first hit.
     #[must_use]
     pub fn view(&self, look: &Look) -> View {
-        let ray = Ray {
-            from: look.from,
-            along: look.along,
-        };
+        let ray = Ray::new(look.from, look.along);
         let hit = self.geometry.first(&ray, look.seen);
         View {
             emitted: self.shown(&ray, hit.as_ref(), 0),
@@ -235,10 +231,8 @@ impl Paths {
 
     /// Returns 1/distance of what a ray from the point hits, or 0 if it hits nothing.
     fn inverse_distance(&self, seen: &SurfaceHit, along: DVec3, nearest: f64) -> f64 {
-        let from = seen.hit.position;
-        let hit = self
-            .geometry
-            .first(&Ray { from, along }, [0.0, f64::INFINITY]);
+        let ray = Ray::new(seen.hit.position, along);
+        let hit = self.geometry.first(&ray, [0.0, f64::INFINITY]);
         hit.map_or(0.0, |hit| hit.distance.max(nearest).recip())
     }
 
@@ -256,10 +250,7 @@ impl Paths {
         if value <= 0.0 {
             return None;
         }
-        let ray = Ray {
-            from,
-            along: light.toward,
-        };
+        let ray = Ray::new(from, light.toward);
         if self.geometry.is_free(&ray, light.distance) {
             return Some(Shadow {
                 light: value,

@@ -1,7 +1,7 @@
 //! Point lights whose intensity depends on the direction: spots and projectors.
 
-use etendue_world::{Falloff, Texture};
-use glam::{DAffine3, DVec2, DVec3};
+use etendue_world::Light;
+use glam::{DAffine3, DVec3};
 
 /// A spot or a projector.
 #[derive(Debug)]
@@ -9,37 +9,22 @@ pub(super) struct Beam {
     pub(super) to_local: DAffine3,
     /// Cosine of the half-angle of a cone around Z that contains all light.
     pub(super) cosine: f64,
-    pub(super) pattern: BeamPattern,
-}
-
-/// The intensity by direction, with the parameters of [`etendue_world::Light`].
-#[derive(Debug)]
-pub(super) enum BeamPattern {
-    Spot {
-        intensity: f64,
-        beam: f64,
-        cutoff: f64,
-        falloff: Falloff,
-        picture: Option<Texture>,
-    },
-    Projector {
-        half: DVec2,
-        picture: Texture,
-        scale: f64,
-    },
+    /// The spot or projector, which states the intensity by direction.
+    pub(super) light: Light,
 }
 
 impl Beam {
     /// Returns the intensity along a direction in world coordinates, W sr⁻¹.
     pub(super) fn intensity(&self, along: DVec3) -> f64 {
         let local = self.to_local.transform_vector3(along);
-        match &self.pattern {
-            BeamPattern::Spot {
+        match &self.light {
+            Light::Spot {
                 intensity,
                 beam,
                 cutoff,
                 falloff,
                 picture,
+                ..
             } => {
                 let angle = libm::atan2(local.truncate().length(), local.z);
                 let plain = intensity * falloff.share(angle, *beam, *cutoff);
@@ -51,10 +36,11 @@ impl Beam {
                     _ => plain,
                 }
             }
-            BeamPattern::Projector {
+            Light::Projector {
                 half,
                 picture,
                 scale,
+                ..
             } => {
                 let at = local.truncate() / (local.z * *half);
                 if local.z <= 0.0 || at.abs().max_element() > 1.0 {
@@ -63,6 +49,7 @@ impl Beam {
                 let secant = local.length() / local.z;
                 scale * picture.value(&(0.5 - 0.5 * at).into()) * secant * secant * secant
             }
+            _ => 0.0,
         }
     }
 }

@@ -118,10 +118,7 @@ impl Draw<'_> {
         let cosine = along.dot(normal).max(0.0);
         let density = self.density(cosine / PI, |target| target.density(position, along));
         Emitted {
-            ray: Ray {
-                from: position,
-                along,
-            },
+            ray: Ray::new(position, along),
             flux: shine * cosine / density,
             flash: Some(EmissionPoint {
                 position,
@@ -169,11 +166,9 @@ impl Draw<'_> {
             }
         };
         let height = (place - whole.center).dot(toward);
+        let from = place + (2.0 * whole.radius - height) * toward;
         Emitted {
-            ray: Ray {
-                from: place + (2.0 * whole.radius - height) * toward,
-                along: -toward,
-            },
+            ray: Ray::new(from, -toward),
             flux: irradiance / self.density(density(&whole), density),
             flash: None,
         }

@@ -18,6 +18,18 @@ pub(crate) struct Incoming {
     pub(crate) density: Option<f64>,
 }
 
+impl Incoming {
+    /// Returns light that arrives only from this direction.
+    pub(super) fn from_one(toward: DVec3, distance: f64, weight: f64) -> Self {
+        Self {
+            toward,
+            distance,
+            weight,
+            density: None,
+        }
+    }
+}
+
 /// Returns the direction and the distance from one point to another.
 #[inline]
 pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {

@@ -1,7 +1,6 @@
 //! Samples lights: draws a direction to a light, and returns the radiance from this direction and
 //! the density of the drawn directions.
 
-mod ball;
 mod beam;
 mod emit;
 mod incoming;
@@ -9,15 +8,14 @@ mod shape;
 mod sky;
 
 use crate::space::{Hit, Ray, SceneGeometry};
-use ball::ShiningSphere;
-use beam::{Beam, BeamPattern};
-pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
+use beam::Beam;
+pub(crate) use emit::{EmissionTarget, chosen, mixed};
 use etendue_field::whole;
 use etendue_world::{Geometry, Light, Shape, Texture, World};
 use glam::DVec3;
 pub(crate) use incoming::Incoming;
 use incoming::way;
-use shape::ShiningShape;
+use shape::{ShiningShape, ShiningSphere};
 use sky::SampledSky;
 
 /// All lights of a world, sampled with equal probability.
@@ -158,37 +156,17 @@ impl From<&Light> for SampledLight {
                 intensity: *intensity,
             },
             Light::Spot {
-                to_world,
-                intensity,
-                beam,
-                cutoff,
-                falloff,
-                picture,
+                to_world, cutoff, ..
             } => Self::Beam(Beam {
                 to_local: to_world.inverse(),
                 cosine: libm::cos(*cutoff),
-                pattern: BeamPattern::Spot {
-                    intensity: *intensity,
-                    beam: *beam,
-                    cutoff: *cutoff,
-                    falloff: *falloff,
-                    picture: picture.clone(),
-                },
+                light: light.clone(),
             }),
-            Light::Projector {
-                to_world,
-                half,
-                picture,
-                scale,
-            } => Self::Beam(Beam {
+            Light::Projector { to_world, half, .. } => Self::Beam(Beam {
                 to_local: to_world.inverse(),
                 // The cone passes through the corners of the picture.
                 cosine: (1.0 + half.length_squared()).sqrt().recip(),
-                pattern: BeamPattern::Projector {
-                    half: *half,
-                    picture: picture.clone(),
-                    scale: *scale,
-                },
+                light: light.clone(),
             }),
             Light::Directional {
                 direction,
@@ -220,43 +198,24 @@ impl SampledLight {
             } => {
                 let (toward, distance) = way(at, *position);
                 let weight = intensity / (distance * distance);
-                Some(Incoming {
-                    toward,
-                    distance,
-                    weight,
-                    density: None,
-                })
+                Some(Incoming::from_one(toward, distance, weight))
             }
             Self::Beam(beam) => {
                 let (toward, distance) = way(at, beam.to_local.inverse().translation);
                 let intensity = beam.intensity(-toward);
-                (intensity > 0.0).then_some(Incoming {
-                    toward,
-                    distance,
-                    weight: intensity / (distance * distance),
-                    density: None,
-                })
+                let weight = intensity / (distance * distance);
+                (intensity > 0.0).then_some(Incoming::from_one(toward, distance, weight))
             }
-            Self::Directional { toward, irradiance } => Some(Incoming {
-                toward: *toward,
-                distance: f64::INFINITY,
-                weight: *irradiance,
-                density: None,
-            }),
+            Self::Directional { toward, irradiance } => {
+                Some(Incoming::from_one(*toward, f64::INFINITY, *irradiance))
+            }
             Self::Sheet { shape, exitance } => {
                 // A flat shape has the same normal everywhere.
                 let (_, normal, _) = geometry.placed(*shape).sample(0, [0.5; 2]);
-                let ray = Ray {
-                    from: at,
-                    along: -normal,
-                };
+                let ray = Ray::new(at, -normal);
                 let hit = geometry.meets(*shape, &ray, [0.0, f64::INFINITY])?;
-                Some(Incoming {
-                    toward: -normal,
-                    distance: hit.distance,
-                    weight: exitance.value(&hit.point),
-                    density: None,
-                })
+                let weight = exitance.value(&hit.point);
+                Some(Incoming::from_one(-normal, hit.distance, weight))
             }
             Self::Sky(sky) => {
                 let toward = sky.sample(r);

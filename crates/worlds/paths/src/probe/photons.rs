@@ -2,7 +2,7 @@
 
 use super::windows::{LightSource, WindowConnector};
 use super::{Budget, Probe};
-use crate::lights::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
+use crate::lights::{EmissionTarget, chosen, mixed};
 use crate::numbers::PathNumbers;
 use crate::paths::ROULETTE;
 use crate::space::{Hit, Ray};
@@ -58,24 +58,15 @@ impl<'a> PhotonProbe<'a> {
         let emitted = paths
             .lights
             .emit(&paths.geometry, numbers.draw(), &self.targets);
-        let Some(Emitted {
-            mut ray,
-            mut flux,
-            flash,
-        }) = emitted
-        else {
+        let Some(emitted) = emitted else {
             return;
         };
-        if let Some(EmissionPoint {
-            position,
-            normal,
-            shine,
-        }) = flash
-        {
-            let intensity = |along: DVec3| shine * along.dot(normal).max(0.0);
+        let (mut ray, mut flux) = (emitted.ray, emitted.flux);
+        if let Some(flash) = emitted.flash {
+            let intensity = |along: DVec3| flash.shine * along.dot(flash.normal).max(0.0);
             self.windows.connect(
                 &LightSource {
-                    position,
+                    position: flash.position,
                     intensity: &intensity,
                     density: &|_| 0.0,
                     met: 0,
@@ -112,18 +103,13 @@ impl<'a> PhotonProbe<'a> {
                     record,
                 );
             }
-            let Some(Onward {
-                along,
-                share,
-                density,
-            }) = self.onward(&hit, ray.along, &mut numbers)
-            else {
+            let Some(onward) = self.onward(&hit, ray.along, &mut numbers) else {
                 return;
             };
-            flux *= share;
-            if let Some(density) = density {
+            flux *= onward.share;
+            if let Some(density) = onward.density {
                 let source = (hit.position, met);
-                let photon = (along, flux, density);
+                let photon = (onward.along, flux, density);
                 self.windows.continued(source, photon, &mut numbers, record);
             }
             let [survives] = numbers.draw();
@@ -134,10 +120,7 @@ impl<'a> PhotonProbe<'a> {
                 }
                 flux /= share;
             }
-            ray = Ray {
-                from: hit.position,
-                along,
-            };
+            ray = Ray::new(hit.position, onward.along);
         }
     }
 

@@ -51,10 +51,7 @@ impl Stop {
 /// the angle of the window.
 pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
-    let mut ray = Ray {
-        from: look.from,
-        along: look.along,
-    };
+    let mut ray = Ray::new(look.from, look.along);
     let mut seen = look.seen;
     let mut travelled = 0.0;
     while stops.len() < most
@@ -67,7 +64,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
             -1.0
         };
         let normal = side * hit.frame.z_axis;
-        let onward = ray.along - 2.0 * ray.along.dot(normal) * normal;
+        let onward = ray.mirrored(normal);
         stops.push(Stop {
             shape: hit.shape,
             position: hit.position,
@@ -80,10 +77,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
                 .kind(&hit.point, hit.frame.transpose() * -ray.along),
             curvature: curvature(&paths.geometry, &hit, normal, -ray.along, half * travelled),
         });
-        ray = Ray {
-            from: hit.position,
-            along: onward,
-        };
+        ray = Ray::new(hit.position, onward);
         seen = [0.0, f64::INFINITY];
     }
     stops
@@ -126,10 +120,8 @@ fn curvature(
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {
-        let ray = Ray {
-            from: hit.position + side * step + height * normal,
-            along: -normal,
-        };
+        let from = hit.position + side * step + height * normal;
+        let ray = Ray::new(from, -normal);
         let met = geometry.meets(hit.shape, &ray, [0.0, 2.0 * height])?;
         let facing = met.frame.z_axis.dot(normal).signum();
         Some((met.position, facing * met.frame.z_axis))

@@ -194,10 +194,7 @@ impl<'a> WindowConnector<'a> {
             }
             self.regions[leg].is_smooth = true;
             self.regions[leg].include(&seen);
-            line = Ray {
-                from: hit.position,
-                along,
-            };
+            line = Ray::new(hit.position, along);
         }
     }
 
@@ -269,11 +266,7 @@ impl<'a> WindowConnector<'a> {
             let at_end = [x, y].map(|side| side * region.position);
             let at_end = leg.frame.to_world(DVec3::new(at_end[0], at_end[1], 0.0));
             let along = leg.frame.vector_to_world(DVec3::new(u, v, 1.0)).normalize();
-            let toward = Ray {
-                from: at_end,
-                along: -along,
-            };
-            let radiance = paths.shown(&toward, None, 1);
+            let radiance = paths.shown(&Ray::new(at_end, -along), None, 1);
             let outside = at_end.distance(geometry.center) + 2.0 * geometry.radius;
             let volume = (4.0 * region.position * region.slope).powi(2);
             let flux = || radiance * volume / (1.0 + u * u + v * v).powi(2);
@@ -355,16 +348,12 @@ impl<'a> WindowConnector<'a> {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
         // If the line begins at the point itself, light leaves from the other side of the surface.
-        let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].position;
+        let between = position - line.from;
+        let is_before = between.dot(line.along) > 1e-6 * legs[leg].position;
         if !is_before {
             return 0.0;
         }
-        let between = position - line.from;
         let distance = between.length();
-        let line = Ray {
-            along: between / distance,
-            ..line
-        };
-        paths.transmittance(&line, distance)
+        paths.transmittance(&Ray::new(line.from, between / distance), distance)
     }
 }

@@ -6,9 +6,7 @@
 //! medium. This quotient does not change where light is refracted.
 
 mod place;
-mod principled_side;
 mod reflects;
-mod turn;
 
 use etendue_field::Lobe;
 pub(crate) use etendue_scatter::BsdfSample;
@@ -17,11 +15,9 @@ use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
 use glam::DVec3;
 use place::{
     Coated, conductor, diffuse_transmission, factor, fresnel, is_mirrored, metallic_roughness,
-    phong, principled, rough_dielectric, share, smooth_dielectric,
+    phong, principled, rough_dielectric, share, smooth_dielectric, to_front,
 };
-use principled_side::PrincipledSide;
 pub use reflects::Reflects;
-use turn::to_front;
 
 /// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
@@ -88,15 +84,17 @@ impl Scatter {
                 (mix(a.0, b.0), mix(a.1, b.1))
             }
             Self::Dielectric(of) => rough_dielectric(of, point, wo).map_or((0.0, 0.0), |rough| {
-                let turned = to_front(wo);
-                let (value, density) = both(&rough, turned(wi), turned(wo));
-                (factor(of, point, turned(wi)) * value, density)
+                let (value, density) = both(&rough, wi, wo);
+                (factor(of, point, to_front(wo)(wi)) * value, density)
             }),
-            Self::Principled(of) => PrincipledSide::new(of, point, wo).value_and_density(wi, wo),
-            Self::DiffuseTransmission(of) => {
-                let turned = to_front(wo);
-                both(&diffuse_transmission(of, point), turned(wi), turned(wo))
+            Self::Principled(of) => {
+                let front = principled(of, point);
+                match wo.z > 0.0 {
+                    true => both(&front, wi, wo),
+                    false => both(&front.inside(), wi, wo),
+                }
             }
+            Self::DiffuseTransmission(of) => both(&diffuse_transmission(of, point), wi, wo),
             _ if !is_front => (0.0, 0.0),
             Self::Diffuse(reflectance) => {
                 let density = lambertian::density(wi);
@@ -134,10 +132,7 @@ impl Scatter {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
                 let bounce = side.sample(point, turned(wo), random)?;
-                Some(BsdfSample {
-                    wi: turned(bounce.wi),
-                    ..bounce
-                })
+                Some(turned_back(bounce, wo))
             }
             Self::Mask(_, of) => of.sample(point, wo, random),
             Self::Blend(weight, of) => {
@@ -149,21 +144,17 @@ impl Scatter {
                     Some(rough) => rough.sample(turned(wo), random)?,
                     None => smooth_dielectric(of, wo).sample(turned(wo), c),
                 };
-                Some(BsdfSample {
-                    wi: turned(bounce.wi),
-                    weight: bounce.weight * factor(of, point, bounce.wi),
-                    ..bounce
-                })
+                let weight = bounce.weight * factor(of, point, bounce.wi);
+                Some(turned_back(BsdfSample { weight, ..bounce }, wo))
             }
-            Self::Principled(of) => PrincipledSide::new(of, point, wo).sample(wo, random),
-            Self::DiffuseTransmission(of) => {
-                let turned = to_front(wo);
-                let bounce = diffuse_transmission(of, point).sample(turned(wo), random)?;
-                Some(BsdfSample {
-                    wi: turned(bounce.wi),
-                    ..bounce
-                })
+            Self::Principled(of) => {
+                let front = principled(of, point);
+                match wo.z > 0.0 {
+                    true => sampled(&front, wo, random),
+                    false => sampled(&front.inside(), wo, random),
+                }
             }
+            Self::DiffuseTransmission(of) => sampled(&diffuse_transmission(of, point), wo, random),
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
                 let wi = lambertian::sample([a, b]);
@@ -218,27 +209,17 @@ impl Scatter {
     /// Returns the ratio of two squared indices: the squared index on the side of `to`, divided by
     /// the squared index on the side of `from`. The ratio is 1 unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
-        match self {
-            Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
-                let index = if from.z > 0.0 {
-                    of.index
-                } else {
-                    1.0 / of.index
-                };
-                index * index
+        let index = match self {
+            Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => of.index,
+            Self::Principled(of) if from.z * to.z < 0.0 => of.index,
+            Self::Mask(_, of) => return of.squared_index(from, to),
+            Self::Blend(_, of) => {
+                return of.iter().map(|of| of.squared_index(from, to)).product();
             }
-            Self::Principled(of) if from.z * to.z < 0.0 => {
-                let index = if from.z > 0.0 {
-                    of.index
-                } else {
-                    1.0 / of.index
-                };
-                index * index
-            }
-            Self::Mask(_, of) => of.squared_index(from, to),
-            Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
-            _ => 1.0,
-        }
+            _ => return 1.0,
+        };
+        let index = if from.z > 0.0 { index } else { 1.0 / index };
+        index * index
     }
 
     /// Returns the kind of reflection on the side of `wo`. For a mixture, returns the kind of the
@@ -377,10 +358,23 @@ impl Scatter {
     }
 }
 
-/// Returns a BSDF times |cos| of wi, and its density.
+/// Returns a BSDF times |cos| of wi, and its density. The BSDF describes the side of wo as its front.
 fn both(of: &impl Bsdf, wi: DVec3, wo: DVec3) -> (f64, f64) {
-    let (value, density) = of.value_and_density(wi, wo);
+    let turned = to_front(wo);
+    let (value, density) = of.value_and_density(turned(wi), turned(wo));
     (value * wi.z.abs(), density)
+}
+
+/// Samples a direction of a BSDF, which describes the side of wo as its front.
+fn sampled(of: &impl Bsdf, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
+    let bounce = of.sample(to_front(wo)(wo), random)?;
+    Some(turned_back(bounce, wo))
+}
+
+/// Returns a sample for the side of wo, which was drawn with this side in front.
+fn turned_back(bounce: BsdfSample, wo: DVec3) -> BsdfSample {
+    let wi = to_front(wo)(bounce.wi);
+    BsdfSample { wi, ..bounce }
 }
 
 /// Returns the share of the second of two mixed materials in the light that hits either of them.

@@ -1,4 +1,5 @@
-//! Converts materials at a surface point to BSDFs of `etendue_scatter`.
+//! Converts materials at a surface point to BSDFs of `etendue_scatter`, and flips directions to the
+//! front.
 
 use etendue_field::{Fresnel, MicrofacetDistribution};
 use etendue_scatter::{
@@ -7,6 +8,48 @@ use etendue_scatter::{
 };
 use etendue_world::{self as world, Roughness, Texture, TexturePoint};
 use glam::DVec3;
+
+/// A diffuse base below a dielectric coat.
+#[derive(Clone, Debug)]
+pub(crate) struct Coated {
+    pub(super) coat: Coat,
+    diffuse: Texture,
+    pub(super) specular: Texture,
+    is_nonlinear: bool,
+}
+
+impl Coated {
+    pub(super) fn new(plastic: &world::Plastic) -> Self {
+        // The table of the coat needs only one roughness, because the roughness is constant.
+        let facets = facets(plastic.roughness.as_ref(), &TexturePoint::default());
+        Self {
+            coat: Coat::new(plastic.index, facets),
+            diffuse: plastic.diffuse.clone(),
+            specular: plastic.specular.clone(),
+            is_nonlinear: plastic.is_nonlinear,
+        }
+    }
+
+    /// Returns the plastic at a point.
+    pub(super) fn at(&self, point: &TexturePoint) -> Plastic<'_> {
+        Plastic {
+            coat: &self.coat,
+            diffuse: self.diffuse.value(point),
+            specular: self.specular.value(point),
+            is_nonlinear: self.is_nonlinear,
+        }
+    }
+
+    /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
+    /// a smooth coat, whose reflection is a delta component.
+    pub(super) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
+        if self.coat.facets().is_none() && is_mirrored(wi, wo) {
+            return 0.0;
+        }
+        let plastic = self.at(point);
+        share(plastic.base_value(wi, wo), plastic.value(wi, wo))
+    }
+}
 
 /// Returns the microfacet distribution at a point, or `None` for a smooth surface.
 pub(super) fn facets(roughness: Option<&Roughness>, point: &TexturePoint) -> Option<Microfacets> {
@@ -132,48 +175,6 @@ pub(super) fn metallic_roughness(
     }
 }
 
-/// A diffuse base below a dielectric coat.
-#[derive(Clone, Debug)]
-pub(crate) struct Coated {
-    pub(super) coat: Coat,
-    diffuse: Texture,
-    pub(super) specular: Texture,
-    is_nonlinear: bool,
-}
-
-impl Coated {
-    pub(super) fn new(plastic: &world::Plastic) -> Self {
-        // The table of the coat needs only one roughness, because the roughness is constant.
-        let facets = facets(plastic.roughness.as_ref(), &TexturePoint::default());
-        Self {
-            coat: Coat::new(plastic.index, facets),
-            diffuse: plastic.diffuse.clone(),
-            specular: plastic.specular.clone(),
-            is_nonlinear: plastic.is_nonlinear,
-        }
-    }
-
-    /// Returns the plastic at a point.
-    pub(super) fn at(&self, point: &TexturePoint) -> Plastic<'_> {
-        Plastic {
-            coat: &self.coat,
-            diffuse: self.diffuse.value(point),
-            specular: self.specular.value(point),
-            is_nonlinear: self.is_nonlinear,
-        }
-    }
-
-    /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
-    /// a smooth coat, whose reflection is a delta component.
-    pub(super) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
-        if self.coat.facets().is_none() && is_mirrored(wi, wo) {
-            return 0.0;
-        }
-        let plastic = self.at(point);
-        share(plastic.base_value(wi, wo), plastic.value(wi, wo))
-    }
-}
-
 /// Checks whether directions are mirror directions of each other.
 pub(super) fn is_mirrored(wi: DVec3, wo: DVec3) -> bool {
     (wi + wo).truncate().length_squared() < 1e-24
@@ -182,4 +183,11 @@ pub(super) fn is_mirrored(wi: DVec3, wo: DVec3) -> bool {
 /// Returns the ratio of a part to the whole value, or 0 if the value is 0.
 pub(super) fn share(part: f64, value: f64) -> f64 {
     if value > 0.0 { part / value } else { 0.0 }
+}
+
+/// Returns the flip after which `wo` is in front.
+#[inline]
+pub(super) fn to_front(wo: DVec3) -> impl Fn(DVec3) -> DVec3 + Copy {
+    let side = if wo.z > 0.0 { 1.0 } else { -1.0 };
+    move |v| v.with_z(side * v.z)
 }

@@ -1,8 +1,7 @@
 //! Intersects rays with geometries in local coordinates, and samples the areas of geometries.
 
-use super::local::{Local, Spot};
 use super::mesh::WorldMesh;
-use super::ray::Ray;
+use super::ray::{Local, Ray, Spot};
 use etendue_field::sincos_turns;
 use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};

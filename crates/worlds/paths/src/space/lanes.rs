@@ -2,11 +2,11 @@
 //! branches, in f64.
 
 use super::form::Form;
-use super::local::Spot;
-use super::ray::Ray;
+use super::ray::{Ray, Spot};
 use super::tree::{PieceName, WHOLE};
 use super::triangle::TriangleRay;
-use fearless_simd::{Level, Simd, dispatch, f64x8, mask64x8, prelude::*};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f64x8, mask64x8};
 use glam::{DAffine3, DVec3};
 
 /// Number of pieces that are tested together.

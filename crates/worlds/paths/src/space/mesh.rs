@@ -1,7 +1,6 @@
 //! Triangle meshes prepared for ray intersection.
 
-use super::local::{Local, Spot};
-use super::ray::Ray;
+use super::ray::{Local, Ray, Spot, around};
 use super::tree::{PieceName, PieceTree};
 use etendue_bvh::WidePrimitive;
 use etendue_sampling::triangle;
@@ -24,11 +23,8 @@ impl WorldMesh {
             let [a, b, c] = places(&triangles, corners);
             [a.min(b).min(c), a.max(b).max(c)]
         };
-        let all = corners
-            .map(bounds)
-            .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
         Self {
-            bounds: all.unwrap_or_default(),
+            bounds: around(corners.map(bounds)),
             triangles,
             tree: OnceLock::new(),
         }

@@ -2,7 +2,6 @@
 
 mod form;
 mod lanes;
-mod local;
 mod mesh;
 mod placed;
 mod ray;
@@ -15,6 +14,7 @@ use glam::DVec3;
 pub use placed::Hit;
 use placed::{Placed, placed};
 pub use ray::Ray;
+use ray::around;
 use search::SurfaceSearch;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -57,15 +57,9 @@ impl SceneGeometry {
     pub fn new(world: &World) -> Self {
         let placed = placed(&world.shapes);
         let bounds: Vec<[DVec3; 2]> = placed.iter().map(Placed::bounds).collect();
-        let all = bounds
-            .iter()
-            .copied()
-            .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
-        let [low, high] = all.unwrap_or_default();
-        let cameras = world
-            .cameras
-            .iter()
-            .map(|camera| camera.to_world.translation.abs().max_element());
+        let [low, high] = around(bounds.iter().copied());
+        let cameras = world.cameras.iter();
+        let cameras = cameras.map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
         Self {
             search: SurfaceSearch::new(&placed, &bounds, farthest),

@@ -1,9 +1,8 @@
 //! Surfaces at their places in a world, and the hits of rays.
 
 use super::form::{Form, square_uv};
-use super::local::Spot;
 use super::mesh::WorldMesh;
-use super::ray::Ray;
+use super::ray::{Ray, Spot, around};
 use etendue_world::{Geometry, Shape, TexturePoint, Triangles};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::collections::HashMap;
@@ -74,11 +73,7 @@ impl Placed {
 
     pub(super) fn bounds(&self) -> [DVec3; 2] {
         let corners = self.form.corners();
-        let world = corners.map(|corner| self.to_world.transform_point3(corner));
-        let start = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-        world.fold(start, |[low, high], corner| {
-            [low.min(corner), high.max(corner)]
-        })
+        around(corners.map(|corner| [self.to_world.transform_point3(corner); 2]))
     }
 
     /// Returns whether the surface is one piece, and not the triangles of its mesh.

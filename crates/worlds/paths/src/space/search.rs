@@ -2,9 +2,8 @@
 
 use super::form::Form;
 use super::lanes::{PieceGroups, PieceShape};
-use super::local::Spot;
 use super::placed::Placed;
-use super::ray::Ray;
+use super::ray::{Ray, Spot, around};
 use super::tree::{PieceName, PieceTree, WHOLE};
 use etendue_bvh::WidePrimitive;
 use glam::DVec3;
@@ -113,9 +112,7 @@ impl SurfaceSearch {
 /// surfaces, or with small triangles, gets its own tree and is one piece.
 fn names(placed: &[Placed], bounds: &[[DVec3; 2]]) -> Vec<PieceName> {
     let size = |[low, high]: [DVec3; 2]| (high - low).length();
-    let world = bounds.iter().copied();
-    let world = world.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
-    let smallest = FINE * world.map_or(0.0, size);
+    let smallest = FINE * size(around(bounds.iter().copied()));
     let mut names = Vec::new();
     for ((surface, placed), bounds) in (0..).zip(placed).zip(bounds) {
         if let Form::Mesh(mesh) = &placed.form {

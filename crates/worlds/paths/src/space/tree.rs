@@ -1,7 +1,6 @@
 //! A hierarchy over the triangles of meshes and over other surfaces.
 
-use super::local::Spot;
-use super::ray::Ray;
+use super::ray::{Ray, Spot};
 use super::triangle::TriangleRay;
 use etendue_bvh::{WideHierarchy, WidePrimitive};
 use glam::DVec3;
