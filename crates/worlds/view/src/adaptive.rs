@@ -1,12 +1,10 @@
 //! Renders pictures with few shading samples, and writes their maps and the time of each stage.
 
-use crate::finite::require_finite;
+use crate::layers::{require_finite, write_exr};
 use crate::picture_request::PictureRequest;
 use etendue_adaptive::{Layers, Rendered, SampleMethod, SamplePlan, Stage};
 use etendue_paths::Paths;
 use etendue_pipeline::{Progress, Reporter, Work};
-use etendue_store::exr::{Part, exr};
-use etendue_store::npz::Npz;
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, TIMING};
 use etendue_world::{Camera, Projection};
@@ -164,7 +162,6 @@ impl<'a> StageWatch<'a> {
 }
 
 fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Result<(), Failure> {
-    let [w, h] = rendered.size;
     require_finite(rendered.size, &rendered.radiance)?;
     let Layers {
         bandwidth,
@@ -187,26 +184,17 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
         ("samples", samples),
         ("variance", variance),
     ];
-    let mut parts = Vec::new();
-    let mut npz = Npz::new();
     // A method produces only the maps that it needs.
-    for (name, values) in layers.into_iter().filter(|(_, of)| !of.is_empty()) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "EXR viewers expect 32-bit numbers"
-        )]
-        let samples = values.iter().map(|x| *x as f32).collect();
-        parts.push(Part { name, samples });
-        let rows = Array2::from_shape_vec((h, w), values.clone());
-        npz = npz.add(name, &rows.map_err(Failure::cannot_run)?)?;
-    }
+    let layers = layers.into_iter().filter(|(_, of)| !of.is_empty());
+    let layers = layers.map(|(name, of)| (name, &of[..]));
+    let npz = write_exr(results, "picture.exr", rendered.size, layers, made_from)?;
     let points = rendered.points.concat();
     let points = Array2::from_shape_vec((rendered.points.len(), 2), points);
-    npz = npz.add("points", &points.map_err(Failure::cannot_run)?)?;
-    results.write("picture.exr", &exr([w, h], parts, made_from)?)?;
+    let npz = npz.add("points", &points.map_err(Failure::cannot_run)?)?;
     results.write("picture.npz", &npz.bytes()?)?;
     let mut photograph = |name: &str, values: &[f64]| {
-        let png = etendue_figures::photograph([w, h], values).map_err(Failure::cannot_run)?;
+        let png = etendue_figures::photograph(rendered.size, values);
+        let png = png.map_err(Failure::cannot_run)?;
         results.write(name, &png)
     };
     photograph("picture.png", &rendered.radiance)?;

@@ -8,7 +8,7 @@
 
 mod adaptive;
 mod contents;
-mod finite;
+mod layers;
 mod picture;
 mod picture_request;
 mod probe;

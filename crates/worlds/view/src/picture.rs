@@ -1,18 +1,11 @@
 //! Renders the picture of a camera in a scene.
 
-use crate::adaptive;
-use crate::finite::require_finite;
+use crate::layers::{require_finite, write_exr};
 use crate::picture_request::PictureRequest;
-use crate::world_source;
+use crate::{adaptive, world_source};
 use etendue_paths::Picture;
 use etendue_pipeline::{Reporter, Work};
-use etendue_store::Failure;
-use etendue_store::VERSION;
-use etendue_store::exr::{Part, exr};
-use etendue_store::npz::Npz;
-use etendue_store::sealed::json;
-use etendue_store::{PICTURE, Plan, Results};
-use ndarray::Array2;
+use etendue_store::{Failure, PICTURE, Plan, Results};
 use serde_json::{Value, json as tree_of};
 use std::path::Path;
 
@@ -30,10 +23,6 @@ pub struct RenderedPicture {
 }
 
 /// Renders a picture into a folder.
-#[expect(
-    clippy::too_many_lines,
-    reason = "the steps of one picture from file to result, in order"
-)]
 pub fn render(
     request: &PictureRequest,
     folder: &Path,
@@ -57,28 +46,16 @@ pub fn render(
         arguments,
     };
     let mut results = Results::claim(folder, plan)?;
-    let mut made_from = tree_of!({
-        "scene": request.source.path.file_name().map(|name| name.to_string_lossy()),
-        "camera": camera.name,
-        "camera_to_world": camera.to_world.to_cols_array(),
-        "sky": request.source.sky,
-        "depth": imported.world.depth,
-        "hides_sources": imported.world.hides_sources,
-        "size": camera.size,
-        "seed": request.seed,
-        "version": VERSION,
-        "notes": world_source::notes(&imported),
-    });
+    let mut made_from = world_source::made_from(&request.source, &imported, &camera, request.seed);
+    made_from["camera_to_world"] = tree_of!(camera.to_world.to_cols_array());
+    made_from["sky"] = tree_of!(request.source.sky);
+    made_from["depth"] = tree_of!(imported.world.depth);
+    made_from["hides_sources"] = tree_of!(imported.world.hides_sources);
+    made_from["size"] = tree_of!(camera.size);
     let paths = world_source::paths(&imported.world)?;
     let effort = if let Some(method) = method {
-        let seen = (&paths, &camera);
-        adaptive::render(
-            request,
-            method,
-            seen,
-            (&mut results, &mut made_from),
-            reporter,
-        )?
+        let (seen, written) = ((&paths, &camera), (&mut results, &mut made_from));
+        adaptive::render(request, method, seen, written, reporter)?
     } else {
         made_from["samples"] = tree_of!(request.samples);
         let bar = reporter.begin(Work::Steps {
@@ -94,15 +71,7 @@ pub fn render(
         String::new()
     };
     let stage = reporter.begin(Work::Stage("writing results"));
-    let finished = results.finish(|files| {
-        let mut index = made_from.clone();
-        index["files"] = tree_of!(files);
-        json(&index)
-    })?;
-    drop(stage);
-    if let Some(message) = finished.replaced_message() {
-        reporter.note(&message);
-    }
+    world_source::finish(results, made_from, Some(stage), reporter)?;
     Ok(RenderedPicture {
         size: camera.size,
         notes: world_source::notes(&imported),
@@ -113,32 +82,13 @@ pub fn render(
 /// Writes the radiance and its standard error to files for programs, and writes a picture for
 /// people.
 fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
-    let [w, h] = picture.size;
-    let errors: Vec<f64> = picture
-        .variance
-        .iter()
-        .map(|variance| variance.sqrt())
-        .collect();
+    let errors = picture.variance.iter().map(|variance| variance.sqrt());
+    let errors: Vec<f64> = errors.collect();
     require_finite(picture.size, &picture.mean)?;
     require_finite(picture.size, &errors)?;
-    let part = |name, values: &[f64]| {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "EXR viewers expect 32-bit numbers"
-        )]
-        let samples = values.iter().map(|x| *x as f32).collect();
-        Part { name, samples }
-    };
-    let parts = vec![part("radiance", &picture.mean), part("error", &errors)];
-    results.write(FILES[0], &exr([w, h], parts, made_from)?)?;
-    let rows = |values: &[f64]| {
-        Array2::from_shape_vec((h, w), values.to_vec()).map_err(Failure::cannot_run)
-    };
-    let mut npz = Npz::new();
-    npz = npz
-        .add("radiance", &rows(&picture.mean)?)?
-        .add("error", &rows(&errors)?)?;
+    let layers = [("radiance", &picture.mean[..]), ("error", &errors)];
+    let npz = write_exr(results, FILES[0], picture.size, layers, made_from)?;
     results.write(FILES[1], &npz.bytes()?)?;
-    let png = etendue_figures::photograph([w, h], &picture.mean).map_err(Failure::cannot_run)?;
-    results.write(FILES[2], &png)
+    let png = etendue_figures::photograph(picture.size, &picture.mean);
+    results.write(FILES[2], &png.map_err(Failure::cannot_run)?)
 }

@@ -2,9 +2,12 @@
 
 use etendue_import::{Imported, Options, import};
 use etendue_paths::Paths;
-use etendue_store::{ArgumentStyle, Failure, machine};
+use etendue_pipeline::{Progress, Reporter};
+use etendue_store::sealed::json;
+use etendue_store::{ArgumentStyle, Failure, Results, VERSION, machine};
 use etendue_world::{Camera, Light, Material, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
+use serde_json::{Value, json as tree_of};
 use std::path::PathBuf;
 
 /// Another program's scene file, and the changes to it.
@@ -124,6 +127,41 @@ pub(crate) fn paths(world: &World) -> Result<Paths, Failure> {
 pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     let notes = imported.notes.iter().map(ToString::to_string);
     notes.chain(lost_light(&imported.world)).collect()
+}
+
+/// Returns the settings that every result depends on, for its index.
+pub(crate) fn made_from(
+    source: &WorldSource,
+    imported: &Imported,
+    camera: &Camera,
+    seed: u64,
+) -> Value {
+    let name = source.path.file_name();
+    tree_of!({
+        "scene": name.map(|name| name.to_string_lossy()),
+        "camera": camera.name,
+        "seed": seed,
+        "version": VERSION,
+        "notes": notes(imported),
+    })
+}
+
+/// Writes the index of a result, which lists its files; then `stage` ends. Reports replaced files.
+pub(crate) fn finish(
+    results: Results,
+    mut made_from: Value,
+    stage: Option<Box<dyn Progress + '_>>,
+    reporter: &dyn Reporter,
+) -> Result<(), Failure> {
+    let finished = results.finish(|files| {
+        made_from["files"] = tree_of!(files);
+        json(&made_from)
+    })?;
+    drop(stage);
+    if let Some(message) = finished.replaced_message() {
+        reporter.note(&message);
+    }
+    Ok(())
 }
 
 /// Returns a note if light may reach surfaces on a way that paths from the camera cannot find: from

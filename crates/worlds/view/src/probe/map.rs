@@ -4,12 +4,11 @@
 use super::picture::PictureBandwidth;
 use super::scene::{ProbeRequest, ProbedScene};
 use super::words::criterion;
+use crate::layers::write_exr;
+use crate::world_source::finish;
 use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures::PictureFiles;
-use etendue_store::exr::{Part, exr};
-use etendue_store::npz::Npz;
-use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results};
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
@@ -171,28 +170,12 @@ fn write(
     let mut made_from = case.made_from();
     made_from["map"] = tree_of!([w, h]);
     made_from["rays"] = tree_of!(case.request.rays);
-    let mut npz = Npz::new();
-    let mut parts = Vec::new();
-    for (name, of) in layers {
-        npz = npz.add(name, &map.map(of))?;
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "EXR viewers expect 32-bit numbers"
-        )]
-        let samples = map.iter().map(|point| of(point) as f32).collect();
-        parts.push(Part { name, samples });
-    }
-    results.write(FILES[0], &exr([w, h], parts, &made_from)?)?;
+    let layers = layers.map(|(name, of)| (name, map.iter().map(of).collect::<Vec<f64>>()));
+    let each = layers.iter().map(|(name, values)| (*name, &values[..]));
+    let npz = write_exr(&mut results, FILES[0], [w, h], each, &made_from)?;
     results.write(FILES[1], &npz.bytes()?)?;
     PictureFiles::new("map".to_owned(), drawn(case, map)?)?.write(&mut results)?;
-    let finished = results.finish(|files| {
-        made_from["files"] = tree_of!(files);
-        json(&made_from)
-    })?;
-    if let Some(message) = finished.replaced_message() {
-        reporter.note(&message);
-    }
-    Ok(())
+    finish(results, made_from, None, reporter)
 }
 
 fn drawn(

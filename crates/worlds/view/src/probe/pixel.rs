@@ -7,11 +7,11 @@ use super::picture::PictureBandwidth;
 use super::scene::{BATCHES, ProbeRequest, ProbedScene};
 use super::variance;
 use super::words::{lines, of_plane, of_stop};
+use crate::world_source::finish;
 use etendue_compare::{Prediction, Verdict};
 use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures::{self, PictureFiles};
-use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
@@ -116,28 +116,21 @@ fn written(
         .iter()
         .map(|(found, _)| found.comparison.report.verdict);
     let verdict = each.fold(Verdict::Pass, Verdict::and);
-    let stops = probe.stops.iter();
     let stage = reporter.begin(Work::Stage("writing results"));
-    let finished = results.finish(|files| {
-        made_from["rays"] = tree_of!(scene.request.rays);
-        made_from["photons"] = tree_of!(scene.request.photons);
-        made_from["verdict"] = tree_of!(verdict);
-        made_from["picture"] = picture.tree();
-        made_from["surfaces"] = stops
-            .map(|stop| of_stop(&scene.imported.world, stop))
-            .collect();
-        made_from["batches"] = tree_of!(BATCHES);
-        let planes = found.iter().zip(&probe.planes);
-        made_from["planes"] = planes
-            .map(|((found, _), plane)| of_plane(scene.request, found, plane))
-            .collect();
-        made_from["files"] = tree_of!(files);
-        json(&made_from)
-    })?;
-    drop(stage);
-    if let Some(message) = finished.replaced_message() {
-        reporter.note(&message);
-    }
+    made_from["rays"] = tree_of!(scene.request.rays);
+    made_from["photons"] = tree_of!(scene.request.photons);
+    made_from["verdict"] = tree_of!(verdict);
+    made_from["picture"] = picture.tree();
+    let stops = probe.stops.iter();
+    made_from["surfaces"] = stops
+        .map(|stop| of_stop(&scene.imported.world, stop))
+        .collect();
+    made_from["batches"] = tree_of!(BATCHES);
+    let planes = found.iter().zip(&probe.planes);
+    made_from["planes"] = planes
+        .map(|((found, _), plane)| of_plane(scene.request, found, plane))
+        .collect();
+    finish(results, made_from, Some(stage), reporter)?;
     Ok(verdict)
 }
 

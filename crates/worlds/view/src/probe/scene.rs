@@ -4,10 +4,9 @@ use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
 use etendue_paths::{Budget, Paths, Question};
 use etendue_pipeline::variance::VarianceOptions;
-use etendue_store::VERSION;
 use etendue_store::{Failure, PROBE, Plan, Results};
 use etendue_world::Camera;
-use serde_json::{Value, json as tree_of};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Number of batches of rays, and of photons. Errors and p-values are computed from the differences
@@ -139,14 +138,8 @@ impl<'a> ProbedScene<'a> {
 
     /// Returns the settings that a result depends on, for its index.
     pub(super) fn made_from(&self) -> Value {
-        let name = self.request.source.path.file_name();
-        tree_of!({
-            "scene": name.map(|name| name.to_string_lossy()),
-            "camera": self.camera.name,
-            "seed": self.request.seed,
-            "version": VERSION,
-            "notes": world_source::notes(&self.imported),
-        })
+        let request = self.request;
+        world_source::made_from(&request.source, &self.imported, &self.camera, request.seed)
     }
 
     pub(super) fn question(&self, pixel: [usize; 2], across: f64, azimuths: usize) -> Question {

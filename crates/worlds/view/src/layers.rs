@@ -1,6 +1,35 @@
-//! Checks that pictures are finite before they are written.
+//! Layers of numbers over a picture: the check that they are finite, and their files for programs.
 
-use etendue_store::Failure;
+use etendue_store::exr::{Part, exr};
+use etendue_store::npz::Npz;
+use etendue_store::{Failure, Results};
+use ndarray::Array2;
+use serde_json::Value;
+
+/// Writes layers with a number for each pixel, rows from the top, as an EXR file. Returns the same
+/// layers as arrays.
+pub(crate) fn write_exr<'a>(
+    results: &mut Results,
+    name: &str,
+    [w, h]: [usize; 2],
+    layers: impl IntoIterator<Item = (&'static str, &'a [f64])>,
+    made_from: &Value,
+) -> Result<Npz, Failure> {
+    let mut parts = Vec::new();
+    let mut npz = Npz::new();
+    for (name, values) in layers {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
+        let samples = values.iter().map(|x| *x as f32).collect();
+        parts.push(Part { name, samples });
+        let rows = Array2::from_shape_vec((h, w), values.to_vec());
+        npz = npz.add(name, &rows.map_err(Failure::cannot_run)?)?;
+    }
+    results.write(name, &exr([w, h], parts, made_from)?)?;
+    Ok(npz)
+}
 
 /// Refuses a picture with a pixel that is not finite in 32 bits. If a pixel is not finite, nothing
 /// is written.
