@@ -20,21 +20,13 @@
 mod accessor;
 mod camera;
 mod container;
-mod glass;
-mod image;
-mod leftover;
 mod level;
 mod light;
 mod material;
-mod mesh;
-mod metallic;
 mod node;
-mod raster_key;
 mod reader;
 mod shape;
-mod surface;
 mod texture;
-mod uri;
 
 use crate::main_file::MainFile;
 use crate::report::Report;

@@ -11,19 +11,17 @@ mod gltf;
 mod main_file;
 mod meshes;
 mod mitsuba;
-mod note;
 mod obj;
 mod options;
 mod pbrt;
 mod pictures;
-mod placement;
 mod range;
 mod report;
 mod spectrum;
 
 pub use etendue_scene::Color;
-pub use note::{Imported, Note, Refused};
 pub use options::Options;
+pub use report::{Imported, Note, Refused};
 
 use std::path::Path;
 

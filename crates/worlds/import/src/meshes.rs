@@ -7,6 +7,10 @@ use glam::{DMat3, DVec2, DVec3};
 /// Says why a mesh is left out or refused.
 pub(crate) const NO_AREA: &str = "has no triangle with an area above 0";
 
+/// Says what [`MeshParts::mend_normals`] does.
+pub(crate) const MENDED: &str =
+    "approximated: vertices without a normal use the normal of a triangle";
+
 /// The parts of a mesh from which [`Triangles`] will be made.
 #[derive(Debug)]
 pub(crate) struct MeshParts {

@@ -5,29 +5,21 @@
 //! Conventions were checked against Mitsuba 3.9.1.
 
 mod ask;
-mod attributes;
-mod cube;
 mod include;
 mod index;
 mod integrator;
-mod leftover;
 mod light;
 mod material;
 mod mesh;
 mod mesh_data;
-mod mesh_key;
 mod metals;
-mod nested;
 mod object;
 mod parameters;
-mod principled;
 mod property;
-mod property_names;
 mod reader;
 mod sensor;
 mod serialized;
 mod shape;
-mod source;
 mod texture;
 mod transform;
 mod upgrade;
@@ -69,7 +61,7 @@ fn read(text: String, file: &MainFile<'_>, options: &Options) -> Result<Imported
     if !objects.is_empty() {
         let reader = reader::MitsubaReader::new(&objects, &ids, files, &report, options.color);
         world = reader.world();
-        leftover::tell(&objects, &report);
+        object::tell_unused(&objects, &report);
     }
     report.finish(world, files)
 }

@@ -16,7 +16,6 @@ mod material;
 mod mtl;
 mod ply;
 mod reader;
-mod surface;
 
 pub(crate) use ply::import as import_ply;
 

@@ -35,16 +35,11 @@
 //! A scene has at most 16384 included files, 256 parameters of `Attribute` at once, and 2²⁰ shapes
 //! including instances. At most 4 GiB are read and unpacked in all.
 
-mod area;
-mod block;
 mod build;
 mod camera;
 mod directive;
 mod entity;
-mod imagemap;
 mod include;
-mod keys;
-mod leftover;
 mod light;
 mod material;
 mod mesh;
@@ -58,7 +53,6 @@ mod spectrum;
 mod texture;
 mod token;
 mod transform;
-mod words;
 
 use crate::main_file::MainFile;
 use crate::report::Report;
@@ -92,6 +86,6 @@ fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, 
     let scene = build::Builder::new(files, &report, &file.path).build(text, &file.name);
     let reader = reader::PbrtReader::new(&scene, files, &report, options.color, file.folder());
     let world = reader.world(&whole);
-    leftover::tell(&scene, &report);
+    scene::tell_unused(&scene, &report);
     report.finish(world, files)
 }

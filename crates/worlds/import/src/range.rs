@@ -1,6 +1,8 @@
-//! The range of numbers that a scene may hold, for any format.
+//! The range of numbers that a scene may hold, and checks of the placement of shapes, for any
+//! format.
 
-use glam::DAffine3;
+use etendue_world::Geometry;
+use glam::{DAffine3, DMat3, DVec3};
 
 /// The largest number in a scene, as in Étendue's own scenes. With this limit, sums of products of
 /// several numbers stay far within the range of f64.
@@ -9,6 +11,10 @@ pub(crate) const MAX_NUMBER: f64 = 1e9;
 /// The largest albedo of a surface. The limit slightly exceeds 1 because the weights of colour
 /// channels add up to 1 only up to rounding errors.
 pub(crate) const MAX_SHARE: f64 = 1.0 + 1e-9;
+
+/// Maximum relative difference between the axes of a sphere. Transforms are products of rounded
+/// numbers, so the axes differ slightly.
+const ALIKE: f64 = 1e-4;
 
 /// Checks that a number is in range; `Err` describes the fault.
 pub(crate) fn in_range(value: f64) -> Result<f64, String> {
@@ -24,4 +30,62 @@ pub(crate) fn in_range(value: f64) -> Result<f64, String> {
 /// Checks whether all numbers of a map are in range.
 pub(crate) fn holds(map: DAffine3) -> bool {
     map.to_cols_array().iter().all(|v| v.abs() <= MAX_NUMBER)
+}
+
+/// Returns the reason why a geometry cannot have the given placement, or `None` if the placement is
+/// allowed. `shines` states whether the shape emits. A sphere that emits must stay a sphere,
+/// because points of a light are drawn uniformly by area.
+pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Option<&'static str> {
+    let fits = match geometry {
+        Geometry::Sphere => !shines || is_similarity(to_world.matrix3),
+        Geometry::Cylinder => {
+            let [x, y, _] = axes(to_world.matrix3);
+            alike(x, y) && is_orthogonal(to_world.matrix3)
+        }
+        _ => true,
+    };
+    let lengths = axes(to_world.matrix3).map(DVec3::length);
+    let is_regular = holds(to_world)
+        && lengths.iter().all(|length| *length >= 1.0 / MAX_NUMBER)
+        && to_world.matrix3.determinant().abs() > 0.0;
+    match (is_regular, fits) {
+        (false, _) => Some(
+            "is placed out of range, or scaled to size 0; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
+        ),
+        (true, false) if matches!(geometry, Geometry::Sphere) => {
+            Some("emits, but has shear or different scales along its axes")
+        }
+        (true, false) => Some("has shear, or different scales along its axes"),
+        (true, true) => None,
+    }
+}
+
+/// Checks whether a map keeps angles, and therefore maps spheres to spheres.
+pub(crate) fn is_similarity(map: DMat3) -> bool {
+    let [x, y, z] = axes(map);
+    alike(x, y) && alike(y, z) && is_orthogonal(map)
+}
+
+/// Returns a similarity that replaces a regular map. Both maps take X to the same vector, and Y to
+/// the same side of this vector in the same plane. The similarity mirrors if the map mirrors.
+pub(crate) fn similar(map: DMat3) -> DMat3 {
+    let [x, y, z] = axes(map);
+    let along = x.normalize();
+    let aside = y.reject_from_normalized(along).normalize();
+    let up = along.cross(aside);
+    x.length() * DMat3::from_cols(along, aside, up * up.dot(z).signum())
+}
+
+fn axes(map: DMat3) -> [DVec3; 3] {
+    [0, 1, 2].map(|i| map.col(i))
+}
+
+fn alike(a: DVec3, b: DVec3) -> bool {
+    (a.length() - b.length()).abs() <= ALIKE * a.length()
+}
+
+fn is_orthogonal(map: DMat3) -> bool {
+    let [x, y, z] = axes(map);
+    let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
+    across(x, y) && across(y, z) && across(z, x)
 }

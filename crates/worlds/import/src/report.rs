@@ -1,9 +1,10 @@
-//! Causes for which a scene is refused, and notes.
+//! Causes for which a scene is refused, notes, and the result of an import.
 
 use crate::files::Files;
-use crate::note::{Imported, Note, Refused};
 use etendue_world::World;
 use std::cell::RefCell;
+use std::fmt;
+use std::path::Path;
 use std::rc::Rc;
 
 /// Maximum number of causes that a report keeps, and maximum number of notes. The limit on
@@ -27,11 +28,10 @@ pub(crate) struct SourcePlace {
 impl SourcePlace {
     /// Returns the place of a file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
-        let (line, column) = (0, 0);
         Self {
             file: file.into(),
-            line,
-            column,
+            line: 0,
+            column: 0,
         }
     }
 
@@ -90,6 +90,11 @@ impl Report {
         None
     }
 
+    /// Returns a value, or adds a cause for refusal that states its error.
+    pub(crate) fn accept<T>(&self, place: &SourcePlace, value: Result<T, String>) -> Option<T> {
+        value.map_err(|error| self.cause(place, error)).ok()
+    }
+
     /// Adds a note on an omission or approximation.
     pub(crate) fn note(&self, place: &SourcePlace, message: impl Into<String>) {
         self.notes.borrow_mut().add(place, message.into());
@@ -114,6 +119,70 @@ impl Report {
         }
     }
 }
+
+/// A message about a position in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// The file, as the scene names it.
+    pub file: String,
+    /// Line number, counted from 1; 0 if the message concerns the file as a whole.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// The message.
+    pub message: String,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.file, self.message),
+            line => write!(f, "{}:{line}:{}: {}", self.file, self.column, self.message),
+        }
+    }
+}
+
+/// An imported scene.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The world.
+    pub world: World,
+    /// Notes on omissions and approximations, in the order of reading; if there are too many notes,
+    /// the last note states the number of further notes.
+    pub notes: Vec<Note>,
+}
+
+/// The reasons why a scene is refused: all causes at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// The causes, at least one, in the order of reading.
+    pub causes: Vec<Note>,
+    /// Whether the free memory of the machine did not suffice to read the scene.
+    pub lacks_memory: bool,
+}
+
+impl Refused {
+    /// Creates a refusal with one cause that concerns a file as a whole.
+    pub(crate) fn because(file: &Path, message: impl Into<String>) -> Self {
+        let place = SourcePlace::whole(&file.display().to_string());
+        Self {
+            causes: vec![place.note(message.into())],
+            lacks_memory: false,
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, cause) in self.causes.iter().enumerate() {
+            let end = if i == 0 { "" } else { "\n" };
+            write!(f, "{end}{cause}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Refused {}
 
 /// Quotes a value of the file for a message.
 pub(crate) fn quoted(value: &str) -> String {

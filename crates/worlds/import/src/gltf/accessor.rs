@@ -1,12 +1,21 @@
-//! Buffers and accessors.
+//! Buffers and accessors, and the data or files that a `uri` refers to.
 
 use super::reader::GltfReader;
-use super::uri::{BufferSource, source};
 use crate::range::MAX_NUMBER;
+use crate::report::quoted;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::sync::Arc;
+
+/// Decoder of Base64 with optional padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
 
 /// Rows of numbers in a buffer, which are checked to lie within the buffer.
 struct AccessorRows {
@@ -70,12 +79,8 @@ impl GltfReader<'_> {
             .iter()
             .position(|row| !row.iter().all(|v| v.abs() <= MAX_NUMBER));
         if let Some(bad) = bad {
-            let path = format!("accessors[{}]", index.value());
-            self.cause(
-                &path,
-                format!("element {bad} is out of range; allowed: up to {MAX_NUMBER:e}"),
-            );
-            return None;
+            let message = format!("element {bad} is out of range; allowed: up to {MAX_NUMBER:e}");
+            return self.refuse(&format!("accessors[{}]", index.value()), message);
         }
         Some(numbers)
     }
@@ -87,20 +92,15 @@ impl GltfReader<'_> {
         use ComponentType::{U8, U16, U32};
         if !matches!(rows.component, U8 | U16 | U32) {
             let path = format!("accessors[{}].componentType", index.value());
-            self.cause(
-                &path,
-                "is not allowed for indices; allowed: 5121, 5123, 5125",
-            );
-            return None;
+            let message = "is not allowed for indices; allowed: 5121, 5123, 5125";
+            return self.refuse(&path, message);
         }
         Some((0..rows.count).map(|row| rows.whole(row)).collect())
     }
 
     fn spend(&self, index: Index<Accessor>, bytes: usize) -> Option<()> {
-        let spent = self.files.spend(bytes as u64);
-        spent
-            .map_err(|error| self.cause(&format!("accessors[{}]", index.value()), error))
-            .ok()
+        let path = format!("accessors[{}]", index.value());
+        self.accept(&path, self.files.spend(bytes as u64))
     }
 
     fn rows(&mut self, index: Index<Accessor>, kind: Type, width: usize) -> Option<AccessorRows> {
@@ -112,8 +112,7 @@ impl GltfReader<'_> {
             return None;
         };
         if found != kind {
-            self.cause(&path, format!("has type {found:?}; allowed here: {kind:?}"));
-            return None;
+            return self.refuse(&path, format!("has type {found:?}; allowed here: {kind:?}"));
         }
         if accessor.sparse.is_some() {
             return self.refuse(&format!("{path}.sparse"), "is not supported");
@@ -124,10 +123,8 @@ impl GltfReader<'_> {
         let stride = view.byte_stride.map_or(element, |stride| stride.0);
         let fit = self.fit(accessor, element, stride, bytes.len());
         let Some((start, count)) = fit else {
-            return self.refuse(
-                &path,
-                "reaches beyond its buffer, or has elements that overlap",
-            );
+            let message = "reaches beyond its buffer, or has elements that overlap";
+            return self.refuse(&path, message);
         };
         Some(AccessorRows {
             bytes,
@@ -180,10 +177,7 @@ impl GltfReader<'_> {
         if let Some(known) = self.buffers.get(&number) {
             return known.clone();
         }
-        let read = self.read_buffer(number);
-        let read = read
-            .map_err(|error| self.cause(&format!("buffers[{number}]"), error))
-            .ok();
+        let read = self.accept(&format!("buffers[{number}]"), self.read_buffer(number));
         self.buffers.insert(number, read.clone());
         read
     }
@@ -205,18 +199,56 @@ impl GltfReader<'_> {
 
     /// Returns the bytes that a URI refers to.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
-        match source(uri, self.files.left())? {
-            BufferSource::Data(bytes) => {
-                self.files.spend(bytes.len() as u64)?;
-                Ok(bytes)
-            }
-            BufferSource::File(name) => {
-                let folders = std::slice::from_ref(&self.folder);
-                let quoted = crate::report::quoted(&name);
-                let found = self.files.find(folders, &name);
-                let read = found.and_then(|path| self.files.read(&path));
-                read.map_err(|error| format!("file {quoted} {error}"))
-            }
+        if let Some(data) = uri.strip_prefix("data:") {
+            let bytes = decoded(data, self.files.left())?;
+            self.files.spend(bytes.len() as u64)?;
+            return Ok(bytes);
         }
+        if uri.contains("://") {
+            return Err(
+                "is the address of a remote file; allowed: local files and data URIs".to_owned(),
+            );
+        }
+        let name = unescaped(uri)?;
+        let found = self.files.find(std::slice::from_ref(&self.folder), &name);
+        let read = found.and_then(|path| self.files.read(&path));
+        read.map_err(|error| format!("file {} {error}", quoted(&name)))
     }
+}
+
+/// Decodes the data of a data URI, which may have at most `most` bytes.
+fn decoded(data: &str, most: u64) -> Result<Vec<u8>, String> {
+    let (kind, text) = data
+        .split_once(',')
+        .ok_or("is a data URI without a comma")?;
+    if !kind.ends_with(";base64") {
+        return Err("is a data URI that is not in base64; allowed: base64".to_owned());
+    }
+    // Four characters of Base64 encode three bytes.
+    if (text.len() as u64) / 4 * 3 > most {
+        return Err("is a data URI of more bytes than an import may read".to_owned());
+    }
+    let bytes = BASE64.decode(text);
+    bytes.map_err(|error| format!("is a data URI in damaged base64 ({error})"))
+}
+
+/// Decodes the percent encoding of a name.
+fn unescaped(uri: &str) -> Result<String, String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.get(..2).and_then(|two| str::from_utf8(two).ok());
+        let code = code.and_then(|two| u8::from_str_radix(two, 16).ok());
+        rest = match (first, code) {
+            (b'%', Some(byte)) => {
+                bytes.push(byte);
+                &after[2..]
+            }
+            _ => {
+                bytes.push(*first);
+                after
+            }
+        };
+    }
+    String::from_utf8(bytes).map_err(|_| "is no UTF-8".to_owned())
 }

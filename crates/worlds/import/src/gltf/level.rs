@@ -14,6 +14,30 @@ pub(super) enum TextureChannel {
     Alpha { factor: f64, cutoff: Option<f64> },
 }
 
+/// An image, and the channel that is read from it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct RasterKey {
+    image: usize,
+    kind: u8,
+    numbers: [u64; 3],
+}
+
+impl RasterKey {
+    pub(super) fn new(image: usize, level: TextureChannel) -> Self {
+        let (kind, numbers) = match level {
+            TextureChannel::Color(factor) => (0, factor),
+            TextureChannel::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
+            TextureChannel::Blue(factor) => (2, [factor, 0.0, 0.0]),
+            TextureChannel::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
+        };
+        Self {
+            image,
+            kind,
+            numbers: numbers.map(f64::to_bits),
+        }
+    }
+}
+
 /// Returns alpha if there is no cutoff; otherwise returns 0 for alpha below the cutoff, and 1 for
 /// all other values.
 pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {

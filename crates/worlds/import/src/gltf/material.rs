@@ -1,15 +1,22 @@
 //! Materials of a glTF file.
 
 use super::level::TextureChannel;
-use super::reader::GltfReader;
-use super::surface::{Draft, GltfSurface};
+use super::reader::{Draft, GltfReader, GltfSurface};
 use crate::range::MAX_NUMBER;
 use crate::report::quoted;
-use ::gltf::json::Material as BufferSource;
+use ::gltf::json::Material as GltfMaterial;
 use ::gltf::json::material::AlphaMode;
 use ::gltf::json::validation::Checked;
-use etendue_world::{Material, Texture};
+use etendue_world::{
+    Dielectric, Material, MetallicRoughness, MicrofacetDistribution, Roughness, Texture,
+};
 use std::collections::BTreeSet;
+
+/// Default index of refraction.
+const INDEX: f64 = 1.5;
+
+/// The JSON field that contains the pictures of the base colour and of metallic and roughness.
+const PBR: &str = "pbrMetallicRoughness";
 
 impl<'a> GltfReader<'a> {
     /// Returns the material with a given number in the file. If no number is given, returns the
@@ -20,13 +27,13 @@ impl<'a> GltfReader<'a> {
         }
         let made = match number.map(|n| (n, self.root.materials.get(n))) {
             Some((n, Some(source))) => self.surface(source, format!("materials[{n}]")),
-            _ => self.surface(&BufferSource::default(), "the default material".to_owned()),
+            _ => self.surface(&GltfMaterial::default(), "the default material".to_owned()),
         };
         self.materials.insert(number, made.clone());
         made
     }
 
-    fn surface(&mut self, source: &BufferSource, path: String) -> Option<GltfSurface> {
+    fn surface(&mut self, source: &GltfMaterial, path: String) -> Option<GltfSurface> {
         let mut draft = Draft {
             source,
             path,
@@ -162,9 +169,203 @@ impl<'a> GltfReader<'a> {
             self.note(&format!("{path}.extensions"), format!("{name} is left out"));
         }
     }
+
+    /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
+    /// was reported.
+    pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
+        let color = self.base_color(draft);
+        let metallic = self.share(draft, "metallicFactor");
+        let alpha = self.alpha(draft);
+        let (color, metallic, alpha) = (color?, metallic?, alpha?);
+        let coat = self.coat(draft)?;
+        if matches!(metallic, Texture::Constant(..=0.0)) && coat[1] <= 0.0 {
+            return Some(Material::Diffuse { reflectance: color });
+        }
+        Some(Material::MetallicRoughness(Box::new(MetallicRoughness {
+            color,
+            metallic,
+            roughness: roughness(alpha),
+            coat,
+        })))
+    }
+
+    pub(super) fn base_color(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
+        let pbr = &draft.source.pbr_metallic_roughness;
+        let path = format!("{}.{PBR}.baseColorFactor", draft.path);
+        let [r, g, b, _] = self.shares(&path, pbr.base_color_factor.0)?;
+        let level = TextureChannel::Color([r, g, b]);
+        match &pbr.base_color_texture {
+            Some(info) => self.bitmap(draft, info, &format!("{PBR}.baseColorTexture"), level),
+            None => Some(self.constant(&level)),
+        }
+    }
+
+    /// Returns `metallicFactor` times the metallic channel of the picture.
+    fn share(&mut self, draft: &mut Draft<'_>, name: &str) -> Option<Texture> {
+        let pbr = &draft.source.pbr_metallic_roughness;
+        let path = format!("{}.{PBR}.{name}", draft.path);
+        let factor = self.within(&path, pbr.metallic_factor.0, [0.0, 1.0])?;
+        match &pbr.metallic_roughness_texture {
+            // If the metallic factor is 0, the picture has no effect.
+            Some(info) if factor > 0.0 => {
+                let field = format!("{PBR}.metallicRoughnessTexture");
+                self.bitmap(draft, info, &field, TextureChannel::Blue(factor))
+            }
+            _ => Some(Texture::Constant(factor)),
+        }
+    }
+
+    /// Returns α, which is the square of the roughness.
+    pub(super) fn alpha(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
+        let pbr = &draft.source.pbr_metallic_roughness;
+        let path = format!("{}.{PBR}.roughnessFactor", draft.path);
+        let factor = self.within(&path, pbr.roughness_factor.0, [0.0, 1.0])?;
+        match &pbr.metallic_roughness_texture {
+            Some(info) if factor > 0.0 => {
+                let field = format!("{PBR}.metallicRoughnessTexture");
+                self.bitmap(draft, info, &field, TextureChannel::GreenSquared(factor))
+            }
+            _ => Some(Texture::Constant(factor * factor)),
+        }
+    }
+
+    /// Returns the index of refraction, or `None` if a cause of refusal was reported.
+    pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
+        let ior = draft
+            .source
+            .extensions
+            .as_ref()
+            .and_then(|of| of.ior.as_ref());
+        let Some(ior) = ior else {
+            return Some(INDEX);
+        };
+        let path = format!("{}.extensions.KHR_materials_ior.ior", draft.path);
+        self.within(&path, ior.ior.0, [1.0, 10.0])
+    }
+
+    /// Returns the reflectance of the coat of a dielectric at normal and at grazing incidence.
+    fn coat(&self, draft: &Draft<'_>) -> Option<[f64; 2]> {
+        let index = self.index(draft)?;
+        let normal = ((index - 1.0) / (index + 1.0)).powi(2);
+        let extensions = draft.source.extensions.as_ref();
+        let Some(of) = extensions.and_then(|of| of.specular.as_ref()) else {
+            return Some([normal, 1.0]);
+        };
+        let path = format!("{}.extensions.KHR_materials_specular", draft.path);
+        let field = format!("{path}.specularFactor");
+        let factor = self.within(&field, of.specular_factor.0, [0.0, 1.0])?;
+        let color = of.specular_color_factor.0;
+        for value in color {
+            self.within(&format!("{path}.specularColorFactor"), value, [0.0, 1.0])?;
+        }
+        if of.specular_texture.is_some() || of.specular_color_texture.is_some() {
+            self.note(&path, "pictures are left out");
+        }
+        Some([
+            factor * normal * self.color.of(color.map(f64::from)),
+            factor,
+        ])
+    }
+
+    /// Returns a material that transmits a share of the light and otherwise behaves like `opaque`,
+    /// or `None` if a cause of refusal was reported.
+    pub(super) fn with_glass(
+        &mut self,
+        draft: &mut Draft<'_>,
+        opaque: Material,
+    ) -> Option<Material> {
+        let extensions = draft.source.extensions.as_ref();
+        let transmission = extensions.and_then(|of| of.transmission.as_ref());
+        let Some(of) = transmission else {
+            if extensions.is_some_and(|of| of.volume.is_some()) {
+                let path = format!("{}.extensions.KHR_materials_volume", draft.path);
+                self.note(&path, "is left out: the material transmits no light");
+            }
+            return Some(opaque);
+        };
+        let path = format!("{}.extensions.KHR_materials_transmission", draft.path);
+        let field = format!("{path}.transmissionFactor");
+        let share = self.within(&field, of.transmission_factor.0, [0.0, 1.0])?;
+        if of.transmission_texture.is_some() {
+            self.note(&format!("{path}.transmissionTexture"), "is left out");
+        }
+        if share <= 0.0 {
+            return Some(opaque);
+        }
+        let metallic = draft.source.pbr_metallic_roughness.metallic_factor.0;
+        if metallic > 0.0 {
+            let message = "approximated: metals transmit like other materials";
+            self.note(&path, message);
+        }
+        let glass = self.glass(draft, &path)?;
+        if share >= 1.0 {
+            return Some(glass);
+        }
+        self.note(
+            &path,
+            "approximated: the material is a mixture of an opaque material and glass",
+        );
+        let weight = Texture::Constant(share);
+        let of = Box::new([opaque, glass]);
+        Some(Material::Blend { weight, of })
+    }
+
+    fn glass(&mut self, draft: &mut Draft<'_>, path: &str) -> Option<Material> {
+        let color = self.base_color(draft);
+        let alpha = self.alpha(draft);
+        let index = self.index(draft)?;
+        let is_thin = !self.has_volume(draft);
+        let roughness = roughness(alpha?).filter(|_| !is_thin);
+        let message = match is_thin {
+            true => {
+                "approximated: the surface is a smooth thin sheet with all internal reflections; the base colour applies once"
+            }
+            false => {
+                "approximated: the surface is an interface, and the base colour applies each time light passes"
+            }
+        };
+        self.note(path, message);
+        Some(Material::Dielectric(Dielectric {
+            index,
+            reflectance: Texture::Constant(1.0),
+            transmittance: color?,
+            roughness,
+            is_thin,
+        }))
+    }
+
+    /// Checks whether the surface encloses a volume.
+    fn has_volume(&self, draft: &Draft<'_>) -> bool {
+        let extensions = draft.source.extensions.as_ref();
+        let Some(volume) = extensions.and_then(|of| of.volume.as_ref()) else {
+            return false;
+        };
+        let path = format!("{}.extensions.KHR_materials_volume", draft.path);
+        if volume.attenuation_distance.0.is_finite() {
+            self.note(
+                &path,
+                "attenuation is left out: light is not absorbed inside the body",
+            );
+        }
+        if volume.thickness_factor.0 > 0.0 && volume.thickness_texture.is_some() {
+            self.note(&path, "thicknessTexture is left out");
+        }
+        volume.thickness_factor.0 > 0.0
+    }
 }
 
 /// Checks whether a material emits light.
-fn is_lit(source: &BufferSource) -> bool {
+fn is_lit(source: &GltfMaterial) -> bool {
     source.emissive_factor.0.iter().any(|v| *v > 0.0)
+}
+
+/// Returns the isotropic microfacet roughness α, or `None` for a smooth surface.
+pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
+    match alpha {
+        Texture::Constant(..=0.0) => None,
+        alpha => Some(Roughness {
+            distribution: MicrofacetDistribution::Ggx,
+            alpha: [alpha.clone(), alpha],
+        }),
+    }
 }

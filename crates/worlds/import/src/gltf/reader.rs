@@ -1,15 +1,14 @@
 //! Reads a glTF file into a world.
 
 use super::container::Document;
-use super::raster_key::RasterKey;
-use super::surface::GltfSurface;
+use super::level::RasterKey;
 use crate::Color;
 use crate::files::Files;
-use crate::report::{Report, SourcePlace};
-use ::gltf::json::Root;
+use crate::report::{Report, SourcePlace, quoted};
+use ::gltf::json::{Material as GltfMaterial, Root};
 use etendue_field::Raster;
-use etendue_world::{Triangles, World};
-use std::collections::{HashMap, HashSet};
+use etendue_world::{EmittedRadiance, Triangles, World};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,9 +34,28 @@ pub(super) struct GltfReader<'a> {
     /// Materials by number in the file; `None` if a cause of refusal was reported for the
     /// material. The default material has no number in the file.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
-    pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
+    pub(super) rasters: HashMap<RasterKey, Option<Arc<Raster>>>,
     /// Notes that were already given, and are not repeated.
     pub(super) told: HashSet<&'static str>,
+}
+
+/// The material of a surface.
+#[derive(Clone, Debug)]
+pub(super) struct GltfSurface {
+    /// The index of the material in the world.
+    pub(super) material: usize,
+    pub(super) emission: Option<EmittedRadiance>,
+    pub(super) is_double_sided: bool,
+    /// The number of the set of texture coordinates that the pictures use.
+    pub(super) set: Option<u32>,
+}
+
+/// A material that is being converted.
+pub(super) struct Draft<'a> {
+    pub(super) source: &'a GltfMaterial,
+    pub(super) path: String,
+    /// The sets of texture coordinates that the pictures converted so far use.
+    pub(super) sets: BTreeSet<u32>,
 }
 
 impl<'a> GltfReader<'a> {
@@ -84,6 +102,11 @@ impl<'a> GltfReader<'a> {
         None
     }
 
+    /// Returns a value, or adds a cause at a JSON path that states its error.
+    pub(super) fn accept<T>(&self, path: &str, value: Result<T, String>) -> Option<T> {
+        value.map_err(|error| self.cause(path, error)).ok()
+    }
+
     /// Adds a note that the element at a JSON path is dropped or approximated.
     pub(super) fn note(&self, path: &str, message: impl AsRef<str>) {
         self.report
@@ -112,5 +135,21 @@ impl<'a> GltfReader<'a> {
             self.within(path, value, [0.0, 1.0])?;
         }
         Some(values.map(f64::from))
+    }
+
+    /// Adds notes on ignored content that concerns the whole file.
+    pub(super) fn tell_leftovers(&self) {
+        let root = self.root;
+        for (i, animation) in root.animations.iter().enumerate() {
+            let name = animation.name.as_deref().unwrap_or_default();
+            let message = format!(
+                "animation {} is left out: nodes keep the transforms that they have without it",
+                quoted(name)
+            );
+            self.note(&format!("animations[{i}]"), message);
+        }
+        for name in root.extensions.iter().flat_map(|of| of.others.keys()) {
+            self.note("extensions", format!("{} left out", quoted(name)));
+        }
     }
 }

@@ -1,17 +1,21 @@
 //! Conversion of the meshes of nodes to shapes.
 
 use super::node::PlacedNode;
-use super::reader::{GltfReader, MAX_SHAPES};
-use super::surface::GltfSurface;
+use super::reader::{GltfReader, GltfSurface, MAX_SHAPES};
+use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::range::MAX_NUMBER;
-use ::gltf::json::mesh::{Mode, Primitive};
+use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
+use ::gltf::json::{Accessor, Index};
 use etendue_world::{Geometry, Shape, Triangles};
-use glam::{DAffine3, DVec3};
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// Maximum number of characters of a name.
 const LONGEST: usize = 100;
+
+/// Maximum number of corners of a mesh, for which 32-bit indices suffice.
+const MAX_CORNERS: usize = u32::MAX as usize;
 
 impl<'a> GltfReader<'a> {
     /// Adds the shapes of a mesh, one for each primitive.
@@ -34,18 +38,18 @@ impl<'a> GltfReader<'a> {
         // The name is shortened because each of many nodes may repeat the name of one mesh.
         let name: String = name.chars().take(LONGEST).collect();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
-            self.primitive(placed, [number, i], primitive, &name);
+            self.primitive(placed, (number, i), primitive, &name);
         }
     }
 
     fn primitive(
         &mut self,
         placed: &PlacedNode<'a>,
-        key: [usize; 2],
+        key: (usize, usize),
         primitive: &Primitive,
         name: &str,
     ) {
-        let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
+        let path = format!("meshes[{}].primitives[{}]", key.0, key.1);
         if self.world.shapes.len() >= MAX_SHAPES {
             // Only the first shape beyond the limit adds a cause of refusal.
             if !self.report.has_causes() {
@@ -53,9 +57,7 @@ impl<'a> GltfReader<'a> {
             }
             return;
         }
-        let key = (key[0], key[1]);
-        let surface = self.material(primitive.material.map(|m| m.value()));
-        let Some(surface) = surface else {
+        let Some(surface) = self.material(primitive.material.map(|m| m.value())) else {
             return;
         };
         let known = match self.meshes.get(&key) {
@@ -66,10 +68,15 @@ impl<'a> GltfReader<'a> {
                 made
             }
         };
-        let Some(triangles) = known else {
-            return;
-        };
-        self.add(triangles, placed.to_world, name, &surface);
+        self.world.shapes.extend(known.map(|mesh| Shape {
+            name: name.to_owned(),
+            geometry: Geometry::Mesh(mesh),
+            to_world: placed.to_world,
+            is_flipped: false,
+            material: surface.material,
+            emission: surface.emission,
+            emits_on_both_sides: surface.is_double_sided,
+        }));
     }
 
     fn triangles(
@@ -92,15 +99,126 @@ impl<'a> GltfReader<'a> {
         parts.finish().map(Arc::new)
     }
 
-    fn add(&mut self, mesh: Arc<Triangles>, to_world: DAffine3, name: &str, surface: &GltfSurface) {
-        self.world.shapes.push(Shape {
-            name: name.to_owned(),
-            geometry: Geometry::Mesh(mesh),
-            to_world,
-            is_flipped: false,
-            material: surface.material,
-            emission: surface.emission.clone(),
-            emits_on_both_sides: surface.is_double_sided,
-        });
+    /// Returns the triangles of a primitive, with the texture coordinates that its material uses;
+    /// returns `None` if the primitive has no triangles, or if a cause of refusal was reported.
+    pub(super) fn parts(
+        &mut self,
+        primitive: &Primitive,
+        path: &str,
+        set: Option<u32>,
+    ) -> Option<MeshParts> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return None;
+        };
+        self.tell_dropped(primitive, path);
+        let vertices: Vec<[f64; 3]> = self.numbers(attribute(primitive, Semantic::Positions)?)?;
+        let vertices: Vec<DVec3> = vertices.into_iter().map(DVec3::from).collect();
+        let normals = match attribute(primitive, Semantic::Normals) {
+            Some(index) => Some(self.numbers::<3>(index)?),
+            None => None,
+        };
+        let uvs = match set {
+            Some(set) => Some(self.uvs(primitive, path, set)?),
+            None => None,
+        };
+        let listed = match primitive.indices {
+            Some(index) => self.indices(index)?,
+            None => self.all(vertices.len(), path)?,
+        };
+        let count = vertices.len();
+        if let Some(bad) = listed.iter().find(|i| **i as usize >= count) {
+            return self.refuse(
+                path,
+                format!("an index is {bad}, but there are only {count} vertices"),
+            );
+        }
+        let lengths = [normals.as_ref().map(Vec::len), uvs.as_ref().map(Vec::len)];
+        if lengths.iter().flatten().any(|length| *length != count) {
+            return self.refuse(path, "the attributes have different lengths");
+        }
+        let mut parts = MeshParts {
+            vertices,
+            corners: corners(&listed, mode),
+            normals: normals.map(|n| n.into_iter().map(DVec3::from).collect()),
+            uvs: uvs.map(|uvs| uvs.into_iter().map(DVec2::from).collect()),
+        };
+        self.finish(&mut parts, path)?;
+        Some(parts)
+    }
+
+    /// Returns the corners of a primitive without indices, which are all vertices in order.
+    fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
+        let count = u32::try_from(count.min(MAX_CORNERS)).ok()?;
+        self.accept(path, self.files.spend(u64::from(count) * 4))?;
+        Some((0..count).collect())
+    }
+
+    fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<[f64; 2]>> {
+        let Some(index) = attribute(primitive, Semantic::TexCoords(set)) else {
+            let message = format!("has no TEXCOORD_{set}, which its material needs");
+            return self.refuse(path, message);
+        };
+        self.numbers(index)
+    }
+
+    /// Removes triangles without area, and turns normals to the front.
+    fn finish(&self, parts: &mut MeshParts, path: &str) -> Option<()> {
+        self.accept(path, self.files.spend(parts.bytes()))?;
+        parts.drop_empty();
+        if parts.corners.is_empty() {
+            self.note(path, format!("{NO_AREA} and is left out"));
+            return None;
+        }
+        if parts.mend_normals() {
+            self.note(path, MENDED);
+        }
+        let turned = parts.turn_normals();
+        if turned > 0 {
+            let message = format!(
+                "{turned} normals point away from the front of their triangles, and are reversed"
+            );
+            self.note(path, message);
+        }
+        Some(())
+    }
+
+    fn tell_dropped(&self, primitive: &Primitive, path: &str) {
+        if primitive.targets.is_some() {
+            self.note(
+                &format!("{path}.targets"),
+                "is left out: the mesh keeps its base shape",
+            );
+        }
+        if attribute(primitive, Semantic::Colors(0)).is_some() {
+            self.note(&format!("{path}.attributes.COLOR_0"), "is left out");
+        }
+        let others = primitive.extensions.iter().flat_map(|of| of.others.keys());
+        for name in others {
+            let name = crate::report::quoted(name);
+            self.note(&format!("{path}.extensions"), format!("{name} is left out"));
+        }
+    }
+}
+
+fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
+    primitive.attributes.get(&Checked::Valid(of)).copied()
+}
+
+/// Returns the triangles of a list, a strip or a fan. Every second triangle of a strip is flipped.
+fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Triangles => listed.as_chunks().0.to_vec(),
+        Mode::TriangleStrip => {
+            let turned = |(i, w): (usize, &[u32])| match i % 2 {
+                0 => [w[0], w[1], w[2]],
+                _ => [w[0], w[2], w[1]],
+            };
+            listed.windows(3).enumerate().map(turned).collect()
+        }
+        Mode::TriangleFan => {
+            let pairs = listed.get(1..).unwrap_or_default().windows(2);
+            pairs.map(|pair| [pair[0], pair[1], listed[0]]).collect()
+        }
+        _ => Vec::new(),
     }
 }

@@ -1,14 +1,18 @@
-//! Textures of a glTF file, and the placement of these textures.
+//! Textures and images of a glTF file.
 
-use super::level::{TextureChannel, cut};
-use super::reader::GltfReader;
-use super::surface::Draft;
+use super::level::{RasterKey, TextureChannel, cut};
+use super::reader::{Draft, GltfReader};
+use crate::pictures;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::texture::TextureTransform;
 use ::gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use ::gltf::json::validation::Checked;
+use etendue_field::Raster;
+use etendue_scene::{Channels, Fault};
 use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DMat2, DVec2};
+use std::path::Path;
+use std::sync::Arc;
 
 impl GltfReader<'_> {
     /// Returns the value for a white, opaque pixel, as a constant texture.
@@ -94,5 +98,60 @@ impl GltfReader<'_> {
             self.cause(path, message);
         }
         is_in_range.then_some(map)
+    }
+
+    /// Returns one number for each pixel of an image, or `None` if a cause of refusal was reported.
+    pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
+        let key = RasterKey::new(image, level);
+        if let Some(known) = self.rasters.get(&key) {
+            return known.clone();
+        }
+        let read = self.read_image(image, level).map(Arc::new);
+        let read = self.accept(&format!("images[{image}]"), read);
+        self.rasters.insert(key, read.clone());
+        read
+    }
+
+    fn read_image(&mut self, number: usize, level: TextureChannel) -> Result<Raster, String> {
+        let image = self.root.images.get(number).ok_or("is not there")?;
+        let bytes = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => self.bytes_of(uri)?,
+            (None, Some(view)) => self.view(view.value()).ok_or("cannot be read")?,
+            (None, None) => return Err("has neither uri nor bufferView".to_owned()),
+        };
+        let extension = extension(&bytes).ok_or("is no PNG or JPEG picture")?;
+        let name = Path::new("image").with_extension(extension);
+        let channels = pictures::decode(&name, &bytes, self.files)?;
+        pictures::counted(self.files, self.numbers_of(&channels, level))
+    }
+
+    fn numbers_of(&self, channels: &Channels, level: TextureChannel) -> Result<Raster, Fault> {
+        let color = self.color;
+        let is_grey = channels.is_grey();
+        if let TextureChannel::Alpha { factor, cutoff } = level {
+            return channels.alphas(|alpha| cut(factor * alpha, cutoff));
+        }
+        let light = |value: f64| match level {
+            TextureChannel::Color(_) => pictures::linear(value),
+            _ => value,
+        };
+        channels.raster(light, |rgb| match level {
+            // The value of a grey pixel is used directly, because a luminance computed from three
+            // equal values would have a rounding error.
+            TextureChannel::Color(factor) if is_grey => rgb[0] * color.of(factor),
+            TextureChannel::Color(factor) => color.of([0, 1, 2].map(|i| rgb[i] * factor[i])),
+            TextureChannel::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
+            TextureChannel::Blue(factor) => factor * rgb[2],
+            TextureChannel::Alpha { .. } => 1.0,
+        })
+    }
+}
+
+/// Returns the file extension of the format that the first bytes of an image indicate.
+fn extension(bytes: &[u8]) -> Option<&'static str> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => Some("png"),
+        [0xff, 0xd8, ..] => Some("jpg"),
+        _ => None,
     }
 }

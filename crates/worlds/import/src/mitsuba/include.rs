@@ -1,8 +1,7 @@
 //! File search and included files of a scene.
 
-use super::source::SourceFile;
 use super::transform::{Attributes, allow, required};
-use super::xml::Tree;
+use super::xml::{SourceFile, Tree};
 use crate::report::quoted;
 use std::path::Path;
 

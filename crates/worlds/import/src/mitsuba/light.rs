@@ -149,10 +149,8 @@ impl<'a> MitsubaReader<'a> {
             let message = "the picture has pixels below 0; allowed: 0 or more";
             return self.report.refuse(&object.place, message);
         }
-        let bytes = size_of_val(pixels.values()) as u64;
-        let fits = self.files.spend(bytes);
-        fits.map_err(|error| self.report.cause(&object.place, error))
-            .ok()?;
+        let spent = self.files.spend(size_of_val(pixels.values()) as u64);
+        self.report.accept(&object.place, spent)?;
         let values = pixels.values().iter().map(|v| v * scale).collect();
         let radiance = Raster::new(pixels.width(), pixels.height(), values)?;
         Some(Light::Sky(SkyMap {

@@ -1,14 +1,15 @@
 //! Materials: `bsdf` elements.
 
 use super::metals;
-use super::object::MitsubaObject;
+use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use super::texture::as_number;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_world::{
-    Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
+    Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Principled, Roughness,
+    Texture,
 };
 use std::sync::Arc;
 
@@ -267,4 +268,155 @@ impl<'a> MitsubaReader<'a> {
         let message = format!("{name} is not above 0 anywhere");
         self.fault(object, name, message)
     }
+
+    pub(super) fn two_sided(
+        &mut self,
+        object: &'a MitsubaObject,
+        depth: usize,
+    ) -> Option<Material> {
+        let sides = self.nested(object, depth);
+        let both = match <[Material; 2]>::try_from(sides?) {
+            Ok(both) => both,
+            Err(mut rest) => match (rest.pop(), rest.pop()) {
+                (Some(one), None) => [one.clone(), one],
+                _ => return self.wrong_number(object, "one or two"),
+            },
+        };
+        if both.iter().any(lets_through) {
+            let message = "twosided contains a bsdf that transmits light; allowed: opaque bsdfs";
+            return self.report.refuse(&object.place, message);
+        }
+        Some(Material::TwoSided(Box::new(both)))
+    }
+
+    pub(super) fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+        let opacity = self.share(object, "opacity", Role::Number, 0.5);
+        let mut of = self.nested(object, depth)?;
+        match (of.pop(), of.pop()) {
+            (Some(of), None) => Some(Material::Mask {
+                opacity: as_number(opacity?),
+                of: Box::new(of),
+            }),
+            _ => self.wrong_number(object, "one"),
+        }
+    }
+
+    pub(super) fn blend(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+        if !self.has(object, "weight") {
+            self.report.cause(&object.place, "blendbsdf without weight");
+        }
+        let weight = self.share(object, "weight", Role::Number, 0.5);
+        match <[Material; 2]>::try_from(self.nested(object, depth)?) {
+            Ok(of) => Some(Material::Blend {
+                weight: as_number(weight?),
+                of: Box::new(of),
+            }),
+            Err(_) => self.wrong_number(object, "two"),
+        }
+    }
+
+    /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
+    fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
+        let within = self.children(object, ObjectKind::Bsdf);
+        // All bsdfs are read even after a failure, to find all causes of refusal.
+        let all: Vec<Option<Material>> = within
+            .into_iter()
+            .take(3)
+            .map(|(_, bsdf)| self.make_material(bsdf, depth + 1))
+            .collect();
+        all.into_iter().collect()
+    }
+
+    fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
+        let plugin = &object.plugin;
+        let message = format!("{plugin} has a wrong number of bsdfs; allowed: {allowed}");
+        self.report.refuse(&object.place, message)
+    }
+
+    pub(super) fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
+        // A tint does not change luminance.
+        let _ = self.property(object, "sheen_tint");
+        let transmission = self.parameter(object, "spec_trans", 0.0)?;
+        let index = self.principled_index(object);
+        let index = index.map(|index| match transmission.largest() > 0.0 {
+            // Mitsuba changes an index of 1, because an interface without a step does not refract.
+            true if index <= 1.0 => self.least_index(object),
+            _ => index,
+        });
+        let color = self.reflectance(object, "base_color", 0.5);
+        let metallic = self.parameter(object, "metallic", 0.0);
+        let roughness = self.parameter(object, "roughness", 0.5);
+        let mut zero = |name| self.parameter(object, name, 0.0);
+        let [anisotropic, tint, flatness, sheen, clearcoat, gloss] = [
+            "anisotropic",
+            "spec_tint",
+            "flatness",
+            "sheen",
+            "clearcoat",
+            "clearcoat_gloss",
+        ]
+        .map(&mut zero);
+        let of = Principled {
+            color: color?,
+            metallic: metallic?,
+            transmission,
+            roughness: roughness?,
+            anisotropic: anisotropic?,
+            tint: tint?,
+            flatness: flatness?,
+            sheen: sheen?,
+            clearcoat: clearcoat?,
+            gloss: gloss?,
+            index: index?,
+        };
+        Some(Material::Principled(Box::new(of)))
+    }
+
+    /// Reads a parameter from 0 to 1.
+    fn parameter(
+        &mut self,
+        object: &'a MitsubaObject,
+        name: &str,
+        default: f64,
+    ) -> Option<Texture> {
+        self.share(object, name, Role::Number, default)
+            .map(as_number)
+    }
+
+    /// Returns the index that Mitsuba uses in place of 1 for a material that transmits light.
+    fn least_index(&self, object: &'a MitsubaObject) -> f64 {
+        match self.has(object, "eta") {
+            true => 1.001,
+            false => of_specular(1e-3),
+        }
+    }
+
+    /// Returns the index of refraction. The file states either the index or `specular`; the
+    /// reflectance at normal incidence is then 0.08 `specular`.
+    fn principled_index(&mut self, object: &'a MitsubaObject) -> Option<f64> {
+        if !self.has(object, "eta") {
+            let is_share = |v| (0.0..=1.0).contains(&v);
+            let specular = self.number_or(object, "specular", 0.5, "0 to 1", is_share)?;
+            return Some(of_specular(specular));
+        }
+        if self.has(object, "specular") {
+            let message = "specular is given together with eta; allowed: one of them";
+            return self.fault(object, "specular", message);
+        }
+        self.number_within(object, "eta", "1 or more", |v| v >= 1.0)
+    }
+}
+
+fn lets_through(material: &Material) -> bool {
+    match material {
+        Material::Dielectric(_) | Material::Mask { .. } => true,
+        Material::Principled(of) => of.transmission.largest() > 0.0,
+        Material::Blend { of, .. } => of.iter().any(lets_through),
+        _ => false,
+    }
+}
+
+/// Returns the index whose reflectance at normal incidence is 0.08 `specular`.
+fn of_specular(specular: f64) -> f64 {
+    2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0
 }

@@ -1,21 +1,31 @@
 //! Shapes that are meshes.
 
-use super::mesh_data::{MitsubaAttributes, MitsubaMesh, ReadMesh};
-use super::mesh_key::MitsubaMeshKey;
+use super::mesh_data::{MitsubaAttributes, MitsubaMesh, MitsubaMeshKey, ReadMesh};
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
-use super::{cube, serialized};
-use crate::meshes::{MeshParts, NO_AREA};
+use super::serialized;
+use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
+/// The normal and corners of each side of the cube. Bit k of a corner is set if coordinate k of the
+/// corner is 1.
+const SIDES: [([f64; 3], [u32; 4]); 6] = [
+    ([0.0, -1.0, 0.0], [1, 5, 4, 0]),
+    ([0.0, 1.0, 0.0], [3, 2, 6, 7]),
+    ([1.0, 0.0, 0.0], [1, 3, 7, 5]),
+    ([0.0, 0.0, 1.0], [5, 7, 6, 4]),
+    ([-1.0, 0.0, 0.0], [4, 6, 2, 0]),
+    ([0.0, 0.0, -1.0], [3, 1, 0, 2]),
+];
+
 impl<'a> MitsubaReader<'a> {
     pub(super) fn cube(&self, object: &'a MitsubaObject) -> Option<MitsubaMesh> {
-        let triangles = cube::parts().finish()?;
+        let triangles = cube_parts().finish()?;
         Some(MitsubaMesh {
             triangles: Arc::new(triangles),
             attributes: Rc::default(),
@@ -178,9 +188,7 @@ impl<'a> MitsubaReader<'a> {
             (false, Some(_)) => {
                 parts.face_normals();
                 if parts.mend_normals() {
-                    let message =
-                        "approximated: vertices without a normal use the normal of a triangle";
-                    self.report.note(&object.place, message);
+                    self.report.note(&object.place, MENDED);
                 }
             }
         }
@@ -198,4 +206,26 @@ fn bits(linear: DMat3) -> [u64; 9] {
 /// Returns the direction to which a map takes Z, or `None` for a singular map.
 pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
     map.matrix3.z_axis.try_normalize()
+}
+
+fn cube_parts() -> MeshParts {
+    let (mut vertices, mut normals, mut uvs) = (Vec::new(), Vec::new(), Vec::new());
+    let mut corners = Vec::new();
+    for (side, (normal, places)) in (0_u32..).zip(SIDES) {
+        let first = 4 * side;
+        for place in places {
+            let coordinate = |k: u32| if place >> k & 1 == 1 { 1.0 } else { -1.0 };
+            vertices.push(DVec3::new(coordinate(0), coordinate(1), coordinate(2)));
+            normals.push(DVec3::from(normal));
+        }
+        uvs.extend([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]].map(DVec2::from));
+        corners.push([first, first + 1, first + 2]);
+        corners.push([first + 3, first, first + 2]);
+    }
+    MeshParts {
+        vertices,
+        corners,
+        normals: Some(normals),
+        uvs: Some(uvs),
+    }
 }

@@ -1,10 +1,9 @@
 //! Elements that hold values of properties.
 
 use super::object::Value;
-use super::source::SourceFile;
 use super::transform::{Attributes, allow, find, is_rigid, required, step};
 use super::value;
-use super::xml::Tree;
+use super::xml::{SourceFile, Tree};
 use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use glam::DAffine3;

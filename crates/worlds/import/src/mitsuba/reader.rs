@@ -1,7 +1,6 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
-use super::mesh_data::{MitsubaMesh, ReadMesh};
-use super::mesh_key::MitsubaMeshKey;
+use super::mesh_data::{MitsubaMesh, MitsubaMeshKey, ReadMesh};
 use super::object::{MitsubaObject, ObjectKind};
 use crate::Color;
 use crate::files::Files;

@@ -3,7 +3,7 @@
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
-use crate::placement::{fault, is_similarity, similar};
+use crate::range::{fault, is_similarity, similar};
 use crate::report::quoted;
 use etendue_world::{Geometry, Light, Shape, Texture, Triangles};
 use glam::{DAffine3, DMat3, DVec3};

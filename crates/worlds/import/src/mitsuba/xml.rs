@@ -2,8 +2,6 @@
 
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::parameters::Parameters;
-use super::property_names::VALUES;
-use super::source::{LineCursor, SourceFile};
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
 use crate::files::Files;
@@ -15,10 +13,13 @@ use std::rc::Rc;
 
 /// Maximum nesting depth of elements.
 const MAX_DEPTH: usize = 64;
+
 /// Maximum number of attributes of an element.
 const MAX_ATTRIBUTES: usize = 64;
+
 /// Maximum number of elements in all files.
 const MOST_ELEMENTS: usize = 1 << 23;
+
 /// Maximum number of elements, texts and comments in one file. An element usually stands between
 /// two texts, which are line ends.
 const MOST_NODES: u32 = 1 << 25;
@@ -312,8 +313,8 @@ impl<'a> Tree<'a> {
                 self.add(parent, name, Value::Reference(id), place, source);
                 Ok(())
             }
-            element if !VALUES.contains(&element) => Err("not an element of a scene".to_owned()),
-            element => {
+            element @ ("boolean" | "float" | "integer" | "point" | "rgb" | "spectrum"
+            | "string" | "transform" | "vector") => {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
@@ -326,6 +327,56 @@ impl<'a> Tree<'a> {
                 self.add(parent, name, value, place, source);
                 fault.map_or(Ok(()), Err)
             }
+            _ => Err("not an element of a scene".to_owned()),
+        }
+    }
+}
+
+/// A file that is being read.
+pub(super) struct SourceFile<'t> {
+    pub(super) name: Rc<str>,
+    /// The search folders: first the folders that this file adds, then the folders of the
+    /// including file.
+    pub(super) folders: Rc<[PathBuf]>,
+    /// Whether the format is older than version 2.
+    pub(super) is_old: bool,
+    pub(super) cursor: LineCursor<'t>,
+}
+
+/// Counts lines and columns for increasing offsets.
+pub(super) struct LineCursor<'t> {
+    text: &'t str,
+    offset: usize,
+    line: usize,
+    column: usize,
+}
+
+impl<'t> LineCursor<'t> {
+    pub(super) fn new(text: &'t str) -> Self {
+        Self {
+            text,
+            offset: 0,
+            line: 1,
+            column: 1,
+        }
+    }
+
+    pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> SourcePlace {
+        // Elements are visited in the order of the text, so each line is counted once.
+        if let Some(passed) = self.text.get(self.offset..offset) {
+            for c in passed.chars() {
+                if c == '\n' {
+                    (self.line, self.column) = (self.line + 1, 1);
+                } else {
+                    self.column += 1;
+                }
+            }
+            self.offset = offset;
+        }
+        SourcePlace {
+            file: Rc::clone(file),
+            line: self.line,
+            column: self.column,
         }
     }
 }

@@ -1,7 +1,8 @@
-//! Entries of an MTL file.
+//! Entries of an MTL file, and the surfaces made from them.
 
 use super::map::MtlMap;
 use crate::report::SourcePlace;
+use etendue_world::Texture;
 
 /// A material as it is written in an MTL file.
 #[derive(Clone, Debug)]
@@ -46,4 +47,13 @@ impl MtlEntry {
             map_d: None,
         }
     }
+}
+
+/// The surface of a part.
+#[derive(Clone, Debug)]
+pub(super) struct ObjSurface {
+    pub(super) material: usize,
+    pub(super) emission: Option<Texture>,
+    /// Whether the surface has a picture, which needs texture coordinates.
+    pub(super) has_picture: bool,
 }

@@ -1,7 +1,7 @@
 //! Statements of MTL files that name a picture.
 
 use crate::range::MAX_NUMBER;
-use crate::report::{Report, SourcePlace, quoted};
+use crate::report::{Report, SourcePlace};
 use etendue_world::Wrap;
 use glam::{DAffine2, DVec2};
 use std::path::PathBuf;
@@ -62,14 +62,12 @@ impl MtlMap {
             }
         }
         if rest.is_empty() {
-            report.cause(&place, "does not name a file");
-            return None;
+            return report.refuse(&place, "does not name a file");
         }
         if !(scale.abs().max_element() <= MAX_NUMBER && offset.abs().max_element() <= MAX_NUMBER) {
             let message =
                 format!("moves or scales the picture out of range; allowed: up to {MAX_NUMBER:e}");
-            report.cause(&place, message);
-            return None;
+            return report.refuse(&place, message);
         }
         // In the file, v points upwards and v' = s v + o. With v downwards, the map is 1 − v' = s
         // (1 − v) + 1 − s − o.
@@ -81,11 +79,6 @@ impl MtlMap {
             to_uv: DAffine2::from_scale_angle_translation(scale, 0.0, moved),
             wrap,
         })
-    }
-
-    /// Returns the name of the file, quoted for messages.
-    pub(super) fn name(&self) -> String {
-        quoted(&self.file)
     }
 }
 

@@ -1,12 +1,12 @@
 //! Materials of MTL files.
 
-use super::entry::MtlEntry;
+use super::entry::{MtlEntry, ObjSurface};
 use super::map::MtlMap;
 use super::ply::diffuse;
 use super::reader::ObjReader;
-use super::surface::ObjSurface;
 use crate::pictures::{counted, decode, linear};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
+use crate::report::quoted;
 use etendue_field::Raster;
 use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
 use std::sync::Arc;
@@ -158,11 +158,8 @@ impl ObjReader<'_> {
     /// of the picture are sRGB unless `raw` is set.
     fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);
-        let refuse = |error: String| {
-            let message = format!("file {} {error}", map.name());
-            self.report.cause(&map.place, message);
-        };
-        let pixels = read.map_err(refuse).ok()?;
+        let read = read.map_err(|error| format!("file {} {error}", quoted(&map.file)));
+        let pixels = self.report.accept(&map.place, read)?;
         Some(Texture::Bitmap(Bitmap {
             to_uv: map.to_uv,
             pixels: Arc::new(pixels),
@@ -184,11 +181,8 @@ impl ObjReader<'_> {
             false => self.color.of([0, 1, 2].map(|i| factor[i] * rgb[i])),
         });
         let raster = counted(self.files, raster)?;
-        if !raster
-            .values()
-            .iter()
-            .all(|v| (0.0..=MAX_NUMBER).contains(v))
-        {
+        let is_in_range = |v: &f64| (0.0..=MAX_NUMBER).contains(v);
+        if !raster.values().iter().all(is_in_range) {
             return Err(format!(
                 "has pixels out of range; allowed: 0 to {MAX_NUMBER:e}"
             ));

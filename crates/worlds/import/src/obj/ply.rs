@@ -1,7 +1,7 @@
 //! PLY files, each of which contains one mesh.
 
 use crate::main_file::MainFile;
-use crate::meshes::MeshParts;
+use crate::meshes::{MENDED, MeshParts};
 use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_scene::DetailedMesh;
@@ -24,8 +24,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area above 0".to_owned()))?;
     let (report, place) = (Report::default(), scene.place());
     if mended {
-        let message = "approximated: vertices without a normal use the normal of a triangle";
-        report.note(&place, message);
+        report.note(&place, MENDED);
     }
     report.note(
         &place,

@@ -1,11 +1,10 @@
 //! Conversion of the parts of OBJ files to shapes.
 
-use super::entry::MtlEntry;
+use super::entry::{MtlEntry, ObjSurface};
 use super::mtl::{self, left_out};
-use super::surface::ObjSurface;
 use crate::Color;
 use crate::files::Files;
-use crate::meshes::{MeshParts, NO_AREA};
+use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::{Report, SourcePlace, quoted};
 use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
 use etendue_world::{Geometry, Shape, World};
@@ -82,16 +81,11 @@ impl<'a> ObjReader<'a> {
     fn read(&mut self, line: usize, name: &str) {
         let found = self.files.find(std::slice::from_ref(&self.folder), name);
         let read = found.and_then(|path| Ok((self.files.read(&path)?, path)));
-        match read {
-            Ok((bytes, path)) => {
-                let folder = path.parent().unwrap_or(&self.folder);
-                let text = String::from_utf8_lossy(&bytes);
-                mtl::read(&text, name, folder, self.report, &mut self.entries);
-            }
-            Err(error) => {
-                let message = format!("file {} {error}", quoted(name));
-                self.report.cause(&self.at(line), message);
-            }
+        let read = read.map_err(|error| format!("file {} {error}", quoted(name)));
+        if let Some((bytes, path)) = self.report.accept(&self.at(line), read) {
+            let folder = path.parent().unwrap_or(&self.folder);
+            let text = String::from_utf8_lossy(&bytes);
+            mtl::read(&text, name, folder, self.report, &mut self.entries);
         }
     }
 
@@ -106,8 +100,7 @@ impl<'a> ObjReader<'a> {
         parts.face_normals();
         let place = self.at(part.line);
         if parts.mend_normals() {
-            let message = "approximated: vertices without a normal use the normal of a triangle";
-            self.report.note(&place, message);
+            self.report.note(&place, MENDED);
         }
         if surface.has_picture && parts.uvs.is_none() {
             let message = "faces have no texture coordinates, but their material needs them";
@@ -144,8 +137,7 @@ impl<'a> ObjReader<'a> {
                 Some(entry) => self.surface(&entry),
                 None => {
                     let message = format!("material {} is in no mtllib", quoted(known));
-                    self.report.cause(&self.at(line), message);
-                    None
+                    self.report.refuse(&self.at(line), message)
                 }
             },
         };
@@ -179,9 +171,8 @@ impl<'a> ObjReader<'a> {
                 uvs
             }),
         };
-        let fits = self.files.spend(parts.bytes());
-        fits.map_err(|error| self.report.cause(&self.place, error))
-            .ok()?;
+        let spent = self.files.spend(parts.bytes());
+        self.report.accept(&self.place, spent)?;
         Some(parts)
     }
 }

@@ -1,8 +1,8 @@
-//! Builds a scene from directives.
+//! Builds a scene from directives: entities, attribute blocks and object definitions.
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
-use super::scene::{GraphicsState, MaterialOf, PbrtScene, PbrtShape};
+use super::scene::{GraphicsState, Instance, MaterialOf, PbrtObject, PbrtScene, PbrtShape};
 use super::token::Tokens;
 use crate::files::Files;
 use crate::report::{Report, SourcePlace, quoted};
@@ -32,6 +32,9 @@ const SETTINGS: [&str; 5] = [
     "PixelFilter",
     "Accelerator",
 ];
+
+/// Maximum nesting depth of blocks.
+const MAX_DEPTH: usize = 1 << 12;
 
 /// Builds a scene from directives.
 pub(super) struct Builder<'a> {
@@ -232,5 +235,79 @@ impl<'a> Builder<'a> {
             defaults: defaults.unwrap_or_default(),
             is_used: false.into(),
         }
+    }
+}
+
+impl Builder<'_> {
+    /// Adds a cause for each unclosed block that is nested deeper than a level.
+    pub(super) fn refuse_open(&mut self, level: usize) {
+        while self.stack.len() > level {
+            if let Some((state, word, place)) = self.stack.pop() {
+                self.report
+                    .cause(&place, format!("{word}Begin without {word}End"));
+                self.close(state, word);
+            }
+        }
+    }
+
+    /// Returns to the graphics state before a block.
+    fn close(&mut self, state: GraphicsState, word: &str) {
+        self.state = state;
+        if word == "Object" {
+            self.object = None;
+        }
+    }
+
+    pub(super) fn push(&mut self, word: &'static str, place: &SourcePlace) -> Result<(), String> {
+        self.require_world("a block", true)?;
+        if self.stack.len() >= MAX_DEPTH {
+            return Err(format!("blocks are nested more than {MAX_DEPTH} deep"));
+        }
+        self.stack.push((self.state.clone(), word, place.clone()));
+        Ok(())
+    }
+
+    pub(super) fn pop(&mut self, word: &str) -> Result<(), String> {
+        if let Some((state, ..)) = self.stack.pop_if(|(_, begun, _)| *begun == word) {
+            self.close(state, word);
+            return Ok(());
+        }
+        match self.stack.last() {
+            Some((.., place)) => Err(format!(
+                "{word}End stands inside the block that line {} opens; this block must end first",
+                place.line
+            )),
+            None => Err(format!("{word}End without {word}Begin")),
+        }
+    }
+
+    pub(super) fn begin_object(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
+        if self.object.is_some() {
+            return Err("an object is defined within an object".to_owned());
+        }
+        if self.scene.objects.contains_key(&name) {
+            return Err(format!("object {} is defined twice", quoted(&name)));
+        }
+        self.push("Object", place)?;
+        let object = PbrtObject {
+            place: place.clone(),
+            shapes: Vec::new(),
+        };
+        self.scene.objects.insert(name.clone(), object);
+        self.object = Some(name);
+        Ok(())
+    }
+
+    pub(super) fn instance(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
+        self.require_world("ObjectInstance", true)?;
+        if self.object.is_some() {
+            return Err("an object contains an instance".to_owned());
+        }
+        self.scene.instances.push(Instance {
+            name,
+            place: place.clone(),
+            to_world: self.state.to_world,
+        });
+        Ok(())
     }
 }

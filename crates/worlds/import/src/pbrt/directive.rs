@@ -3,9 +3,8 @@
 use super::build::Builder;
 use super::parameter::parameters;
 use super::scene::MaterialOf;
-use super::token::{Token, Tokens, number};
+use super::token::{Token, Tokens, is_directive, number};
 use super::transform::{look_at, matrix, rotation};
-use super::words::is_directive;
 use crate::range::{MAX_NUMBER, holds, in_range};
 use crate::report::{SourcePlace, quoted};
 use glam::{DAffine3, DVec3};

@@ -1,9 +1,8 @@
 //! Materials. Opaque materials are the same on both sides.
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::keys::Uv;
 use super::parameter::ParameterKind;
-use super::reader::PbrtReader;
+use super::reader::{PbrtReader, Uv};
 use super::scene::MaterialOf;
 use super::texture::Ask;
 use crate::range::MAX_SHARE;

@@ -1,7 +1,6 @@
 //! Reads a pbrt scene into a world.
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::keys::{PbrtMeshKey, TextureKey, Uv};
 use super::scene::PbrtScene;
 use crate::Color;
 use crate::files::Files;
@@ -16,6 +15,13 @@ use std::sync::Arc;
 
 /// Maximum number of shapes of a world; the limit is needed because instances may repeat objects.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
+
+/// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
+pub(super) type PbrtMeshKey = (PathBuf, bool);
+
+/// The key of a texture. It consists of the texture's name, the type of its values, and the
+/// coordinates of its surface.
+pub(super) type TextureKey = (bool, String, u8, Uv);
 
 /// Converts a scene to a world.
 pub(super) struct PbrtReader<'a> {
@@ -47,6 +53,17 @@ impl Uv {
         };
         DAffine2::from_mat2_translation(DMat2::from_cols(x, y), start)
     }
+}
+
+/// The relation between the (u, v) of a surface in pbrt and its (u, v) in a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Uv {
+    /// Both are equal.
+    Own,
+    /// On spheres pbrt's v increases from the lower pole upwards.
+    Ball,
+    /// On discs pbrt's u is the azimuth, and v increases from the edge inwards.
+    Disc,
 }
 
 impl<'a> PbrtReader<'a> {

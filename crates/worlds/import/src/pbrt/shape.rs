@@ -1,13 +1,12 @@
 //! Shapes, objects and instances.
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::keys::Uv;
 use super::material::reads_uv;
 use super::mesh::PbrtMesh;
-use super::reader::{MOST_SHAPES, PbrtReader};
+use super::reader::{MOST_SHAPES, PbrtReader, Uv};
 use super::scene::PbrtShape;
 use super::texture::Ask;
-use crate::placement::fault;
+use crate::range::fault;
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{EmittedRadiance, Geometry, Material, Texture};
 use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};

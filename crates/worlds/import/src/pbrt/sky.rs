@@ -2,8 +2,8 @@
 //! equal-area mapping of the (hemi)sphere using SIMD*).
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::imagemap::default_curve;
 use super::reader::PbrtReader;
+use super::texture::default_curve;
 use super::transform::without_scale;
 use etendue_field::{LatLong, Raster};
 use etendue_world::{Light, SkyMap};

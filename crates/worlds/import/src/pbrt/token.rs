@@ -1,9 +1,53 @@
 //! Tokens of a pbrt file: words, strings and brackets, with their places.
 
-use super::words::is_directive;
 use crate::report::SourcePlace;
 use std::borrow::Cow;
 use std::rc::Rc;
+
+/// All directives of pbrt-v4.
+const DIRECTIVES: [&str; 38] = [
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Import",
+    "Include",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMaterial",
+    "MakeNamedMedium",
+    "Material",
+    "MediumInterface",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "Shape",
+    "Texture",
+    "Transform",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+];
+
+/// Directives of pbrt-v3, replaced by `AttributeBegin` and `AttributeEnd`.
+const LEGACY: [&str; 2] = ["TransformBegin", "TransformEnd"];
 
 /// A token.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,4 +224,21 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());
     finite.ok_or_else(|| format!("{} is not a finite number", crate::report::quoted(word)))
+}
+
+/// Checks whether a word is a directive.
+pub(super) fn is_directive(word: &str) -> bool {
+    DIRECTIVES.binary_search(&word).is_ok() || LEGACY.contains(&word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directives_are_found() {
+        assert!(DIRECTIVES.is_sorted());
+        assert!(is_directive("Accelerator") && is_directive("WorldBegin"));
+        assert!(!is_directive("WorldEnd"));
+    }
 }
