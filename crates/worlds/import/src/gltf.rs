@@ -29,21 +29,12 @@ mod shape;
 mod texture;
 
 use crate::main_file::MainFile;
-use crate::report::Report;
 use crate::{Imported, Options, Refused};
-use etendue_world::World;
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let file = MainFile::open(file, options)?;
-    let (bytes, place) = (file.read()?, file.place());
-    let report = Report::default();
-    let mut world = World::default();
-    if let Some(document) = container::read(&bytes, &place, &report) {
-        let (files, folder) = (&file.files, file.folder());
-        let mut reader = reader::GltfReader::new(&document, files, &report, place, folder);
-        reader.color = options.color;
-        world = reader.world();
-    }
-    report.finish(world, &file.files)
+    let document = container::read(&file.read()?, &file.place(), &file.report);
+    let world = document.map(|document| reader::GltfReader::new(&document, &file).world());
+    file.finish(world.unwrap_or_default())
 }

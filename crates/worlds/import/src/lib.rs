@@ -23,6 +23,7 @@ pub use etendue_scene::Color;
 pub use options::Options;
 pub use report::{Imported, Note, Refused};
 
+use main_file::MainFile;
 use std::path::Path;
 
 /// Reads a scene file. The extension of the file, in upper or lower case, determines the format:
@@ -65,7 +66,8 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
 /// # Errors
 /// Returns all causes for which the text cannot be imported.
 pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
-    mitsuba::import_text(text, folder, options)
+    let file = MainFile::of_text(folder, "text.xml", options)?;
+    mitsuba::read(text.to_owned(), file)
 }
 
 /// Reads the text of a pbrt-v4 scene; files are searched for from `folder`.
@@ -73,5 +75,5 @@ pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Im
 /// # Errors
 /// Returns all causes for which the text cannot be imported.
 pub fn import_pbrt(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
-    pbrt::import_text(text, folder, options)
+    pbrt::read(text, MainFile::of_text(folder, "text.pbrt", options)?)
 }

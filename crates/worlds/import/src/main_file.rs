@@ -1,8 +1,9 @@
-//! The main file of a scene, with the files it may refer to.
+//! The main file of a scene, with the files it may refer to, and the report on all of them.
 
 use crate::files::Files;
-use crate::report::SourcePlace;
-use crate::{Options, Refused};
+use crate::report::{Report, SourcePlace};
+use crate::{Imported, Options, Refused};
+use etendue_world::World;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct MainFile<'a> {
     /// The files that the scene may refer to.
     pub(crate) files: Files,
+    /// The causes for refusal, and notes.
+    pub(crate) report: Report,
+    pub(crate) options: &'a Options,
     /// The path of the file, with links resolved.
     pub(crate) path: PathBuf,
     /// The name of the file in messages.
@@ -21,7 +25,7 @@ pub(crate) struct MainFile<'a> {
 
 impl<'a> MainFile<'a> {
     /// Opens the file at a path. The user chose this file, so it need not be below the root.
-    pub(crate) fn open(path: &'a Path, options: &Options) -> Result<Self, Refused> {
+    pub(crate) fn open(path: &'a Path, options: &'a Options) -> Result<Self, Refused> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         Self::new(path, folder, &name, options)
@@ -31,18 +35,25 @@ impl<'a> MainFile<'a> {
     pub(crate) fn of_text(
         folder: &'a Path,
         name: &str,
-        options: &Options,
+        options: &'a Options,
     ) -> Result<Self, Refused> {
         let mut file = Self::new(folder, folder, "text", options)?;
         file.path.push(name);
         Ok(file)
     }
 
-    fn new(given: &'a Path, folder: &Path, name: &str, options: &Options) -> Result<Self, Refused> {
+    fn new(
+        given: &'a Path,
+        folder: &Path,
+        name: &str,
+        options: &'a Options,
+    ) -> Result<Self, Refused> {
         let unread = |error: io::Error| Refused::because(given, error.to_string());
         let root = options.root.as_deref().unwrap_or(folder);
         Ok(Self {
             files: Files::below(root, options.memory).map_err(unread)?,
+            report: Report::default(),
+            options,
             path: given.canonicalize().map_err(unread)?,
             name: name.to_owned(),
             given,
@@ -63,6 +74,11 @@ impl<'a> MainFile<'a> {
     /// Returns the place of the file as a whole, for messages.
     pub(crate) fn place(&self) -> SourcePlace {
         SourcePlace::whole(&self.name)
+    }
+
+    /// Returns the world, or all causes for refusal.
+    pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
+        self.report.finish(world, &self.files)
     }
 
     /// Returns the refusal of a scene for a single cause.

@@ -11,7 +11,6 @@
 //! * `Ke` is radiance, W m⁻² sr⁻¹.
 
 mod entry;
-mod map;
 mod material;
 mod mtl;
 mod ply;
@@ -20,7 +19,6 @@ mod reader;
 pub(crate) use ply::import as import_ply;
 
 use crate::main_file::MainFile;
-use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_scene::ObjFile;
 use std::path::Path;
@@ -29,9 +27,6 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let file = MainFile::open(file, options)?;
     let read = ObjFile::parse(&file.read()?);
     let read = read.map_err(|fault| file.refused(format!("is not a valid mesh: {fault}")))?;
-    let report = Report::default();
-    let (place, folder) = (file.place(), file.folder());
-    let reader = reader::ObjReader::new(&file.files, &report, place, folder, options.color);
-    let world = reader.world(read);
-    report.finish(world, &file.files)
+    let world = reader::ObjReader::new(&file).world(read);
+    file.finish(world)
 }

@@ -39,11 +39,9 @@ mod build;
 mod camera;
 mod directive;
 mod entity;
-mod include;
 mod light;
 mod material;
 mod mesh;
-mod named;
 mod parameter;
 mod reader;
 mod scene;
@@ -55,37 +53,23 @@ mod token;
 mod transform;
 
 use crate::main_file::MainFile;
-use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let file = MainFile::open(file, options)?;
-    let text = include::read(&file.files, &file.path).map_err(|error| file.refused(error))?;
-    read(&text, &file, options)
+    let text = build::read(&file.files, &file.path).map_err(|error| file.refused(error))?;
+    read(&text, file)
 }
 
-pub(crate) fn import_text(
-    text: &str,
-    folder: &Path,
-    options: &Options,
-) -> Result<Imported, Refused> {
-    read(
-        text,
-        &MainFile::of_text(folder, "text.pbrt", options)?,
-        options,
-    )
-}
-
-fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
-    let (files, report, whole) = (&file.files, Report::default(), file.place());
-    for (name, _) in &options.set {
+pub(crate) fn read(text: &str, file: MainFile<'_>) -> Result<Imported, Refused> {
+    let whole = file.place();
+    for (name, _) in &file.options.set {
         let message = format!("{name} is set, but pbrt files have no parameters");
-        report.cause(&whole, message);
+        file.report.cause(&whole, message);
     }
-    let scene = build::Builder::new(files, &report, &file.path).build(text, &file.name);
-    let reader = reader::PbrtReader::new(&scene, files, &report, options.color, file.folder());
-    let world = reader.world(&whole);
-    scene::tell_unused(&scene, &report);
-    report.finish(world, files)
+    let scene = build::Builder::new(&file).build(text, &file.name);
+    let world = reader::PbrtReader::new(&scene, &file).world(&whole);
+    scene::tell_unused(&scene, &file.report);
+    file.finish(world)
 }

@@ -33,25 +33,8 @@ pub(crate) enum TransferCurve {
 }
 
 impl Pictures {
-    /// Reads the picture at a path. The levels of the picture are sRGB and are linearised, unless
-    /// `raw` is set.
-    pub(crate) fn read(
-        &mut self,
-        files: &Files,
-        path: &Path,
-        color: Color,
-        raw: bool,
-    ) -> Result<Arc<Raster>, String> {
-        let curve = if raw {
-            TransferCurve::Linear
-        } else {
-            TransferCurve::Srgb
-        };
-        self.read_by(files, path, color, curve)
-    }
-
     /// Reads the picture at a path, with the given curve of levels.
-    pub(crate) fn read_by(
+    pub(crate) fn read(
         &mut self,
         files: &Files,
         path: &Path,

@@ -126,13 +126,10 @@ impl<'a> GltfReader<'a> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
         match node.matrix {
-            Some(_) if is_split => {
-                self.cause(
-                    path,
-                    "has a matrix, and also a translation, rotation or scale; allowed: only one of the two forms",
-                );
-                None
-            }
+            Some(_) if is_split => self.refuse(
+                path,
+                "has a matrix, and also a translation, rotation or scale; allowed: only one of the two forms",
+            ),
             Some(matrix) => self.matrix(matrix, path),
             None => self.split(node, path),
         }

@@ -4,6 +4,7 @@ use super::container::Document;
 use super::level::RasterKey;
 use crate::Color;
 use crate::files::Files;
+use crate::main_file::MainFile;
 use crate::report::{Report, SourcePlace, quoted};
 use ::gltf::json::{Material as GltfMaterial, Root};
 use etendue_field::Raster;
@@ -59,21 +60,15 @@ pub(super) struct Draft<'a> {
 }
 
 impl<'a> GltfReader<'a> {
-    pub(super) fn new(
-        document: &'a Document,
-        files: &'a Files,
-        report: &'a Report,
-        place: SourcePlace,
-        folder: PathBuf,
-    ) -> Self {
+    pub(super) fn new(document: &'a Document, file: &'a MainFile<'_>) -> Self {
         Self {
             root: &document.root,
             chunk: document.chunk.as_deref(),
-            files,
-            report,
-            place,
-            folder,
-            color: Color::default(),
+            files: &file.files,
+            report: &file.report,
+            place: file.place(),
+            folder: file.folder(),
+            color: file.options.color,
             world: World::default(),
             buffers: HashMap::new(),
             meshes: HashMap::new(),

@@ -42,18 +42,19 @@ impl<'a> MitsubaReader<'a> {
     }
 
     fn point(&mut self, object: &'a MitsubaObject) -> Option<Light> {
-        let position = self.either(object, "position", |map| Some(map.translation));
+        let of = |map: DAffine3| Some(map.translation);
+        let position = self.either(object, "position", DVec3::ZERO, of);
         let intensity = self.strength(object, "intensity");
         Some(Light::Point {
-            position: position?.unwrap_or(DVec3::ZERO),
+            position: position?,
             intensity: intensity?,
         })
     }
 
     fn directional(&mut self, object: &'a MitsubaObject) -> Option<Light> {
-        let direction = self.either(object, "direction", z_of);
+        let direction = self.either(object, "direction", DVec3::Z, z_of);
         let irradiance = self.strength(object, "irradiance");
-        let direction = direction?.unwrap_or(DVec3::Z).try_normalize();
+        let direction = direction?.try_normalize();
         if direction.is_none() {
             self.report.cause(&object.place, "a direction of length 0");
         }
@@ -63,33 +64,27 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns a vector, which is given either directly or by a transform. The outer `None` means
-    /// that a cause of refusal was reported.
-    #[expect(
-        clippy::option_option,
-        reason = "the inner `None` means that neither is given; the outer `None` means that a cause was reported"
-    )]
+    /// Returns a vector, which is given either directly or by a transform, or `default` if neither is
+    /// given. Returns `None` if a cause of refusal was reported.
     fn either(
         &self,
         object: &'a MitsubaObject,
         name: &str,
+        default: DVec3,
         of: impl Fn(DAffine3) -> Option<DVec3>,
-    ) -> Option<Option<DVec3>> {
+    ) -> Option<DVec3> {
         match [name, "to_world"].map(|name| self.has(object, name)) {
             [true, true] => {
                 let message =
                     format!("{name} is given together with to_world; allowed: one of them");
                 self.report.refuse(&object.place, message)
             }
-            [true, false] => self.vector(object, name).map(Some),
-            [false, true] => {
-                let found = of(self.transform(object, "to_world")?).map(Some);
-                found.or_else(|| {
-                    self.report
-                        .refuse(&object.place, "to_world gives no direction")
-                })
-            }
-            [false, false] => Some(None),
+            [true, false] => self.vector(object, name),
+            [false, true] => of(self.transform(object, "to_world")?).or_else(|| {
+                self.report
+                    .refuse(&object.place, "to_world gives no direction")
+            }),
+            [false, false] => Some(default),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Materials: `bsdf` elements.
 
-use super::metals;
+use super::index::metal_index;
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use super::texture::as_number;
@@ -128,7 +128,7 @@ impl<'a> MitsubaReader<'a> {
             return self.fault(object, "material", message);
         }
         if name != "none" {
-            let Some(index) = metals::index(name) else {
+            let Some(index) = metal_index(name) else {
                 let message = format!("no index of refraction is known for {}", quoted(name));
                 return self.fault(object, "material", message);
             };

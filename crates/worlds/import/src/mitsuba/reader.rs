@@ -2,6 +2,7 @@
 
 use super::mesh_data::{MitsubaMesh, MitsubaMeshKey, ReadMesh};
 use super::object::{MitsubaObject, ObjectKind};
+use super::xml::Tree;
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
@@ -46,18 +47,12 @@ pub(super) struct MitsubaReader<'a> {
 }
 
 impl<'a> MitsubaReader<'a> {
-    pub(super) fn new(
-        objects: &'a [MitsubaObject],
-        ids: &'a HashMap<String, usize>,
-        files: &'a Files,
-        report: &'a Report,
-        color: Color,
-    ) -> Self {
+    pub(super) fn new(tree: &'a Tree<'_>, color: Color) -> Self {
         Self {
-            objects,
-            ids,
-            files,
-            report,
+            objects: &tree.objects,
+            ids: &tree.ids,
+            files: tree.files,
+            report: tree.report,
             color,
             world: World::default(),
             pictures: Pictures::default(),

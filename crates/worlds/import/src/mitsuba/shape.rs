@@ -18,6 +18,9 @@ const COLLIMATED: &str = "directionalarea";
 const ALLOWED: &str =
     "rectangle, disk, sphere, cylinder, cube, obj, ply, serialized, shapegroup, instance";
 
+/// The geometry of a shape, its placement, and whether its front is flipped.
+type PlacedGeometry = (Geometry, DAffine3, bool);
+
 impl<'a> MitsubaReader<'a> {
     /// Adds a top-level shape of the scene.
     pub(super) fn top_shape(&mut self, object: &'a MitsubaObject) {
@@ -144,13 +147,7 @@ impl<'a> MitsubaReader<'a> {
         found.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// Returns the geometry of a shape, the placement of the shape, and whether the front of the
-    /// shape is flipped.
-    fn geometry(
-        &mut self,
-        object: &'a MitsubaObject,
-        own: DAffine3,
-    ) -> Option<(Geometry, DAffine3, bool)> {
+    fn geometry(&mut self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
         self.current_mesh = match object.plugin.as_str() {
             "cube" => self.cube(object),
             "obj" | "ply" | "serialized" => self.mesh(object, own),
@@ -171,11 +168,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn sphere(
-        &self,
-        object: &'a MitsubaObject,
-        own: DAffine3,
-    ) -> Option<(Geometry, DAffine3, bool)> {
+    fn sphere(&self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
         let center = self.vector_or(object, "center", DVec3::ZERO);
         let radius = self.radius(object)?;
         let placed =
@@ -197,11 +190,7 @@ impl<'a> MitsubaReader<'a> {
         Some((Geometry::Sphere, placed, is_flipped))
     }
 
-    fn cylinder(
-        &self,
-        object: &'a MitsubaObject,
-        own: DAffine3,
-    ) -> Option<(Geometry, DAffine3, bool)> {
+    fn cylinder(&self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
         let p0 = self.vector_or(object, "p0", DVec3::ZERO);
         let p1 = self.vector_or(object, "p1", DVec3::Z);
         let radius = self.radius(object)?;

@@ -4,6 +4,7 @@ use super::mesh_data::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::reader::MitsubaReader;
 use crate::Color;
+use crate::pictures::TransferCurve;
 use crate::range::{MAX_NUMBER, MAX_SHARE};
 use crate::report::quoted;
 use crate::spectrum::{Role, from_xyz, rgb};
@@ -137,33 +138,29 @@ impl<'a> MitsubaReader<'a> {
             "uniform" => Some(Texture::Constant(
                 self.number(object, "value").unwrap_or(1.0),
             )),
-            "srgb" => self.colored(object, "color"),
+            "srgb" => self.colored(object, "color").map(Texture::Constant),
             "rawconstant" => self.raw_constant(object),
             "d65" => {
                 let scale = self.number(object, "scale").unwrap_or(1.0);
-                match self.colored(object, "color")? {
-                    Texture::Constant(value) => Some(Texture::Constant(scale * value)),
-                    _ => None,
-                }
+                Some(Texture::Constant(scale * self.colored(object, "color")?))
             }
             _ => self.unsupported(object, ALLOWED),
         }
     }
 
-    fn colored(&self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
-        let value = match self.property(object, name) {
-            None => 1.0,
-            Some(property) => match property.value {
-                Value::Color(color) => self.color.of(color),
-                Value::Number(value) => value,
-                _ => {
-                    let noun = property.value.noun();
-                    let message = format!("{name} is {noun}; allowed: a colour");
-                    return self.report.refuse(&property.place, message);
-                }
-            },
+    fn colored(&self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
+        let Some(property) = self.property(object, name) else {
+            return Some(1.0);
         };
-        Some(Texture::Constant(value))
+        match property.value {
+            Value::Color(color) => Some(self.color.of(color)),
+            Value::Number(value) => Some(value),
+            _ => {
+                let noun = property.value.noun();
+                let message = format!("{name} is {noun}; allowed: a colour");
+                self.report.refuse(&property.place, message)
+            }
+        }
     }
 
     fn raw_constant(&self, object: &'a MitsubaObject) -> Option<Texture> {
@@ -217,7 +214,12 @@ impl<'a> MitsubaReader<'a> {
     pub(super) fn picture(&mut self, object: &'a MitsubaObject, raw: bool) -> Option<Arc<Raster>> {
         let name = self.file_name(object)?;
         let found = self.files.find(&object.folders, name);
-        let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, raw));
+        let curve = if raw {
+            TransferCurve::Linear
+        } else {
+            TransferCurve::Srgb
+        };
+        let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, curve));
         read.map_or_else(|error| self.unread(object, name, &error), Some)
     }
 
@@ -321,13 +323,9 @@ impl<'a> MitsubaReader<'a> {
             "of a shape without a mesh; allowed: vertex_… or face_… of a ply shape".to_owned()
         });
         let values = found.and_then(|mesh| self.values(&mesh, name, scale, role));
-        match values {
-            Ok(values) => Some(Texture::OfMesh(values)),
-            Err(error) => {
-                let message = format!("mesh_attribute {} {error}", quoted(name));
-                self.fault(object, "name", message)
-            }
-        }
+        let values = values.map_err(|error| format!("mesh_attribute {} {error}", quoted(name)));
+        let values = self.report.accept(self.place_of(object, "name"), values);
+        values.map(Texture::OfMesh)
     }
 
     /// Returns the numbers of an attribute. A colour becomes one number.

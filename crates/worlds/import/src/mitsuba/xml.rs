@@ -5,10 +5,11 @@ use super::parameters::Parameters;
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
 use crate::files::Files;
+use crate::main_file::MainFile;
 use crate::report::{Report, SourcePlace, quoted};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 /// Maximum nesting depth of elements.
@@ -40,13 +41,13 @@ pub(super) struct Tree<'a> {
 }
 
 impl<'a> Tree<'a> {
-    pub(super) fn new(files: &'a Files, report: &'a Report, set: &[(String, String)]) -> Self {
+    pub(super) fn new(file: &'a MainFile<'_>) -> Self {
         Self {
             objects: Vec::new(),
             ids: HashMap::new(),
-            parameters: Parameters::new(set),
-            files,
-            report,
+            parameters: Parameters::new(&file.options.set),
+            files: &file.files,
+            report: &file.report,
             open: Vec::new(),
             elements: 0,
             includes: 0,
@@ -54,10 +55,9 @@ impl<'a> Tree<'a> {
     }
 
     /// Reads the file of the scene.
-    pub(super) fn read(&mut self, text: &str, name: &str, path: &Path) {
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        self.open.push(path.to_owned());
-        self.file(text, name, Rc::from([folder]), None);
+    pub(super) fn read(&mut self, text: &str, file: &MainFile<'_>) {
+        self.open.push(file.path.clone());
+        self.file(text, &file.name, Rc::from([file.folder()]), None);
         for name in self.parameters.unused() {
             let message = format!("`${name}` is set, but the scene does not use it");
             self.report

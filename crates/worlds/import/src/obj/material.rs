@@ -1,7 +1,6 @@
 //! Materials of MTL files.
 
-use super::entry::{MtlEntry, ObjSurface};
-use super::map::MtlMap;
+use super::entry::{MtlEntry, MtlMap, ObjSurface};
 use super::ply::diffuse;
 use super::reader::ObjReader;
 use crate::pictures::{counted, decode, linear};

@@ -1,7 +1,6 @@
 //! Parsing of MTL files, statement by statement.
 
-use super::entry::MtlEntry;
-use super::map::MtlMap;
+use super::entry::{MtlEntry, MtlMap};
 use crate::range::MAX_NUMBER;
 use crate::report::{Report, SourcePlace, quoted};
 use crate::spectrum::from_xyz;

@@ -2,7 +2,6 @@
 
 use crate::main_file::MainFile;
 use crate::meshes::{MENDED, MeshParts};
-use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_scene::DetailedMesh;
 use etendue_world::{Geometry, Material, Shape, Texture, World};
@@ -22,11 +21,11 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mended = parts.mend_normals();
     let mesh = parts.finish();
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area above 0".to_owned()))?;
-    let (report, place) = (Report::default(), scene.place());
+    let place = scene.place();
     if mended {
-        report.note(&place, MENDED);
+        scene.report.note(&place, MENDED);
     }
-    report.note(
+    scene.report.note(
         &place,
         "has no material: a diffuse material of reflectance 0.5 is used on both sides",
     );
@@ -43,7 +42,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
         materials: vec![diffuse()],
         ..World::default()
     };
-    report.finish(world, &scene.files)
+    scene.finish(world)
 }
 
 /// Returns the default material.

@@ -4,6 +4,7 @@ use super::entry::{MtlEntry, ObjSurface};
 use super::mtl::{self, left_out};
 use crate::Color;
 use crate::files::Files;
+use crate::main_file::MainFile;
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::{Report, SourcePlace, quoted};
 use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
@@ -27,20 +28,14 @@ pub(super) struct ObjReader<'a> {
 }
 
 impl<'a> ObjReader<'a> {
-    pub(super) fn new(
-        files: &'a Files,
-        report: &'a Report,
-        place: SourcePlace,
-        folder: PathBuf,
-        color: Color,
-    ) -> Self {
+    pub(super) fn new(file: &'a MainFile<'_>) -> Self {
         Self {
-            files,
-            report,
-            color,
+            files: &file.files,
+            report: &file.report,
+            color: file.options.color,
             world: World::default(),
-            place,
-            folder,
+            place: file.place(),
+            folder: file.folder(),
             entries: HashMap::new(),
             surfaces: HashMap::new(),
         }

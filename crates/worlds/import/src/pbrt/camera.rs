@@ -7,6 +7,7 @@ use super::transform::without_scale;
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
+use std::rc::Rc;
 
 /// Plugins supported as cameras.
 const ALLOWED: &str = "perspective, orthographic";
@@ -37,7 +38,16 @@ const SQUARE: f64 = 1e-4;
 
 impl PbrtReader<'_> {
     pub(super) fn camera(&mut self, whole: &SourcePlace) {
-        let default = Entity::default(self.report, "camera", "perspective", whole.clone());
+        // pbrt uses this camera if a file names none.
+        let default = Entity {
+            report: self.report,
+            kind: "camera",
+            plugin: "perspective".to_owned(),
+            place: whole.clone(),
+            own: Vec::new(),
+            defaults: Rc::default(),
+            is_used: true.into(),
+        };
         let default = (default, DAffine3::IDENTITY);
         let (entity, map) = self.scene.camera.as_ref().unwrap_or(&default);
         entity.is_used.set(true);

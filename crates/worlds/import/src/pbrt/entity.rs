@@ -31,25 +31,7 @@ pub(super) struct Entity<'a> {
     pub(super) is_used: Cell<bool>,
 }
 
-impl<'a> Entity<'a> {
-    /// Returns the default plugin of pbrt, which is used if a file names no plugin.
-    pub(super) fn default(
-        report: &'a Report,
-        kind: &'static str,
-        plugin: &str,
-        place: SourcePlace,
-    ) -> Self {
-        Self {
-            report,
-            kind,
-            plugin: plugin.to_owned(),
-            place,
-            own: Vec::new(),
-            defaults: Rc::default(),
-            is_used: true.into(),
-        }
-    }
-
+impl Entity<'_> {
     /// Returns the last parameter with the given name among the parameters of the entity, or else
     /// among the default parameters.
     pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {

@@ -4,6 +4,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::parameter::ParameterKind;
 use super::reader::{PbrtReader, Uv};
 use super::scene::MaterialOf;
+use super::spectrum::named_index;
 use super::texture::Ask;
 use crate::range::MAX_SHARE;
 use crate::report::{SourcePlace, quoted};
@@ -154,7 +155,7 @@ impl PbrtReader<'_> {
             let share = share.clamp(0.0, 0.9999);
             return Ok([1.0, 2.0 * (share / (1.0 - share)).sqrt()]);
         }
-        let copper = |name| super::named::index(name).map_or(0.0, |rgb| self.color.of(rgb));
+        let copper = |name| named_index(name).map_or(0.0, |rgb| self.color.of(rgb));
         let [n, k] = ["metal-Cu-eta", "metal-Cu-k"].map(copper);
         let n = self.constant_or(entity, "eta", number, n);
         let k = self.constant_or(entity, "k", number, k);

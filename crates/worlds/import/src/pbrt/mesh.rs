@@ -1,7 +1,7 @@
 //! Shapes that are meshes.
 
+use super::build;
 use super::entity::{CauseGiven, Entity, Read};
-use super::include;
 use super::parameter::ParameterKind;
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
@@ -65,7 +65,7 @@ impl PbrtReader<'_> {
     }
 
     fn ply_parts(&self, path: &Path) -> Result<MeshParts, String> {
-        let bytes = include::bytes(self.files, path)?;
+        let bytes = build::bytes(self.files, path)?;
         let inner = match has_extension(path, "gz") {
             true => path.with_extension(""),
             false => path.to_owned(),

@@ -4,6 +4,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::scene::PbrtScene;
 use crate::Color;
 use crate::files::Files;
+use crate::main_file::MainFile;
 use crate::pictures::Pictures;
 use crate::report::{Report, SourcePlace, quoted};
 use etendue_world::{Texture, Triangles, World};
@@ -67,19 +68,13 @@ pub(super) enum Uv {
 }
 
 impl<'a> PbrtReader<'a> {
-    pub(super) fn new(
-        scene: &'a PbrtScene<'a>,
-        files: &'a Files,
-        report: &'a Report,
-        color: Color,
-        folder: PathBuf,
-    ) -> Self {
+    pub(super) fn new(scene: &'a PbrtScene<'a>, file: &'a MainFile<'_>) -> Self {
         Self {
             scene,
-            files,
-            report,
-            color,
-            folder,
+            files: &file.files,
+            report: &file.report,
+            color: file.options.color,
+            folder: file.folder(),
             world: World::default(),
             pictures: Pictures::default(),
             meshes: HashMap::new(),

@@ -293,8 +293,7 @@ impl PbrtReader<'_> {
     ) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);
-        let read =
-            found.and_then(|path| self.pictures.read_by(self.files, &path, self.color, curve));
+        let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, curve));
         read.map_err(|error| self.unread(entity, name, &error))
     }
 }
