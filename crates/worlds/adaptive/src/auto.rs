@@ -42,7 +42,7 @@ impl AdaptiveRun<'_> {
         });
         let pairs = criterion.iter().zip(&shapes);
         let calibrated = pairs.map(|(metric, shape)| {
-            let factor = factors.of((*shape)?);
+            let factor = factor(&factors, (*shape)?);
             Some(to_power((*metric)?, POWER).times(libm::cbrt(factor)))
         });
         let calibrated: Vec<Option<Metric>> = calibrated.collect();
@@ -89,26 +89,18 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// The ratios k of measured to predicted squared errors, up to a common factor. They are computed
-/// from sums of e² n² and of n_c².
-#[derive(Debug, Default)]
-struct Factors(ObjectSums<2>);
+/// The sums of e² n² and of n_c², from which the factors k are computed.
+type Factors = ObjectSums<2>;
 
-impl Factors {
-    fn add(&mut self, object: usize, squares: [f64; 2]) {
-        self.0.add(object, squares);
+/// Returns the ratio k of measured to predicted squared errors of an object, up to a common factor.
+/// The ratio is never zero, because the first samples may have missed the object's light.
+fn factor(factors: &Factors, object: usize) -> f64 {
+    let [error, criterion] = factors.all();
+    if error <= 0.0 || criterion <= 0.0 {
+        return 1.0;
     }
-
-    /// Returns the factor of an object. The factor is never zero, because the first samples may
-    /// have missed the object's light.
-    fn of(&self, object: usize) -> f64 {
-        let [error, criterion] = self.0.all();
-        if error <= 0.0 || criterion <= 0.0 {
-            return 1.0;
-        }
-        let [own_error, own_criterion] = self.0.of(object);
-        (own_error / own_criterion).max(MIN_FACTOR * error / criterion)
-    }
+    let [own_error, own_criterion] = factors.of(object);
+    (own_error / own_criterion).max(MIN_FACTOR * error / criterion)
 }
 
 #[cfg(test)]
@@ -124,7 +116,7 @@ mod tests {
             factors.add(0, [2.0, 1.0]);
             factors.add(1, [0.02, 1.0]);
         }
-        let [one, other, unknown] = [0, 1, 2].map(|object| factors.of(object));
+        let [one, other, unknown] = [0, 1, 2].map(|object| factor(&factors, object));
         assert!((one / other - 100.0).abs() < 25.0, "{one} {other}"); // shared samples
         assert!((unknown - 1.01).abs() < 1e-12, "{unknown}"); // rounding
     }

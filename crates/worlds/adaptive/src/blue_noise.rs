@@ -6,6 +6,7 @@
 //! in the metric for which the density is 1 everywhere.
 
 use crate::metric::Metric;
+use etendue_field::whole;
 use etendue_sampling::DiscreteDistribution;
 use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
@@ -223,13 +224,9 @@ impl PointGrid {
     }
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the number of a cell, clamped to the grid"
-)]
+/// Returns the number of a cell, clamped to the grid.
 fn cell(at: f64, cells: usize) -> usize {
-    ((at / CELL as f64).max(0.0) as usize).min(cells - 1)
+    whole(at / CELL as f64).min(cells - 1)
 }
 
 #[cfg(test)]

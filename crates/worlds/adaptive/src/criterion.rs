@@ -50,8 +50,8 @@ fn corrected(visible: &Visible, pixel: [usize; 2], nearness: Nearness) -> Option
     let places = visible.of_pixel(pixel);
     let first = places.iter().find_map(shaded)?;
     let [right, down] = steps(places, first.shape);
-    let turned =
-        |step: &PixelStep| step.axis + nearness.reflected * across(step.position, first.axis);
+    let across = |step: &PixelStep| step.position.reject_from_normalized(first.axis);
+    let turned = |step: &PixelStep| step.axis + nearness.reflected * across(step);
     let lobe = of_columns(turned(&right), turned(&down)).times(first.cutoff * first.cutoff);
     let shadow = of_columns(right.position, down.position).times(nearness.shadow * nearness.shadow);
     Some(lobe.plus(shadow))
@@ -77,7 +77,8 @@ fn printed(
     let largest = |right, down| of_columns(right, down).largest().max(0.0).sqrt();
     let turn = largest(right.normal, down.normal);
     // Seen from the eye, the point moves by d times the angle of a pixel.
-    let moved = largest(across(right.position, along), across(down.position, along));
+    let across = [right, down].map(|step| step.position.reject_from_normalized(along));
+    let moved = largest(across[0], across[1]);
     let cosine = (-first.normal.dot(along)).max(GRAZING);
     Some(first.cutoff * (2.0 * turn + reflected * moved / cosine))
 }
@@ -148,11 +149,6 @@ fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
         }
     }
     steps
-}
-
-/// Returns the component of a step perpendicular to a direction.
-fn across(step: DVec3, along: DVec3) -> DVec3 {
-    step - step.dot(along) * along
 }
 
 /// Returns JᵀJ for the Jacobian J with the given columns.

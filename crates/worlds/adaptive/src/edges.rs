@@ -3,7 +3,7 @@
 //! similar stored points.
 
 use crate::criterion::shaded;
-use crate::reconstruct::{LightMean, bell, unlike};
+use crate::reconstruct::{bell, unlike};
 use crate::shading::Shader;
 use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at, squared_distance};
 
@@ -97,7 +97,7 @@ fn like(
     point: [f64; 2],
     surface: &SeenSurface,
 ) -> Option<[f64; 2]> {
-    let mut mean = LightMean::default();
+    let (mut weights, mut sums) = (0.0, [0.0; 2]);
     for near in visible.around(pixel, 1) {
         for (i, index) in visible.range(near).enumerate() {
             let Some((seen, value)) = shaded(&visible.places[index]).zip(values[index]) else {
@@ -106,9 +106,11 @@ fn like(
             if seen.shape == surface.shape {
                 let square = squared_distance(point, at(near, i));
                 // The standard deviation is half a pixel.
-                mean.add(bell(4.0 * square + unlike(surface, seen)), value);
+                let weight = bell(4.0 * square + unlike(surface, seen));
+                weights += weight;
+                sums = [0, 1].map(|part: usize| sums[part] + weight * value[part]);
             }
         }
     }
-    mean.mean()
+    (weights > 0.0).then(|| sums.map(|sum| sum / weights))
 }

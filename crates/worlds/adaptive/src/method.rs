@@ -14,6 +14,7 @@ use crate::reconstruct::{SampleFit, ShadedSample, reconstruct, reconstruct_pixel
 use crate::shading::Shader;
 use crate::smooth::PlaceValues;
 use crate::visible::{FOUR, Visible, at};
+use etendue_field::whole;
 use etendue_paths::{Nearness, Paths};
 use etendue_world::Camera;
 
@@ -261,12 +262,7 @@ impl AdaptiveRun<'_> {
         round: u64,
     ) -> Vec<PicturePoint> {
         (self.stage)(Stage::Samples, 1);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number of samples, not negative"
-        )]
-        let count = count.round() as usize;
+        let count = whole(count.round());
         let seed = self.plan.seed.wrapping_add(round << 32);
         blue_noise(metrics, self.visible.size[0], count, seed)
     }

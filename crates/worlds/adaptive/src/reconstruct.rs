@@ -7,6 +7,7 @@ use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
 use crate::metric::Metric;
 use crate::visible::{FOUR, SeenSurface, Visible, at};
+use etendue_field::whole;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -245,27 +246,6 @@ impl<'a> Band<'a> {
     }
 }
 
-/// A weighted mean of values of base and lobe.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct LightMean {
-    weight: f64,
-    sums: [f64; 2],
-}
-
-impl LightMean {
-    pub(crate) fn add(&mut self, weight: f64, value: [f64; 2]) {
-        self.weight += weight;
-        for (sum, value) in self.sums.iter_mut().zip(value) {
-            *sum += weight * value;
-        }
-    }
-
-    /// Returns the mean, or `None` if nothing has been added.
-    pub(crate) fn mean(&self) -> Option<[f64; 2]> {
-        (self.weight > 0.0).then(|| self.sums.map(|sum| sum / self.weight))
-    }
-}
-
 /// Returns a bell-shaped weight at a squared distance, in squared standard deviations. The weight
 /// is close to exp(−square/2) up to 2 standard deviations, and faster to compute.
 #[inline(always)]
@@ -294,16 +274,9 @@ pub(crate) fn unlike_points(place: [DVec3; 2], sample: [DVec3; 2]) -> f64 {
     turned.length_squared() / (NORMALS * NORMALS) + height * height / (length * (HEIGHTS * HEIGHTS))
 }
 
-/// Pixels that overlap an interval.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the numbers of pixels, clamped to the picture"
-)]
+/// Pixels that overlap an interval, clamped to the picture.
 fn pixels([low, high]: [f64; 2], count: usize) -> Range<usize> {
-    let low = low.max(0.0) as usize;
-    let high = (high.floor() + 1.0).max(0.0) as usize;
-    low.min(count)..high.min(count)
+    whole(low).min(count)..whole(high.floor() + 1.0).min(count)
 }
 
 #[cfg(test)]

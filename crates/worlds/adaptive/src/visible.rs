@@ -1,6 +1,7 @@
 //! The points visible in the pixels of a picture.
 
 use crate::cutoffs::Cutoffs;
+use etendue_field::whole;
 use etendue_paths::{Paths, Reflects, SurfaceHit, View};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -129,14 +130,9 @@ impl Visible {
         first..first + FOUR
     }
 
-    /// Returns the pixel at a position of the picture.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of a pixel is clamped to the picture"
-    )]
+    /// Returns the pixel at a position, clamped to the picture.
     pub(crate) fn pixel_at(&self, at: [f64; 2]) -> [usize; 2] {
-        [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(self.size[k] - 1))
+        [0, 1].map(|k: usize| whole(at[k]).min(self.size[k] - 1))
     }
 
     /// Returns the index of the pixel at a position, in rows from the top.

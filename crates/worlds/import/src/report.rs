@@ -15,7 +15,7 @@ const MAX_MESSAGES: usize = 100;
 const LONGEST: usize = 60;
 
 /// A position in a file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SourcePlace {
     /// The file, as the scene names it.
     pub(crate) file: Rc<str>,
@@ -30,8 +30,7 @@ impl SourcePlace {
     pub(crate) fn whole(file: &str) -> Self {
         Self {
             file: file.into(),
-            line: 0,
-            column: 0,
+            ..Self::default()
         }
     }
 

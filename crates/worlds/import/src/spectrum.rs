@@ -1,6 +1,7 @@
 //! Conversion of spectra to colours.
 
 use crate::cie::{COUNT, D65, FIRST_WAVELENGTH, LAST_WAVELENGTH, OBSERVER};
+use etendue_field::whole;
 
 /// Number of wavelengths at which a spectrum is summed.
 const STEPS: u32 = 1000;
@@ -74,12 +75,7 @@ fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
 fn at(table: &[f64; COUNT], wavelength: f64) -> f64 {
     let place =
         (wavelength - FIRST_WAVELENGTH) / (LAST_WAVELENGTH - FIRST_WAVELENGTH) * (COUNT - 1) as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "wavelengths are within the table"
-    )]
-    let index = (place as usize).min(COUNT - 2);
+    let index = whole(place).min(COUNT - 2);
     let share = place - index as f64;
     table[index] * (1.0 - share) + table[index + 1] * share
 }

@@ -279,12 +279,6 @@ impl Paths {
         &self.materials[self.of_shape[hit.shape]]
     }
 
-    /// Checks whether directions sampled from BSDFs find all lights. Such directions never find
-    /// point lights, spots and directional lights.
-    pub(crate) fn bsdf_finds_lights(&self) -> bool {
-        self.lights.are_extended()
-    }
-
     /// Checks whether the world has distant light with a radiance from all directions.
     pub(crate) fn has_sky(&self) -> bool {
         self.lights.of_sky(DVec3::Z).next().is_some()

@@ -61,7 +61,7 @@ impl SurfaceHit {
     /// Returns the mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
-        self.ray.mirrored(self.normal())
+        self.ray.along.reflect(self.normal())
     }
 
     /// Returns the direction to the eye, in the frame of the surface.

@@ -81,25 +81,23 @@ impl Texture {
     /// Its largest value.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-        match self {
-            Self::Constant(value) => *value,
-            Self::Checkerboard { values, .. } => values[0].max(values[1]),
-            Self::Bitmap(bitmap) => most(bitmap.pixels.values()),
-            Self::OfMesh(values) => most(values.values()),
-        }
+        self.extreme(0.0, f64::max)
     }
 
     /// Its smallest value.
     #[must_use]
     pub fn smallest(&self) -> f64 {
-        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
-        match self {
-            Self::Constant(value) => *value,
-            Self::Checkerboard { values, .. } => values[0].min(values[1]),
-            Self::Bitmap(bitmap) => least(bitmap.pixels.values()),
-            Self::OfMesh(values) => least(values.values()),
-        }
+        self.extreme(f64::INFINITY, f64::min)
+    }
+
+    fn extreme(&self, start: f64, of: fn(f64, f64) -> f64) -> f64 {
+        let all = match self {
+            Self::Constant(value) => return *value,
+            Self::Checkerboard { values, .. } => return of(values[0], values[1]),
+            Self::Bitmap(bitmap) => bitmap.pixels.values(),
+            Self::OfMesh(values) => values.values(),
+        };
+        all.iter().copied().fold(start, of)
     }
 }
 

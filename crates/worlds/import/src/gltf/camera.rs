@@ -4,6 +4,7 @@ use super::node::PlacedNode;
 use super::reader::GltfReader;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::camera::{Orthographic, Perspective};
+use etendue_field::whole;
 use etendue_world::{Camera, Projection};
 use std::f64::consts::PI;
 
@@ -108,11 +109,5 @@ impl<'a> GltfReader<'a> {
 
 /// Returns the width and height in pixels.
 fn size(aspect: f64) -> [usize; 2] {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the aspect ratio was checked"
-    )]
-    let down = (ACROSS as f64 / aspect).round() as usize;
-    [ACROSS, down.max(1)]
+    [ACROSS, whole((ACROSS as f64 / aspect).round()).max(1)]
 }

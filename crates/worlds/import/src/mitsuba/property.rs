@@ -1,9 +1,9 @@
 //! Elements that hold values of properties, and elements that name files and folders.
 
 use super::object::Value;
-use super::transform::{Attributes, allow, find, is_rigid, required, step};
+use super::transform::{allow, find, is_rigid, required, step};
 use super::value;
-use super::xml::{SourceFile, Tree};
+use super::xml::{SourceFile, Tree, XmlElement};
 use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use glam::DAffine3;
@@ -23,28 +23,27 @@ impl Tree<'_> {
     /// Returns the value of a property.
     pub(super) fn value(
         &mut self,
-        node: Node<'_, '_>,
-        element: &str,
-        attributes: &Attributes,
+        name: &str,
+        element: &XmlElement<'_, '_>,
         source: &mut SourceFile<'_>,
     ) -> Result<Value, String> {
-        if element == "transform" {
+        let (node, attributes) = (element.node, &element.attributes);
+        if name == "transform" {
             allow(attributes, &["name"])?;
-            return self
-                .transform(node, source)
-                .map(|map| Value::Transform(Box::new(map)));
+            let map = self.transform(node, source)?;
+            return Ok(Value::Transform(Box::new(map)));
         }
         if let Some(child) = node.children().find(Node::is_element) {
             let name = child.tag_name().name();
             return Err(format!("<{name}> within a property"));
         }
-        match element {
+        match name {
             "point" | "vector" => allow(attributes, &["name", "value", "x", "y", "z"])?,
             "spectrum" => allow(attributes, &["name", "value", "filename"])?,
             _ => allow(attributes, &["name", "value"])?,
         }
         let text = || required(attributes, "value");
-        Ok(match element {
+        Ok(match name {
             "float" => Value::Number(value::number(text()?)?),
             "integer" => Value::Whole(value::whole(text()?)?),
             "boolean" => Value::Truth(value::truth(text()?)?),
@@ -108,23 +107,20 @@ impl Tree<'_> {
         };
         read().map_err(|error| format!("file {}: {error}", quoted(file)))
     }
-}
 
-impl Tree<'_> {
     /// Adds a search folder before all other search folders.
     pub(super) fn search(
         &mut self,
-        attributes: &Attributes,
-        parent: usize,
+        element: &XmlElement<'_, '_>,
         source: &mut SourceFile<'_>,
     ) -> Result<(), String> {
-        allow(attributes, &["value"])?;
-        if parent != 0 {
+        allow(&element.attributes, &["value"])?;
+        if element.parent != 0 {
             return Err(
                 "<path> is inside another element; allowed: directly in <scene>".to_owned(),
             );
         }
-        let name = required(attributes, "value")?;
+        let name = required(&element.attributes, "value")?;
         let found = self.files.find(&source.folders, name);
         let folder = found.map_err(|error| format!("folder {} {error}", quoted(name)))?;
         if source.folders.len() > MOST_FOLDERS {
@@ -137,13 +133,11 @@ impl Tree<'_> {
 
     pub(super) fn include(
         &mut self,
-        attributes: &Attributes,
-        parent: usize,
+        element: &XmlElement<'_, '_>,
         source: &SourceFile<'_>,
-        depth: usize,
     ) -> Result<(), String> {
-        allow(attributes, &["filename", "name"])?;
-        let name = required(attributes, "filename")?;
+        allow(&element.attributes, &["filename", "name"])?;
+        let name = required(&element.attributes, "filename")?;
         let told = |error: String| format!("file {} {error}", quoted(name));
         let path = self.files.find(&source.folders, name).map_err(told)?;
         if self.open.contains(&path) {
@@ -166,7 +160,12 @@ impl Tree<'_> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
         self.open.push(path);
-        self.file(&text, name, folders.collect(), Some((parent, depth + 1)));
+        self.file(
+            &text,
+            name,
+            folders.collect(),
+            Some((element.parent, element.depth + 1)),
+        );
         self.open.pop();
         Ok(())
     }

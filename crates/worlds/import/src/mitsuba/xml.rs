@@ -40,6 +40,16 @@ pub(super) struct Tree<'a> {
     pub(super) includes: usize,
 }
 
+/// An element whose parameters were replaced by their values.
+pub(super) struct XmlElement<'n, 't> {
+    pub(super) node: Node<'n, 't>,
+    pub(super) attributes: Attributes,
+    place: SourcePlace,
+    /// The index of the object that contains the element.
+    pub(super) parent: usize,
+    pub(super) depth: usize,
+}
+
 impl<'a> Tree<'a> {
     pub(super) fn new(file: &'a MainFile<'_>) -> Self {
         Self {
@@ -107,15 +117,14 @@ impl<'a> Tree<'a> {
             }
             Some((parent, depth)) => self.element(root, parent, &mut source, depth),
             None if root.tag_name().name() == "scene" => {
-                self.object(
-                    root,
-                    ObjectKind::Scene,
-                    &Vec::new(),
+                let scene = XmlElement {
+                    node: root,
+                    attributes: Vec::new(),
                     place,
-                    0,
-                    &mut source,
-                    0,
-                );
+                    parent: 0,
+                    depth: 0,
+                };
+                self.object(ObjectKind::Scene, &scene, &mut source);
             }
             None => self.report.cause(&place, "the root is not <scene>"),
         }
@@ -155,31 +164,28 @@ impl<'a> Tree<'a> {
             }
             return;
         }
+        let name = node.tag_name().name();
         let done = self.attributes(node).and_then(|attributes| {
-            let name = node.tag_name().name();
-            match ObjectKind::of(name, find(&attributes, "type").is_some()) {
-                Some(kind) => {
-                    // An element without a parent is the root of an included file.
-                    let is_root = node.parent_element().is_none();
-                    let version: &[&str] = if is_root { &["version"] } else { &[] };
-                    allow(&attributes, &[&["type", "id", "name"], version].concat())?;
-                    required(&attributes, "type")?;
-                    self.object(
-                        node,
-                        kind,
-                        &attributes,
-                        place.clone(),
-                        parent,
-                        source,
-                        depth,
-                    );
-                    Ok(())
-                }
-                None => self.other(node, &attributes, &place, parent, source, depth),
-            }
+            let element = XmlElement {
+                node,
+                attributes,
+                place: place.clone(),
+                parent,
+                depth,
+            };
+            let attributes = &element.attributes;
+            let Some(kind) = ObjectKind::of(name, find(attributes, "type").is_some()) else {
+                return self.other(&element, source);
+            };
+            // An element without a parent is the root of an included file.
+            let is_root = node.parent_element().is_none();
+            let version: &[&str] = if is_root { &["version"] } else { &[] };
+            allow(attributes, &[&["type", "id", "name"], version].concat())?;
+            required(attributes, "type")?;
+            self.object(kind, &element, source);
+            Ok(())
         });
         if let Err(message) = done {
-            let name = node.tag_name().name();
             self.report.cause(&place, format!("<{name}>: {message}"));
         }
     }
@@ -194,20 +200,13 @@ impl<'a> Tree<'a> {
         Ok(made)
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the arguments describe an element and its place"
-    )]
     fn object(
         &mut self,
-        node: Node<'_, '_>,
         kind: ObjectKind,
-        attributes: &Attributes,
-        place: SourcePlace,
-        parent: usize,
+        element: &XmlElement<'_, '_>,
         source: &mut SourceFile<'_>,
-        depth: usize,
     ) {
+        let (attributes, place, parent) = (&element.attributes, &element.place, element.parent);
         let at = self.objects.len();
         let id = find(attributes, "id").map(str::to_owned);
         let name = find(attributes, "name").unwrap_or_default().to_owned();
@@ -223,12 +222,12 @@ impl<'a> Tree<'a> {
             is_used: false.into(),
         });
         if let Some(id) = id {
-            self.name(id, at, &place);
+            self.name(id, at, place);
         }
         if at != parent {
-            self.add(parent, name, Value::Object(at), &place, source);
+            self.add(parent, name, Value::Object(at), place, source);
         }
-        self.children(node, at, source, depth + 1);
+        self.children(element.node, at, source, element.depth + 1);
         self.objects[at].folders = Rc::clone(&source.folders);
         // Scenes may have millions of objects, so unused memory is freed.
         self.objects[at].properties.shrink_to_fit();
@@ -279,14 +278,11 @@ impl<'a> Tree<'a> {
     /// Reads an element that is not an object.
     fn other(
         &mut self,
-        node: Node<'_, '_>,
-        attributes: &Attributes,
-        place: &SourcePlace,
-        parent: usize,
+        element: &XmlElement<'_, '_>,
         source: &mut SourceFile<'_>,
-        depth: usize,
     ) -> Result<(), String> {
-        match node.tag_name().name() {
+        let (attributes, place, parent) = (&element.attributes, &element.place, element.parent);
+        match element.node.tag_name().name() {
             "default" => {
                 allow(attributes, &["name", "value"])?;
                 let name = required(attributes, "name")?;
@@ -297,8 +293,8 @@ impl<'a> Tree<'a> {
                     .default(name, required(attributes, "value")?);
                 Ok(())
             }
-            "include" => self.include(attributes, parent, source, depth),
-            "path" => self.search(attributes, parent, source),
+            "include" => self.include(element, source),
+            "path" => self.search(element, source),
             "alias" => {
                 allow(attributes, &["id", "as"])?;
                 let id = required(attributes, "id")?;
@@ -313,10 +309,10 @@ impl<'a> Tree<'a> {
                 self.add(parent, name, Value::Reference(id), place, source);
                 Ok(())
             }
-            element @ ("boolean" | "float" | "integer" | "point" | "rgb" | "spectrum"
-            | "string" | "transform" | "vector") => {
+            name @ ("boolean" | "float" | "integer" | "point" | "rgb" | "spectrum" | "string"
+            | "transform" | "vector") => {
                 required(attributes, "name")?;
-                let value = self.value(node, element, attributes, source);
+                let value = self.value(name, element, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
                 // An invalid value still defines the property, so only one cause of refusal is
                 // added for the property.

@@ -24,7 +24,7 @@ const OPTIONS: [(&str, usize); 13] = [
 ];
 
 /// A material as it is written in an MTL file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct MtlEntry {
     /// The position in the file where the material begins.
     pub(super) place: SourcePlace,
@@ -47,25 +47,6 @@ pub(super) struct MtlEntry {
     pub(super) map_kd: Option<MtlMap>,
     pub(super) map_ke: Option<MtlMap>,
     pub(super) map_d: Option<MtlMap>,
-}
-
-impl MtlEntry {
-    pub(super) fn new(place: SourcePlace) -> Self {
-        Self {
-            place,
-            kd: None,
-            ks: None,
-            ke: None,
-            tf: None,
-            ns: None,
-            ni: None,
-            d: None,
-            illum: None,
-            map_kd: None,
-            map_ke: None,
-            map_d: None,
-        }
-    }
 }
 
 /// The surface of a part.

@@ -35,7 +35,11 @@ pub(super) fn read(
         }
         if word.eq_ignore_ascii_case("newmtl") {
             close(open.take(), report, entries);
-            open = Some((rest.to_owned(), MtlEntry::new(place)));
+            let entry = MtlEntry {
+                place,
+                ..MtlEntry::default()
+            };
+            open = Some((rest.to_owned(), entry));
             continue;
         }
         let Some((_, entry)) = &mut open else {

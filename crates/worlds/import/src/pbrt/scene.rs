@@ -43,9 +43,10 @@ pub(super) struct PbrtShape<'a> {
 }
 
 /// The material of a shape.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum MaterialOf {
     /// The default material.
+    #[default]
     Default,
     Number(usize),
     /// A named material, with the place of the reference.
@@ -68,7 +69,7 @@ pub(super) struct Instance {
 }
 
 /// The graphics state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct GraphicsState {
     pub(super) to_world: DAffine3,
     pub(super) is_reversed: bool,
@@ -76,18 +77,6 @@ pub(super) struct GraphicsState {
     pub(super) area: Option<usize>,
     /// Default parameters for shapes, lights, materials, media and textures.
     pub(super) defaults: [Rc<Vec<Rc<PbrtParameter>>>; 5],
-}
-
-impl Default for GraphicsState {
-    fn default() -> Self {
-        Self {
-            to_world: DAffine3::IDENTITY,
-            is_reversed: false,
-            material: MaterialOf::Default,
-            area: None,
-            defaults: Default::default(),
-        }
-    }
 }
 
 /// Adds a note for each parameter that was not read, and for each object that is not in the world.

@@ -5,7 +5,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
 use super::texture::default_curve;
 use super::transform::without_scale;
-use etendue_field::{LatLong, Raster};
+use etendue_field::{LatLong, Raster, whole};
 use etendue_world::{Light, SkyMap};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
@@ -89,12 +89,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
 /// Returns the pixel that a direction falls into.
 fn nearest(square: &Raster, toward: DVec3) -> f64 {
     let side = square.width();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number is between 0 and the side length of the picture"
-    )]
-    let [x, y] = place(toward).map(|v| ((v.clamp(0.0, 1.0) * side as f64) as usize).min(side - 1));
+    let [x, y] = place(toward).map(|v| whole(v.clamp(0.0, 1.0) * side as f64).min(side - 1));
     square.values()[y * side + x].max(0.0)
 }
 

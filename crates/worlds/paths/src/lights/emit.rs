@@ -3,6 +3,7 @@
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
+use etendue_field::whole;
 use etendue_sampling::{Cone, about, cosine_hemisphere, disc};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -179,12 +180,7 @@ impl Draw<'_> {
 /// photons are aimed, with the same probability for each target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of a target, counted from 0"
-    )]
-    let found = (number >= 0.0).then_some(number as usize);
+    let found = (number >= 0.0).then(|| whole(number));
     found.and_then(|number| targets.get(number))
 }
 

@@ -36,7 +36,7 @@ impl<'a> BackwardProbe<'a> {
     #[must_use]
     pub fn by_bsdf(self) -> Option<Self> {
         let search = LightSearch::Bsdf;
-        let is_possible = self.probe.paths.bsdf_finds_lights();
+        let is_possible = self.probe.bsdf_finds_lights();
         is_possible.then_some(Self { search, ..self })
     }
 

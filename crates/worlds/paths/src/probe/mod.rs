@@ -125,7 +125,7 @@ impl<'a> Probe<'a> {
             }
             spread *= stop.spreading(travelled);
             let axis = probe.legs[i].frame.x;
-            let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
+            let mirrored = axis.reflect(stop.normal);
             let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
             let widths = [wide, spread.min(WIDEST)];
             // No window sees a larger part of this surface than the window at the next surface.
@@ -183,7 +183,7 @@ impl<'a> Probe<'a> {
     /// lights, spots and directional lights.
     #[must_use]
     pub fn bsdf_finds_lights(&self) -> bool {
-        self.paths.bsdf_finds_lights()
+        self.paths.lights.are_extended()
     }
 
     /// Replaces the planes by a single plane, which records the light that arrives at the middle of

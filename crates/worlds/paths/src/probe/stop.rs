@@ -64,7 +64,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
             -1.0
         };
         let normal = side * hit.frame.z_axis;
-        let onward = ray.mirrored(normal);
+        let onward = ray.along.reflect(normal);
         stops.push(Stop {
             shape: hit.shape,
             position: hit.position,
@@ -133,6 +133,6 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
 /// Returns the normalised component of a normal perpendicular to a direction. Returns `None` if the
 /// normal is parallel to the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
-    let across = normal - normal.dot(along) * along;
+    let across = normal.reject_from_normalized(along);
     (across.length() > 1e-6).then(|| across.normalize())
 }

@@ -161,8 +161,8 @@ pub(super) fn placed(shapes: &[Shape]) -> Vec<Placed> {
 /// perpendicular to this normal.
 #[inline]
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
-    let across = along - along.dot(normal) * normal;
-    let x = across
+    let x = along
+        .reject_from_normalized(normal)
         .try_normalize()
         .unwrap_or_else(|| normal.any_orthonormal_vector());
     DMat3::from_cols(x, normal.cross(x), normal)

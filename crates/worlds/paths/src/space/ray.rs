@@ -17,11 +17,6 @@ impl Ray {
         Self { from, along }
     }
 
-    /// Returns the mirror direction of the ray at a surface with a unit normal.
-    pub(crate) fn mirrored(&self, normal: DVec3) -> DVec3 {
-        self.along - 2.0 * self.along.dot(normal) * normal
-    }
-
     pub(crate) fn at(&self, distance: f64) -> DVec3 {
         self.from + distance * self.along
     }

@@ -1,6 +1,7 @@
 //! Plans how many more rays and photons the planes of a probe need for a verdict.
 
 use super::scene::RESOLUTION;
+use etendue_field::whole;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The noise that both estimates of a plane together should have, as a share of the spectrum. It is
@@ -106,7 +107,7 @@ impl TracePlan {
             .fold(0.0, |a, b| if work(b) < work(a) { b } else { a });
         Self {
             rays: counted(next.iter().map(|(plane, [n, ..])| (*plane, *n))),
-            photons: (photons > 0.0).then(|| whole(photons)),
+            photons: (photons > 0.0).then(|| rounded(photons)),
             bsdf_rays: counted(bsdf_rays(photons)),
         }
     }
@@ -115,16 +116,12 @@ impl TracePlan {
 /// Returns the planes that get rays, with the whole numbers of these rays.
 fn counted(planes: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, u64)> {
     let some = planes.filter(|(_, n)| *n > 0.0);
-    some.map(|(plane, n)| (plane, whole(n))).collect()
+    some.map(|(plane, n)| (plane, rounded(n))).collect()
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "numbers of rays are positive and at most 2^28"
-)]
-fn whole(rays: f64) -> u64 {
-    rays.ceil() as u64
+/// Returns a number of rays, rounded up.
+fn rounded(rays: f64) -> u64 {
+    whole(rays.ceil()) as u64
 }
 
 #[cfg(test)]
