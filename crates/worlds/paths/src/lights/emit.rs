@@ -5,6 +5,7 @@ use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
 use etendue_field::whole;
 use etendue_sampling::{Cone, about, cosine_hemisphere, disc};
+use etendue_world::Light;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -69,19 +70,20 @@ impl SampledLight {
         match self {
             Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, place)?)),
             Self::ShiningSphere(ball) => Some(draw.flashed(ball.emit(geometry, [a, b]))),
-            Self::Point {
+            Self::Plain(Light::Point {
                 position,
                 intensity,
-            } => Some(draw.away(*position, &Cone::SPHERE, &|_| *intensity)),
+            }) => Some(draw.away(*position, &Cone::SPHERE, &|_| *intensity)),
             Self::Beam(beam) => {
                 let to_world = beam.to_local.inverse();
                 let cone = Cone::new(to_world.matrix3.z_axis, beam.cosine);
                 Some(draw.away(to_world.translation, &cone, &|along| beam.intensity(along)))
             }
-            Self::Directional { toward, irradiance } => {
-                Some(draw.afar(geometry, *toward, *irradiance))
-            }
-            Self::Sheet { shape, exitance } => {
+            Self::Plain(Light::Directional {
+                direction,
+                irradiance,
+            }) => Some(draw.afar(geometry, -*direction, *irradiance)),
+            Self::Plain(Light::Sheet { shape, exitance }) => {
                 let placed = geometry.placed(*shape);
                 let (from, along, point) = placed.sample(0, [a, b]);
                 Some(Emitted {
@@ -90,6 +92,7 @@ impl SampledLight {
                     flash: None,
                 })
             }
+            Self::Plain(_) => None,
             Self::Sky(sky) => {
                 let toward = sky.sample(place);
                 let (radiance, density) = sky.radiance_and_density(toward);

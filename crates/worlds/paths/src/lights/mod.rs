@@ -30,21 +30,10 @@ pub(crate) struct LightSampler {
 enum SampledLight {
     ShiningShape(ShiningShape),
     ShiningSphere(ShiningSphere),
-    Point {
-        position: DVec3,
-        intensity: f64,
-    },
     Beam(Beam),
-    Directional {
-        toward: DVec3,
-        irradiance: f64,
-    },
-    /// A shape that emits along its normal only.
-    Sheet {
-        shape: usize,
-        exitance: Texture,
-    },
     Sky(SampledSky),
+    /// A point light, or a light with parallel rays.
+    Plain(Light),
 }
 
 impl LightSampler {
@@ -148,13 +137,6 @@ fn shining(shape: &Shape, number: usize, geometry: &SceneGeometry) -> Option<Sam
 impl From<&Light> for SampledLight {
     fn from(light: &Light) -> Self {
         match light {
-            Light::Point {
-                position,
-                intensity,
-            } => Self::Point {
-                position: *position,
-                intensity: *intensity,
-            },
             Light::Spot {
                 to_world, cutoff, ..
             } => Self::Beam(Beam {
@@ -168,19 +150,9 @@ impl From<&Light> for SampledLight {
                 cosine: (1.0 + half.length_squared()).sqrt().recip(),
                 light: light.clone(),
             }),
-            Light::Directional {
-                direction,
-                irradiance,
-            } => Self::Directional {
-                toward: -*direction,
-                irradiance: *irradiance,
-            },
-            Light::Sheet { shape, exitance } => Self::Sheet {
-                shape: *shape,
-                exitance: exitance.clone(),
-            },
             Light::Constant { radiance } => Self::Sky(SampledSky::Constant(*radiance)),
             Light::Sky(map) => Self::Sky(SampledSky::new(map)),
+            plain => Self::Plain(plain.clone()),
         }
     }
 }
@@ -192,10 +164,10 @@ impl SampledLight {
         match self {
             Self::ShiningShape(surface) => surface.sample(geometry, at, [a, b, c]),
             Self::ShiningSphere(ball) => ball.sample(geometry, at, [a, b]),
-            Self::Point {
+            Self::Plain(Light::Point {
                 position,
                 intensity,
-            } => {
+            }) => {
                 let (toward, distance) = way(at, *position);
                 let weight = intensity / (distance * distance);
                 Some(Incoming::from_one(toward, distance, weight))
@@ -206,10 +178,11 @@ impl SampledLight {
                 let weight = intensity / (distance * distance);
                 (intensity > 0.0).then_some(Incoming::from_one(toward, distance, weight))
             }
-            Self::Directional { toward, irradiance } => {
-                Some(Incoming::from_one(*toward, f64::INFINITY, *irradiance))
-            }
-            Self::Sheet { shape, exitance } => {
+            Self::Plain(Light::Directional {
+                direction,
+                irradiance,
+            }) => Some(Incoming::from_one(-*direction, f64::INFINITY, *irradiance)),
+            Self::Plain(Light::Sheet { shape, exitance }) => {
                 // A flat shape has the same normal everywhere.
                 let (_, normal, _) = geometry.placed(*shape).sample(0, [0.5; 2]);
                 let ray = Ray::new(at, -normal);
@@ -217,6 +190,7 @@ impl SampledLight {
                 let weight = exitance.value(&hit.point);
                 Some(Incoming::from_one(-normal, hit.distance, weight))
             }
+            Self::Plain(_) => None,
             Self::Sky(sky) => {
                 let toward = sky.sample(r);
                 let (radiance, density) = sky.radiance_and_density(toward);

@@ -6,18 +6,17 @@
 //! medium. This quotient does not change where light is refracted.
 
 mod place;
-mod reflects;
 
 use etendue_field::Lobe;
 pub(crate) use etendue_scatter::BsdfSample;
 use etendue_scatter::{Bsdf, Microfacets, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture, TexturePoint};
 use glam::DVec3;
+pub use place::Reflects;
 use place::{
     Coated, conductor, diffuse_transmission, factor, fresnel, is_mirrored, metallic_roughness,
     phong, principled, rough_dielectric, share, smooth_dielectric, to_front,
 };
-pub use reflects::Reflects;
 
 /// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
@@ -358,7 +357,8 @@ impl Scatter {
     }
 }
 
-/// Returns a BSDF times |cos| of wi, and its density. The BSDF describes the side of wo as its front.
+/// Returns a BSDF times |cos| of wi, and its density. The BSDF describes the side of wo as its
+/// front.
 fn both(of: &impl Bsdf, wi: DVec3, wo: DVec3) -> (f64, f64) {
     let turned = to_front(wo);
     let (value, density) = of.value_and_density(turned(wi), turned(wo));

@@ -1,7 +1,7 @@
 //! Converts materials at a surface point to BSDFs of `etendue_scatter`, and flips directions to the
 //! front.
 
-use etendue_field::{Fresnel, MicrofacetDistribution};
+use etendue_field::{Fresnel, Lobe, MicrofacetDistribution};
 use etendue_scatter::{
     Bsdf, Coat, Conductor, DiffuseTransmission, MetallicRoughness, Microfacets, ModifiedPhong,
     Phong, Plastic, Principled, RoughDielectric, SmoothDielectric,
@@ -49,6 +49,19 @@ impl Coated {
         let plastic = self.at(point);
         share(plastic.base_value(wi, wo), plastic.value(wi, wo))
     }
+}
+
+/// The kind of reflection of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reflects {
+    /// The surface is black on this side.
+    Nothing,
+    /// Diffuse.
+    Diffuse,
+    /// A mirror.
+    Mirror,
+    /// A lobe around the mirror direction, possibly above a diffuse base.
+    Lobe(Lobe),
 }
 
 /// Returns the microfacet distribution at a point, or `None` for a smooth surface.

@@ -57,8 +57,8 @@ impl Spot {
     }
 }
 
-/// Returns the smallest box around boxes, given by their lowest and highest corners; an empty box at
-/// the origin if there are none.
+/// Returns the smallest box around boxes, given by their lowest and highest corners; an empty box
+/// at the origin if there are none.
 pub(super) fn around(boxes: impl Iterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
     boxes
         .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
