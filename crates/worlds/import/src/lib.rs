@@ -12,7 +12,6 @@ mod main_file;
 mod meshes;
 mod mitsuba;
 mod obj;
-mod options;
 mod pbrt;
 mod pictures;
 mod range;
@@ -20,7 +19,7 @@ mod report;
 mod spectrum;
 
 pub use etendue_scene::Color;
-pub use options::Options;
+pub use main_file::Options;
 pub use report::{Imported, Note, Refused};
 
 use main_file::MainFile;
@@ -41,24 +40,20 @@ use std::path::Path;
 /// # Errors
 /// Returns all causes for which the file cannot be imported.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
+    const ALLOWED: &str = "gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)";
     let extension = file.extension().unwrap_or_default().to_string_lossy();
-    match extension.to_ascii_lowercase().as_str() {
-        "gltf" | "glb" => gltf::import(file, options),
-        "obj" => obj::import(file, options),
-        "ply" => obj::import_ply(file, options),
-        "xml" => mitsuba::import(file, options),
-        "pbrt" => pbrt::import(file, options),
-        "ron" | "json" => Err(Refused::because(
-            file,
-            "a scene of Étendue: use run or check for it. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
-        )),
-        other => Err(Refused::because(
-            file,
-            format!(
-                "extension {other:?}; allowed: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)"
-            ),
-        )),
-    }
+    let message = match extension.to_ascii_lowercase().as_str() {
+        "gltf" | "glb" => return gltf::import(file, options),
+        "obj" => return obj::import(file, options),
+        "ply" => return obj::import_ply(file, options),
+        "xml" => return mitsuba::import(file, options),
+        "pbrt" => return pbrt::import(file, options),
+        "ron" | "json" => {
+            format!("a scene of Étendue: use run or check for it. Allowed here: {ALLOWED}")
+        }
+        other => format!("extension {other:?}; allowed: {ALLOWED}"),
+    };
+    Err(Refused::because(file, message))
 }
 
 /// Reads the text of a Mitsuba 3 scene; files are searched for from `folder`.

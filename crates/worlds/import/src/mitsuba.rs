@@ -6,7 +6,6 @@
 
 mod ask;
 mod index;
-mod integrator;
 mod light;
 mod material;
 mod mesh;

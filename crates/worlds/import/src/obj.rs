@@ -10,7 +10,6 @@
 //!   numbers of `Kd`, `Ks`, `Ke` and `Tf`. The first row of a picture is at v = 1.
 //! * `Ke` is radiance, W m⁻² sr⁻¹.
 
-mod entry;
 mod material;
 mod mtl;
 mod ply;

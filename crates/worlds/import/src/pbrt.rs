@@ -1,6 +1,6 @@
 //! Scenes of pbrt-v4.
 //!
-//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]. `reader` and the
+//! `token`, `entity` and `directive` turn the files into a [`scene::PbrtScene`]. `reader` and the
 //! modules below it turn this scene into a world. Each parameter that is read is marked, and each
 //! parameter without a mark becomes a note. Conventions follow the source of pbrt-v4.
 //!
@@ -42,7 +42,6 @@ mod entity;
 mod light;
 mod material;
 mod mesh;
-mod parameter;
 mod reader;
 mod scene;
 mod shape;

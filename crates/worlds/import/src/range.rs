@@ -16,6 +16,17 @@ pub(crate) const MAX_SHARE: f64 = 1.0 + 1e-9;
 /// numbers, so the axes differ slightly.
 const ALIKE: f64 = 1e-4;
 
+/// Maximum number of shapes of a world, and of lights of a glTF file; the limit is needed because a
+/// scene may repeat both.
+pub(crate) const MAX_SHAPES: usize = 1 << 20;
+
+/// Maximum number of materials of a world, including nested ones; the limit is needed because
+/// references may duplicate nested materials.
+pub(crate) const MAX_MATERIALS: usize = 1 << 20;
+
+/// Maximum number of pixels of a camera across or down.
+pub(crate) const MAX_PIXELS: i64 = 1 << 16;
+
 /// Checks that a number is in range; `Err` describes the fault.
 pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     match value.abs() <= MAX_NUMBER {

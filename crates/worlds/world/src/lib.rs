@@ -43,3 +43,11 @@ pub struct World {
     /// Whether sources that the camera sees directly appear black.
     pub hides_sources: bool,
 }
+
+impl World {
+    /// Adds a material, and returns its index.
+    pub fn add_material(&mut self, material: Material) -> usize {
+        self.materials.push(material);
+        self.materials.len() - 1
+    }
+}

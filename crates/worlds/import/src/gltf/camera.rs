@@ -53,25 +53,18 @@ impl<'a> GltfReader<'a> {
         of: &Perspective,
         path: &str,
     ) -> Option<(Projection, f64, f64, [f64; 2])> {
-        let yfov = self.within(&format!("{path}.yfov"), of.yfov, [1e-4, PI - 1e-4]);
+        let field = |name: &str| format!("{path}.{name}");
+        let yfov = self.within(&field("yfov"), of.yfov, [1e-4, PI - 1e-4]);
         let aspect = match of.aspect_ratio {
-            Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
+            Some(aspect) => self.within(&field("aspectRatio"), aspect, ASPECTS),
             None => {
                 self.note(path, "has no aspectRatio: 1 is used");
                 Some(1.0)
             }
         };
-        let near = self.within(
-            &format!("{path}.znear"),
-            of.znear,
-            [f64::MIN_POSITIVE, MAX_NUMBER],
-        );
+        let near = self.within(&field("znear"), of.znear, [f64::MIN_POSITIVE, MAX_NUMBER]);
         let far = match of.zfar {
-            Some(far) => self.within(
-                &format!("{path}.zfar"),
-                far,
-                [f64::from(of.znear), MAX_NUMBER],
-            ),
+            Some(far) => self.within(&field("zfar"), far, [of.znear.into(), MAX_NUMBER]),
             None => Some(f64::INFINITY),
         };
         let (aspect, tangent) = (aspect?, libm::tan(yfov? / 2.0));
@@ -89,14 +82,11 @@ impl<'a> GltfReader<'a> {
         of: &Orthographic,
         path: &str,
     ) -> Option<(Projection, f64, f64, [f64; 2])> {
+        let field = |name: &str| format!("{path}.{name}");
         let [xmag, ymag] = [("xmag", of.xmag), ("ymag", of.ymag)]
-            .map(|(name, value)| self.within(&format!("{path}.{name}"), value, [1e-9, 1e9]));
-        let near = self.within(&format!("{path}.znear"), of.znear, [0.0, MAX_NUMBER]);
-        let far = self.within(
-            &format!("{path}.zfar"),
-            of.zfar,
-            [f64::from(of.znear), MAX_NUMBER],
-        );
+            .map(|(name, value)| self.within(&field(name), value, [1e-9, 1e9]));
+        let near = self.within(&field("znear"), of.znear, [0.0, MAX_NUMBER]);
+        let far = self.within(&field("zfar"), of.zfar, [of.znear.into(), MAX_NUMBER]);
         let (xmag, ymag) = (xmag?, ymag?);
         let aspect = xmag / ymag;
         if !(ASPECTS[0]..=ASPECTS[1]).contains(&aspect) {

@@ -1,8 +1,8 @@
 //! Converts lights of `KHR_lights_punctual`.
 
 use super::node::PlacedNode;
-use super::reader::{GltfReader, MAX_SHAPES};
-use crate::range::MAX_NUMBER;
+use super::reader::GltfReader;
+use crate::range::{MAX_NUMBER, MAX_SHAPES};
 use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Spot, Type};
 use ::gltf::json::validation::Checked;
 use etendue_world::{Falloff, Light};

@@ -3,7 +3,6 @@
 use super::level::TextureChannel;
 use super::reader::{Draft, GltfReader, GltfSurface};
 use crate::range::MAX_NUMBER;
-use crate::report::quoted;
 use ::gltf::json::Material as GltfMaterial;
 use ::gltf::json::material::AlphaMode;
 use ::gltf::json::validation::Checked;
@@ -62,9 +61,8 @@ impl<'a> GltfReader<'a> {
             );
             return self.refuse(&draft.path, message);
         }
-        self.world.materials.push(material);
         Some(GltfSurface {
-            material: self.world.materials.len() - 1,
+            material: self.world.add_material(material),
             emission,
             is_double_sided: source.double_sided,
             set: draft.sets.first().copied(),
@@ -164,10 +162,7 @@ impl<'a> GltfReader<'a> {
             let message = "is left out: the surface reflects light like any other surface";
             self.note(&format!("{path}.extensions.KHR_materials_unlit"), message);
         }
-        for name in extensions.others.keys() {
-            let name = quoted(name);
-            self.note(&format!("{path}.extensions"), format!("{name} is left out"));
-        }
+        self.tell_others(path, extensions.others.keys());
     }
 
     /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
@@ -301,10 +296,8 @@ impl<'a> GltfReader<'a> {
         if share >= 1.0 {
             return Some(glass);
         }
-        self.note(
-            &path,
-            "approximated: the material is a mixture of an opaque material and glass",
-        );
+        let message = "approximated: the material is a mixture of an opaque material and glass";
+        self.note(&path, message);
         let weight = Texture::Constant(share);
         let of = Box::new([opaque, glass]);
         Some(Material::Blend { weight, of })
@@ -342,10 +335,8 @@ impl<'a> GltfReader<'a> {
         };
         let path = format!("{}.extensions.KHR_materials_volume", draft.path);
         if volume.attenuation_distance.0.is_finite() {
-            self.note(
-                &path,
-                "attenuation is left out: light is not absorbed inside the body",
-            );
+            let message = "attenuation is left out: light is not absorbed inside the body";
+            self.note(&path, message);
         }
         if volume.thickness_factor.0 > 0.0 && volume.thickness_texture.is_some() {
             self.note(&path, "thicknessTexture is left out");

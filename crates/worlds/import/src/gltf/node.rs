@@ -2,12 +2,14 @@
 
 use super::reader::GltfReader;
 use crate::range::{MAX_NUMBER, holds};
-use crate::report::quoted;
 use ::gltf::json::Node;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// Maximum deviation of the length of a rotation quaternion from 1.
 const UNIT: f64 = 1e-3;
+
+/// Says why nodes are refused.
+const CIRCLE: &str = "has two parents, or is its own ancestor";
 
 /// A node and the transform of this node.
 pub(super) struct PlacedNode<'a> {
@@ -30,7 +32,7 @@ impl<'a> GltfReader<'a> {
                 continue;
             };
             if std::mem::replace(&mut met[number], true) {
-                self.cause(&path, "has two parents, or is its own ancestor");
+                self.cause(&path, CIRCLE);
                 continue;
             }
             let Some(own) = self.own(node, &path) else {
@@ -77,15 +79,12 @@ impl<'a> GltfReader<'a> {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
             (Some(first), true) => {
-                self.cause(
-                    &format!("nodes[{first}]"),
-                    "has two parents, or is its own ancestor",
-                );
+                self.cause(&format!("nodes[{first}]"), CIRCLE);
             }
-            (Some(_), false) => self.note(
-                "nodes",
-                format!("{unmet} nodes do not belong to the scene and are left out"),
-            ),
+            (Some(_), false) => {
+                let message = format!("{unmet} nodes do not belong to the scene and are left out");
+                self.note("nodes", message);
+            }
             (None, _) => {}
         }
     }
@@ -98,10 +97,8 @@ impl<'a> GltfReader<'a> {
             return self.cause(path, message);
         }
         if node.skin.is_some() {
-            self.note(
-                &format!("{path}.skin"),
-                "is left out: the mesh keeps its bind pose",
-            );
+            let message = "is left out: the mesh keeps its bind pose";
+            self.note(&format!("{path}.skin"), message);
         }
         if let Some(mesh) = node.mesh {
             self.mesh_of(placed, mesh.value());
@@ -113,12 +110,7 @@ impl<'a> GltfReader<'a> {
         if let Some(light) = extensions.and_then(|of| of.khr_lights_punctual.as_ref()) {
             self.light_of(placed, light.light.value());
         }
-        for name in extensions.iter().flat_map(|of| of.others.keys()) {
-            self.note(
-                &format!("{path}.extensions"),
-                format!("{} is left out", quoted(name)),
-            );
-        }
+        self.tell_others(path, extensions.iter().flat_map(|of| of.others.keys()));
     }
 
     /// Returns the local transform of a node, or `None` if a cause of refusal was reported.

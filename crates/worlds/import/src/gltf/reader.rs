@@ -13,9 +13,6 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes in a world, and maximum number of lights.
-pub(super) const MAX_SHAPES: usize = 1 << 20;
-
 /// Converts a glTF file to a world.
 pub(super) struct GltfReader<'a> {
     pub(super) root: &'a Root,
@@ -106,6 +103,14 @@ impl<'a> GltfReader<'a> {
     pub(super) fn note(&self, path: &str, message: impl AsRef<str>) {
         self.report
             .note(&self.place, format!("{path}: {}", message.as_ref()));
+    }
+
+    /// Adds a note for each unknown extension of the element at a JSON path.
+    pub(super) fn tell_others<'n>(&self, path: &str, names: impl Iterator<Item = &'n String>) {
+        for name in names {
+            let message = format!("{} is left out", quoted(name));
+            self.note(&format!("{path}.extensions"), message);
+        }
     }
 
     /// Adds a note on the file as a whole, unless the same note was already given.

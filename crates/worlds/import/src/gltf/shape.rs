@@ -1,9 +1,9 @@
 //! Conversion of the meshes of nodes to shapes.
 
 use super::node::PlacedNode;
-use super::reader::{GltfReader, GltfSurface, MAX_SHAPES};
+use super::reader::{GltfReader, GltfSurface};
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
-use crate::range::MAX_NUMBER;
+use crate::range::{MAX_NUMBER, MAX_SHAPES};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
@@ -127,10 +127,8 @@ impl<'a> GltfReader<'a> {
         };
         let count = vertices.len();
         if let Some(bad) = listed.iter().find(|i| **i as usize >= count) {
-            return self.refuse(
-                path,
-                format!("an index is {bad}, but there are only {count} vertices"),
-            );
+            let message = format!("an index is {bad}, but there are only {count} vertices");
+            return self.refuse(path, message);
         }
         let lengths = [normals.as_ref().map(Vec::len), uvs.as_ref().map(Vec::len)];
         if lengths.iter().flatten().any(|length| *length != count) {
@@ -184,19 +182,14 @@ impl<'a> GltfReader<'a> {
 
     fn tell_dropped(&self, primitive: &Primitive, path: &str) {
         if primitive.targets.is_some() {
-            self.note(
-                &format!("{path}.targets"),
-                "is left out: the mesh keeps its base shape",
-            );
+            let message = "is left out: the mesh keeps its base shape";
+            self.note(&format!("{path}.targets"), message);
         }
         if attribute(primitive, Semantic::Colors(0)).is_some() {
             self.note(&format!("{path}.attributes.COLOR_0"), "is left out");
         }
         let others = primitive.extensions.iter().flat_map(|of| of.others.keys());
-        for name in others {
-            let name = crate::report::quoted(name);
-            self.note(&format!("{path}.extensions"), format!("{name} is left out"));
-        }
+        self.tell_others(path, others);
     }
 }
 

@@ -73,11 +73,8 @@ impl<'a> MitsubaReader<'a> {
         if is_allowed(value) {
             return Some(value);
         }
-        self.fault(
-            object,
-            name,
-            format!("{name} is {value}; allowed: {allowed}"),
-        )
+        let message = format!("{name} is {value}; allowed: {allowed}");
+        self.fault(object, name, message)
     }
 
     /// Reads a number like [`Self::number_within`], or returns `default` if the property is missing.

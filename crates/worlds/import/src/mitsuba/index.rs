@@ -1,8 +1,8 @@
 //! Indices of refraction of the materials and conductors that scenes refer to by name.
 //!
-//! The indices of conductors are colours in linear sRGB, computed by Mitsuba 3.9.1 from its tables of
-//! n and k by wavelength, which are from luxpop.com, Palik and others. The rule of this conversion is
-//! stated at [`Color`](crate::Color). Negative components of a colour are set to 0.
+//! The indices of conductors are colours in linear sRGB, computed by Mitsuba 3.9.1 from its tables
+//! of n and k by wavelength, which are from luxpop.com, Palik and others. The rule of this
+//! conversion is stated at [`Color`](crate::Color). Negative components of a colour are set to 0.
 
 use super::object::{MitsubaObject, Value};
 use super::reader::MitsubaReader;

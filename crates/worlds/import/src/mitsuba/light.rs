@@ -64,8 +64,8 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns a vector, which is given either directly or by a transform, or `default` if neither is
-    /// given. Returns `None` if a cause of refusal was reported.
+    /// Returns a vector, which is given either directly or by a transform, or `default` if neither
+    /// is given. Returns `None` if a cause of refusal was reported.
     fn either(
         &self,
         object: &'a MitsubaObject,

@@ -4,7 +4,7 @@ use super::index::metal_index;
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use super::texture::as_number;
-use crate::range::MAX_SHARE;
+use crate::range::{MAX_MATERIALS, MAX_SHARE};
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_world::{
@@ -15,9 +15,6 @@ use std::sync::Arc;
 
 /// Maximum nesting depth of materials.
 const MAX_DEPTH: usize = 8;
-
-/// Maximum number of materials, including nested ones.
-const MAX_MATERIALS: usize = 1 << 20;
 
 /// Plugins supported as materials.
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, principled, phong, twosided, mask, blendbsdf, null";
@@ -35,7 +32,7 @@ impl<'a> MitsubaReader<'a> {
             return *known;
         }
         let made = self.make_material(object, 0);
-        let number = made.map(|material| self.add_material(material));
+        let number = made.map(|material| self.world.add_material(material));
         self.materials.insert(at, number);
         number
     }
@@ -47,14 +44,9 @@ impl<'a> MitsubaReader<'a> {
             return known;
         }
         let reflectance = Texture::Constant(if shines { 0.0 } else { 0.5 });
-        let number = self.add_material(Material::Diffuse { reflectance });
+        let number = self.world.add_material(Material::Diffuse { reflectance });
         self.defaults[usize::from(shines)] = Some(number);
         number
-    }
-
-    fn add_material(&mut self, material: Material) -> usize {
-        self.world.materials.push(material);
-        self.world.materials.len() - 1
     }
 
     pub(super) fn make_material(
@@ -65,8 +57,6 @@ impl<'a> MitsubaReader<'a> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
-            // The number of materials is limited because references may duplicate nested
-            // materials.
             if self.made_materials == MAX_MATERIALS + 1 {
                 let message = format!("more than {MAX_MATERIALS} bsdfs, counting repetitions");
                 self.report.cause(&object.place, message);

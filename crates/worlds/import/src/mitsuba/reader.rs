@@ -13,9 +13,6 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; the limit is needed because instances may repeat groups.
-pub(super) const MOST_SHAPES: usize = 1 << 20;
-
 /// Converts objects to a world.
 pub(super) struct MitsubaReader<'a> {
     pub(super) objects: &'a [MitsubaObject],

@@ -1,9 +1,9 @@
 //! Shapes, groups of shapes, and instances of groups.
 
 use super::object::{MitsubaObject, ObjectKind};
-use super::reader::{MOST_SHAPES, MitsubaReader};
+use super::reader::MitsubaReader;
 use super::transform::frame;
-use crate::range::{fault, is_similarity, similar};
+use crate::range::{MAX_SHAPES, fault, is_similarity, similar};
 use crate::report::quoted;
 use etendue_world::{Geometry, Light, Shape, Texture, Triangles};
 use glam::{DAffine3, DMat3, DVec3};
@@ -44,10 +44,8 @@ impl<'a> MitsubaReader<'a> {
             return self.report.cause(&object.place, message);
         };
         if group.plugin != "shapegroup" {
-            let message = format!(
-                "an instance of {}; allowed: shapegroup",
-                quoted(&group.plugin)
-            );
+            let plugin = quoted(&group.plugin);
+            let message = format!("an instance of {plugin}; allowed: shapegroup");
             return self.report.cause(&object.place, message);
         }
         for shape in self.group(group).iter() {
@@ -85,11 +83,11 @@ impl<'a> MitsubaReader<'a> {
 
     /// Checks whether the world can have one more shape; otherwise, adds a cause of refusal.
     fn has_room(&self, object: &'a MitsubaObject) -> bool {
-        if self.world.shapes.len() < MOST_SHAPES {
+        if self.world.shapes.len() < MAX_SHAPES {
             return true;
         }
         if !self.report.has_causes() {
-            let message = format!("more than {MOST_SHAPES} shapes, counting instances");
+            let message = format!("more than {MAX_SHAPES} shapes, counting instances");
             self.report.cause(&object.place, message);
         }
         false
@@ -264,10 +262,9 @@ impl<'a> MitsubaReader<'a> {
 
 /// Checks whether a mesh has vertex normals that are not those of its triangles.
 fn is_smooth(mesh: &Triangles) -> bool {
-    let Some(normals) = mesh.normals() else {
+    let (places, Some(normals)) = (mesh.vertices(), mesh.normals()) else {
         return false;
     };
-    let [places, normals] = [mesh.vertices(), normals];
     mesh.corners().iter().any(|corners| {
         let [a, b, c] = corners.map(|i| places[i as usize]);
         let own = (b - a).cross(c - a).normalize_or_zero();

@@ -104,10 +104,8 @@ fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     } else if let Ok(linear) = <[f64; 9]>::try_from(numbers) {
         DMat4::from_mat3(DMat3::from_cols_array(&linear).transpose())
     } else {
-        return Err(format!(
-            "a matrix has {} numbers; allowed: 9 or 16",
-            numbers.len()
-        ));
+        let count = numbers.len();
+        return Err(format!("a matrix has {count} numbers; allowed: 9 or 16"));
     };
     if matrix.row(3) != DVec4::W {
         return Err("the last row of a matrix is not 0 0 0 1".to_owned());

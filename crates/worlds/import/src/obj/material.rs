@@ -1,6 +1,6 @@
 //! Materials of MTL files.
 
-use super::entry::{MtlEntry, MtlMap, ObjSurface};
+use super::mtl::{MtlEntry, MtlMap, ObjSurface};
 use super::ply::diffuse;
 use super::reader::ObjReader;
 use crate::pictures::{counted, decode, linear};
@@ -16,9 +16,8 @@ const INDEX: f64 = 1.5;
 impl ObjReader<'_> {
     /// Adds the surface of parts without a material.
     pub(super) fn default_surface(&mut self) -> ObjSurface {
-        self.world.materials.push(diffuse());
         ObjSurface {
-            material: self.world.materials.len() - 1,
+            material: self.world.add_material(diffuse()),
             emission: None,
             has_picture: false,
         }
@@ -40,10 +39,9 @@ impl ObjReader<'_> {
             },
             None => scatter,
         };
-        self.world.materials.push(material);
         let maps = [&entry.map_kd, &entry.map_ke, &entry.map_d];
         Some(ObjSurface {
-            material: self.world.materials.len() - 1,
+            material: self.world.add_material(material),
             emission,
             has_picture: maps.iter().any(|map| map.is_some()),
         })

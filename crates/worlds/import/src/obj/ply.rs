@@ -25,10 +25,8 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     if mended {
         scene.report.note(&place, MENDED);
     }
-    scene.report.note(
-        &place,
-        "has no material: a diffuse material of reflectance 0.5 is used on both sides",
-    );
+    let message = "has no material: a diffuse material of reflectance 0.5 is used on both sides";
+    scene.report.note(&place, message);
     let world = World {
         shapes: vec![Shape {
             name: String::new(),

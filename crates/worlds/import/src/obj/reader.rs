@@ -1,7 +1,6 @@
 //! Conversion of the parts of OBJ files to shapes.
 
-use super::entry::{MtlEntry, ObjSurface};
-use super::mtl::{self, left_out};
+use super::mtl::{self, MtlEntry, ObjSurface, left_out};
 use crate::Color;
 use crate::files::Files;
 use crate::main_file::MainFile;
@@ -122,10 +121,9 @@ impl<'a> ObjReader<'a> {
         }
         let made = match name {
             None => {
-                self.report.note(
-                    &self.place,
-                    "has faces without a material: a diffuse material of reflectance 0.5 is used",
-                );
+                let message =
+                    "has faces without a material: a diffuse material of reflectance 0.5 is used";
+                self.report.note(&self.place, message);
                 Some(self.default_surface())
             }
             Some(known) => match self.entries.get(known).cloned() {

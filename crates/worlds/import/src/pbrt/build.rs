@@ -1,8 +1,7 @@
 //! Builds a scene from the directives of its files: entities, attribute blocks, object definitions,
 //! and included files.
 
-use super::entity::Entity;
-use super::parameter::PbrtParameter;
+use super::entity::{Entity, PbrtParameter};
 use super::scene::{GraphicsState, Instance, MaterialOf, PbrtObject, PbrtScene, PbrtShape};
 use super::token::Tokens;
 use crate::files::{Files, has_extension, text};
@@ -137,12 +136,7 @@ impl<'a> Builder<'a> {
         let setting = SETTINGS.iter().find(|kind| **kind == word);
         match word {
             "Attribute" => return self.attribute(&plugin, own),
-            "MakeNamedMedium" => {
-                let name = quoted(&plugin);
-                return Err(format!(
-                    "medium {name}: participating media are not supported"
-                ));
-            }
+            "MakeNamedMedium" => return Err(no_medium(&plugin)),
             _ => self.require_world(word, setting.is_none() && word != "Camera")?,
         }
         let (kind, target) = match word {
@@ -363,6 +357,12 @@ impl Builder<'_> {
         }
         Ok(())
     }
+}
+
+/// Returns the message that a medium is refused.
+pub(super) fn no_medium(name: &str) -> String {
+    let name = quoted(name);
+    format!("medium {name}: participating media are not supported")
 }
 
 /// Returns the text of a file, unpacked if its name ends in .gz.

@@ -1,9 +1,9 @@
 //! The camera, the film and the path depth.
 
-use super::entity::{CauseGiven, Entity, Read};
-use super::parameter::ParameterKind;
+use super::entity::{CauseGiven, Entity, ParameterKind, Read};
 use super::reader::PbrtReader;
 use super::transform::without_scale;
+use crate::range::MAX_PIXELS;
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
@@ -14,9 +14,6 @@ const ALLOWED: &str = "perspective, orthographic";
 
 /// Default size of a film in pixels.
 const SIZE: [usize; 2] = [1280, 720];
-
-/// Maximum number of pixels across or down.
-const MAX_PIXELS: i64 = 1 << 16;
 
 /// pbrt's default depth.
 const DEPTH: i64 = 5;

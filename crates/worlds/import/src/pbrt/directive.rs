@@ -1,7 +1,7 @@
 //! Parsing of the directives of a file.
 
-use super::build::Builder;
-use super::parameter::parameters;
+use super::build::{Builder, no_medium};
+use super::entity::parameters;
 use super::scene::MaterialOf;
 use super::token::{Token, Tokens, is_directive, number};
 use super::transform::{look_at, matrix, rotation};
@@ -117,9 +117,7 @@ impl Builder<'_> {
             names.push(second.into_owned());
         }
         if let Some(name) = names.iter().find(|name| !name.is_empty()) {
-            let name = quoted(name);
-            let message = format!("medium {name}: participating media are not supported");
-            self.report.cause(place, message);
+            self.report.cause(place, no_medium(name));
         }
         Ok(())
     }
@@ -148,13 +146,13 @@ fn active_transform(tokens: &mut Tokens<'_>) -> Result<(), String> {
 }
 
 fn color_space(name: &str) -> Result<(), String> {
-    match name.eq_ignore_ascii_case("srgb") {
-        true => Ok(()),
-        false => Err(format!(
-            "colour space {} is not supported; allowed: srgb",
-            quoted(name)
-        )),
+    if name.eq_ignore_ascii_case("srgb") {
+        return Ok(());
     }
+    let name = quoted(name);
+    Err(format!(
+        "colour space {name} is not supported; allowed: srgb"
+    ))
 }
 
 fn text(tokens: &mut Tokens<'_>) -> Result<String, String> {

@@ -1,6 +1,6 @@
 //! Lights, and the emission of surfaces.
 
-use super::entity::{CauseGiven, Entity, Read};
+use super::entity::{Entity, Read};
 use super::reader::{PbrtReader, Uv};
 use super::scene::PbrtShape;
 use super::shape::PbrtSurface;
@@ -67,11 +67,7 @@ impl PbrtReader<'_> {
         if place.abs().max_element() <= MAX_NUMBER {
             return Ok(place);
         }
-        self.report.cause(
-            &entity.place,
-            "a place out of range; allowed: coordinates up to 1e9",
-        );
-        Err(CauseGiven)
+        Err(entity.refuse("a place out of range; allowed: coordinates up to 1e9"))
     }
 
     /// Returns the vector from the point `from` to the point `to`, in world coordinates.

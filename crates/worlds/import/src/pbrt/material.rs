@@ -1,12 +1,11 @@
 //! Materials. Opaque materials are the same on both sides.
 
-use super::entity::{CauseGiven, Entity, Read};
-use super::parameter::ParameterKind;
+use super::entity::{CauseGiven, Entity, ParameterKind, Read};
 use super::reader::{PbrtReader, Uv};
 use super::scene::MaterialOf;
 use super::spectrum::named_index;
 use super::texture::Ask;
-use crate::range::MAX_SHARE;
+use crate::range::{MAX_MATERIALS, MAX_SHARE};
 use crate::report::{SourcePlace, quoted};
 use crate::spectrum::Role;
 use etendue_world::{
@@ -15,9 +14,6 @@ use etendue_world::{
 
 /// Maximum nesting depth of materials.
 const MAX_DEPTH: usize = 8;
-
-/// Maximum number of materials, including nested ones.
-const MAX_MATERIALS: usize = 1 << 20;
 
 /// The roughness below which pbrt treats a surface as smooth.
 const SMOOTH: f64 = 1e-3;
@@ -59,7 +55,7 @@ impl PbrtReader<'_> {
                 reflectance: Texture::Constant(0.5),
             }))),
         };
-        let made = made.map(|material| material.map(|material| self.add_material(material)));
+        let made = made.map(|of| of.map(|material| self.world.add_material(material)));
         self.materials.insert((number, uv), made);
         made
     }
@@ -68,11 +64,6 @@ impl PbrtReader<'_> {
         if self.is_first(place, message) {
             self.report.cause(place, message);
         }
-    }
-
-    pub(super) fn add_material(&mut self, material: Material) -> usize {
-        self.world.materials.push(material);
-        self.world.materials.len() - 1
     }
 
     fn make_material(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Option<Material>> {

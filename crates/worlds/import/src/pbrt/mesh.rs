@@ -1,8 +1,7 @@
 //! Shapes that are meshes.
 
 use super::build;
-use super::entity::{CauseGiven, Entity, Read};
-use super::parameter::ParameterKind;
+use super::entity::{CauseGiven, Entity, ParameterKind, Read};
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
 use crate::files::has_extension;

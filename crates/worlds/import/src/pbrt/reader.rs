@@ -14,9 +14,6 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world; the limit is needed because instances may repeat objects.
-pub(super) const MOST_SHAPES: usize = 1 << 20;
-
 /// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
@@ -122,11 +119,8 @@ impl<'a> PbrtReader<'a> {
     pub(super) fn file_name<'b>(&self, entity: &'b Entity<'_>) -> Read<&'b str> {
         let name = entity.text("filename")?;
         name.ok_or_else(|| {
-            let message = format!(
-                "{} {} without filename",
-                entity.kind,
-                quoted(&entity.plugin)
-            );
+            let (kind, plugin) = (entity.kind, quoted(&entity.plugin));
+            let message = format!("{kind} {plugin} without filename");
             entity.fault("filename", message)
         })
     }

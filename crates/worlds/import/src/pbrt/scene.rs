@@ -1,8 +1,7 @@
 //! A scene as its files describe it: the entity that each directive defines, with its transform
 //! and material; and notes on what is not used.
 
-use super::entity::Entity;
-use super::parameter::PbrtParameter;
+use super::entity::{Entity, PbrtParameter};
 use crate::report::{Report, SourcePlace, quoted};
 use glam::DAffine3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,10 +96,8 @@ pub(super) fn tell_unused(scene: &PbrtScene<'_>, report: &Report) {
         if object.shapes.iter().any(|shape| shape.entity.is_used.get()) {
             shapes.for_each(|entity| entity_left(entity, report));
         } else if !shown.contains(name.as_str()) {
-            report.note(
-                &object.place,
-                format!("object {} is not used", quoted(name)),
-            );
+            let message = format!("object {} is not used", quoted(name));
+            report.note(&object.place, message);
         }
     }
     parameters(&scene.defaults, "attributes", report);

@@ -3,10 +3,10 @@
 use super::entity::{CauseGiven, Entity, Read};
 use super::material::reads_uv;
 use super::mesh::PbrtMesh;
-use super::reader::{MOST_SHAPES, PbrtReader, Uv};
+use super::reader::{PbrtReader, Uv};
 use super::scene::PbrtShape;
 use super::texture::Ask;
-use crate::range::fault;
+use crate::range::{MAX_SHAPES, fault};
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{EmittedRadiance, Geometry, Material, Texture};
 use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
@@ -66,8 +66,8 @@ impl PbrtReader<'_> {
 
     /// Adds a shape, and returns whether further shapes are allowed.
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
-        if self.world.shapes.len() >= MOST_SHAPES {
-            let message = format!("more than {MOST_SHAPES} shapes, counting instances");
+        if self.world.shapes.len() >= MAX_SHAPES {
+            let message = format!("more than {MAX_SHAPES} shapes, counting instances");
             if self.is_first(&SourcePlace::whole(""), &message) {
                 self.report.cause(place, message);
             }
@@ -120,7 +120,10 @@ impl PbrtReader<'_> {
                 let _ = entity.fault("phimax", message);
                 return None;
             }
-            emission = emission.map(|emission| times(&part, emission.largest()));
+            if let Some(of) = emission {
+                let largest = of.largest();
+                emission = Some(self.mapped(entity, part.clone(), |v| v * largest).ok()?);
+            }
             material = self.masked(material, part);
         }
         let is_two_sided = |area: &Entity<'_>| area.truth("twosided", false);
@@ -141,7 +144,7 @@ impl PbrtReader<'_> {
             return number;
         }
         let of = Box::new(self.world.materials[number].clone());
-        self.add_material(Material::Mask { opacity, of })
+        self.world.add_material(Material::Mask { opacity, of })
     }
 
     /// Returns whether the front of a shape in pbrt is opposite to the front of the shape's
@@ -260,15 +263,4 @@ fn sector(share: f64, axis: DVec2) -> Option<Texture> {
         ),
         values,
     })
-}
-
-/// Returns a checkerboard times a number.
-fn times(part: &Texture, factor: f64) -> Texture {
-    match part {
-        Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {
-            to_uv: *to_uv,
-            values: values.map(|value| value * factor),
-        },
-        other => other.clone(),
-    }
 }

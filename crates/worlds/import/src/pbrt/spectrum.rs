@@ -1,12 +1,11 @@
 //! Colours and spectra of parameters, as numbers.
 //!
-//! The colours of named spectra were computed from pbrt's tables of n and k by wavelength, by the rule at
-//! [`Color`](crate::Color), with D65 as the weight. The colours of metals differ from the colours in
-//! Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and the tables of
-//! pbrt and Mitsuba contain different numbers.
+//! The colours of named spectra were computed from pbrt's tables of n and k by wavelength, by the
+//! rule at [`Color`](crate::Color), with D65 as the weight. The colours of metals differ from the
+//! colours in Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and
+//! the tables of pbrt and Mitsuba contain different numbers.
 
-use super::entity::{CauseGiven, Entity, Read};
-use super::parameter::{ParameterKind, ParameterValues};
+use super::entity::{CauseGiven, Entity, ParameterKind, ParameterValues, Read};
 use super::reader::PbrtReader;
 use super::token::number;
 use crate::Color;

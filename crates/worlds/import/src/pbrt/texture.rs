@@ -1,7 +1,6 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
-use super::entity::{CauseGiven, Entity, Read};
-use super::parameter::ParameterKind;
+use super::entity::{CauseGiven, Entity, ParameterKind, Read};
 use super::reader::{PbrtReader, Uv};
 use crate::files::has_extension;
 use crate::pictures::TransferCurve;
