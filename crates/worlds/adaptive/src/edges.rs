@@ -18,7 +18,7 @@ const DIFFERENCE: f64 = 0.02;
 const TURN: f64 = 0.1;
 
 /// The light at all stored points of the picture; `None` where nothing is shaded.
-pub(crate) type Values = [Option<[f64; 2]>];
+type Values = [Option<[f64; 2]>];
 
 /// Computes the mean radiance of a pixel. Pixels with an edge are examined only if `shader` is
 /// given.

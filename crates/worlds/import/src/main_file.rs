@@ -1,4 +1,5 @@
-//! The main file of a scene, with options, the files it may refer to, and the report on all of them.
+//! The main file of a scene, with options, the files it may refer to, and the report on all of
+//! them.
 
 use crate::files::Files;
 use crate::report::{Report, SourcePlace};

@@ -167,7 +167,7 @@ impl<'a> GltfReader<'a> {
 
     /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
     /// was reported.
-    pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
+    fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
         let metallic = self.share(draft, "metallicFactor");
         let alpha = self.alpha(draft);
@@ -184,7 +184,7 @@ impl<'a> GltfReader<'a> {
         })))
     }
 
-    pub(super) fn base_color(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
+    fn base_color(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.baseColorFactor", draft.path);
         let [r, g, b, _] = self.shares(&path, pbr.base_color_factor.0)?;
@@ -225,7 +225,7 @@ impl<'a> GltfReader<'a> {
     }
 
     /// Returns the index of refraction, or `None` if a cause of refusal was reported.
-    pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
+    fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let ior = draft
             .source
             .extensions
@@ -264,11 +264,7 @@ impl<'a> GltfReader<'a> {
 
     /// Returns a material that transmits a share of the light and otherwise behaves like `opaque`,
     /// or `None` if a cause of refusal was reported.
-    pub(super) fn with_glass(
-        &mut self,
-        draft: &mut Draft<'_>,
-        opaque: Material,
-    ) -> Option<Material> {
+    fn with_glass(&mut self, draft: &mut Draft<'_>, opaque: Material) -> Option<Material> {
         let extensions = draft.source.extensions.as_ref();
         let transmission = extensions.and_then(|of| of.transmission.as_ref());
         let Some(of) = transmission else {
@@ -351,7 +347,7 @@ fn is_lit(source: &GltfMaterial) -> bool {
 }
 
 /// Returns the isotropic microfacet roughness α, or `None` for a smooth surface.
-pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
+fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,
         alpha => Some(Roughness {

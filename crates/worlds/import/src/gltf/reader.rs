@@ -138,7 +138,7 @@ impl<'a> GltfReader<'a> {
     }
 
     /// Adds notes on ignored content that concerns the whole file.
-    pub(super) fn tell_leftovers(&self) {
+    fn tell_leftovers(&self) {
         let root = self.root;
         for (i, animation) in root.animations.iter().enumerate() {
             let name = animation.name.as_deref().unwrap_or_default();

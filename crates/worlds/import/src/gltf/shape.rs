@@ -101,12 +101,7 @@ impl<'a> GltfReader<'a> {
 
     /// Returns the triangles of a primitive, with the texture coordinates that its material uses;
     /// returns `None` if the primitive has no triangles, or if a cause of refusal was reported.
-    pub(super) fn parts(
-        &mut self,
-        primitive: &Primitive,
-        path: &str,
-        set: Option<u32>,
-    ) -> Option<MeshParts> {
+    fn parts(&mut self, primitive: &Primitive, path: &str, set: Option<u32>) -> Option<MeshParts> {
         let Checked::Valid(mode) = primitive.mode else {
             return None;
         };

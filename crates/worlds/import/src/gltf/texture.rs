@@ -101,7 +101,7 @@ impl GltfReader<'_> {
     }
 
     /// Returns one number for each pixel of an image, or `None` if a cause of refusal was reported.
-    pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
+    fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {
             return known.clone();

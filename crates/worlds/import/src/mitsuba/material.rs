@@ -49,11 +49,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    pub(super) fn make_material(
-        &mut self,
-        object: &'a MitsubaObject,
-        depth: usize,
-    ) -> Option<Material> {
+    fn make_material(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
@@ -259,11 +255,7 @@ impl<'a> MitsubaReader<'a> {
         self.fault(object, name, message)
     }
 
-    pub(super) fn two_sided(
-        &mut self,
-        object: &'a MitsubaObject,
-        depth: usize,
-    ) -> Option<Material> {
+    fn two_sided(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         let sides = self.nested(object, depth);
         let both = match <[Material; 2]>::try_from(sides?) {
             Ok(both) => both,
@@ -279,7 +271,7 @@ impl<'a> MitsubaReader<'a> {
         Some(Material::TwoSided(Box::new(both)))
     }
 
-    pub(super) fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+    fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         let opacity = self.share(object, "opacity", Role::Number, 0.5);
         let mut of = self.nested(object, depth)?;
         match (of.pop(), of.pop()) {
@@ -291,7 +283,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    pub(super) fn blend(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+    fn blend(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         if !self.has(object, "weight") {
             self.report.cause(&object.place, "blendbsdf without weight");
         }
@@ -323,7 +315,7 @@ impl<'a> MitsubaReader<'a> {
         self.report.refuse(&object.place, message)
     }
 
-    pub(super) fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
+    fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
         // A tint does not change luminance.
         let _ = self.property(object, "sheen_tint");
         let transmission = self.parameter(object, "spec_trans", 0.0)?;

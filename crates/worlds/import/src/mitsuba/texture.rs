@@ -305,11 +305,7 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Reads a texture of type `mesh_attribute`.
-    pub(super) fn mesh_attribute(
-        &mut self,
-        object: &'a MitsubaObject,
-        role: Role,
-    ) -> Option<Texture> {
+    fn mesh_attribute(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
         let scale = match self.has(object, "scale") {
             true => self.number(object, "scale")?,
             false => 1.0,

@@ -20,7 +20,7 @@ pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     words(text).map(number).collect()
 }
 
-pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_between = |c: char| c == ',' || c.is_ascii_whitespace();
     text.split(is_between).filter(|word| !word.is_empty())
 }

@@ -15,10 +15,10 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 /// Maximum nesting depth of files.
-pub(super) const DEEPEST_FILES: usize = 64;
+const DEEPEST_FILES: usize = 64;
 
 /// Maximum number of included files, counting repeats.
-pub(super) const MOST_FILES: usize = 1 << 14;
+const MOST_FILES: usize = 1 << 14;
 
 /// Maximum number of `Attribute` parameters in effect at one place. The limit is needed because
 /// each `Attribute` parameter is checked for each shape.
@@ -238,7 +238,7 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     /// Adds a cause for each unclosed block that is nested deeper than a level.
-    pub(super) fn refuse_open(&mut self, level: usize) {
+    fn refuse_open(&mut self, level: usize) {
         while self.stack.len() > level {
             if let Some((state, word, place)) = self.stack.pop() {
                 self.report

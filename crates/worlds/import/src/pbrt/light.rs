@@ -31,7 +31,7 @@ impl PbrtReader<'_> {
     }
 
     /// Returns the colour of a light times its scale.
-    pub(super) fn strength(&self, entity: &Entity<'_>, name: &str) -> Read<f64> {
+    fn strength(&self, entity: &Entity<'_>, name: &str) -> Read<f64> {
         let color = self.number_of(entity, name, Role::Emission);
         let scale = self.scale_of(entity)?;
         Ok(color?.unwrap_or(1.0) * scale)

@@ -15,11 +15,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The key of a mesh: the file of the mesh, and whether the mesh needs texture coordinates.
-pub(super) type PbrtMeshKey = (PathBuf, bool);
+type PbrtMeshKey = (PathBuf, bool);
 
 /// The key of a texture. It consists of the texture's name, the type of its values, and the
 /// coordinates of its surface.
-pub(super) type TextureKey = (bool, String, u8, Uv);
+type TextureKey = (bool, String, u8, Uv);
 
 /// Converts a scene to a world.
 pub(super) struct PbrtReader<'a> {

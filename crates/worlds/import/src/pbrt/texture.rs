@@ -178,7 +178,7 @@ impl PbrtReader<'_> {
     }
 
     /// Returns the map from (u, v) of a surface in a world to (u, v) of the texture.
-    pub(super) fn mapping(&self, entity: &Entity<'_>, uv: Uv) -> Read<DAffine2> {
+    fn mapping(&self, entity: &Entity<'_>, uv: Uv) -> Read<DAffine2> {
         entity.choice("mapping", &[("uv", ())])?;
         let float = |name, default| entity.float_or(name, default);
         let scale = DVec2::new(float("uscale", 1.0)?, float("vscale", 1.0)?);
@@ -221,7 +221,7 @@ impl PbrtReader<'_> {
         raster.map(Arc::new).ok_or(CauseGiven)
     }
 
-    pub(super) fn imagemap(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
+    fn imagemap(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         let to_uv = self.mapping(entity, uv);
         let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp)];
         let wrap = entity.choice("wrap", &wraps);

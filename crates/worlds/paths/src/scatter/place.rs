@@ -1,5 +1,5 @@
-//! Converts materials at a surface point to BSDFs of `etendue_scatter`, and flips directions to the
-//! front.
+//! Converts materials at a surface point to BSDFs of `etendue_scatter`, names their kinds of
+//! reflection, and flips directions to the front.
 
 use etendue_field::{Fresnel, Lobe, MicrofacetDistribution};
 use etendue_scatter::{
