@@ -21,7 +21,7 @@
 //! covariances. A [`Chain`] does not use these maps. A [`path`] predicts light in two ways: exactly,
 //! by rays, and to first order, by affine maps that are derived from the same surfaces.
 //! [`covariance`] follows second moments of spectra along the same paths. [`shading`] has cosines,
-//! BRDF lobes, Fresnel factors, textures and environments, in 2D.
+//! BRDF lobes, Fresnel factors and environments, in 2D.
 //!
 //! This crate has no access to scenes, photons or measured spectra, so the agreement of a
 //! prediction with a measurement is evidence that both are correct.
@@ -56,13 +56,13 @@ pub mod covariance;
 pub mod geometry;
 mod model;
 mod nets;
-mod numerics;
 mod obstacle;
 mod parallel;
 mod parameter;
 pub mod path;
 mod plane;
 mod predicted;
+mod quadrature;
 #[cfg(test)]
 mod reference;
 pub mod shading;

@@ -3,14 +3,15 @@
 
 use super::light::{PrimalSurface, frequencies, light, light_hat};
 use super::operators::OperatorComparison;
+use super::planar::{
+    Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm, TextureWave,
+    semi_convolution, texture,
+};
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::{AngleTable, Complex};
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::{
-    Factor, FresnelFactor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
-    TextureWave, cosine_hat, cosine_squared_hat, semi_convolution, texture,
-};
+use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat, cosine_squared_hat};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const THETA0: f64 = 0.5;

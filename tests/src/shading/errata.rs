@@ -6,6 +6,8 @@ use super::brdfs::{
 };
 use super::eye::EyeScene;
 use super::light::{PrimalSurface, light_hat};
+use super::planar::environment::{Glow, mirrored_differential_irradiance};
+use super::planar::{Factor, ReflectionStep};
 use super::primal::{between, integral, transform, wave};
 use super::small;
 use crate::report::Bound::{AtLeast, Below};
@@ -13,10 +15,7 @@ use crate::report::{Check, ReportSection, Row};
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::environment::{Glow, mirrored_differential_irradiance};
-use etendue_theory::shading::{
-    Criterion, Factor, PlanarLobe, ReflectionStep, cosine_hat, g_hat, g_hat_3d,
-};
+use etendue_theory::shading::{Criterion, PlanarLobe, cosine_hat, g_hat, g_hat_3d};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Maximum error of corrected formulas. Both sides of a comparison are quadratures accurate to

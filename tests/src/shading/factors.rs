@@ -2,15 +2,14 @@
 //! environments.
 
 use super::operators::OperatorComparison;
+use super::planar::environment::{Glow, mirrored_differential_irradiance};
+use super::planar::{Lattice, angular_product};
 use super::primal::{about, between, transform, wave};
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::Complex;
-use etendue_theory::shading::environment::{Glow, irradiance, mirrored_differential_irradiance};
-use etendue_theory::shading::{
-    FresnelFactor, Lattice, PlanarLobe, angular_product, cosine_hat, cosine_series,
-    cosine_squared_hat, g_hat,
-};
+use etendue_theory::shading::environment::irradiance;
+use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat, cosine_squared_hat, g_hat};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Returns the 24 frequencies at which transforms are compared, in cycles per radian.
@@ -96,6 +95,14 @@ fn cosines() -> Vec<OperatorComparison> {
             ),
         },
     ]
+}
+
+/// Returns the coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full
+/// circle, which is [`cosine_hat`](n/2π)/2π.
+///
+/// Durand et al. 2005 print only the transform (Eq. 13).
+fn cosine_series(n: i32) -> f64 {
+    cosine_hat(f64::from(n) / TAU) / TAU
 }
 
 fn fresnel() -> Vec<OperatorComparison> {
@@ -358,4 +365,23 @@ fn environments() -> Vec<OperatorComparison> {
         });
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_adds_up_to_the_cosine() {
+        for theta in [0.0_f64, 0.4, 1.2, 2.0, 3.0] {
+            let wave = |n: i32| cosine_series(n) * libm::cos(f64::from(n) * theta);
+            let sum = wave(0) + 2.0 * (1..4000).map(wave).sum::<f64>();
+            // The tolerance covers the omitted coefficients beyond 4000, which fall as 1/n² and add
+            // up to less than 2/π/4000.
+            assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
+            // A transform is 2π times the coefficient. The test detects if the transform is used in
+            // place of the coefficient.
+            assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
+        }
+    }
 }

@@ -4,6 +4,7 @@
 use super::bench::reflectance;
 use super::planted::swapped;
 use super::scenes::changed;
+use super::semi_operator::semi_convolution;
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
@@ -11,7 +12,6 @@ use crate::scenes::{predicted, traced};
 use etendue_field::{Complex, FrequencyAxis, Grating, Lobe, Pattern, Reflectance, Slices, Weight};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate;
-use etendue_theory::path::scattering::semi_convolution;
 use ndarray::Array3;
 
 const SCENE: &str = "semi_convolution";

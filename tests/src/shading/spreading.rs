@@ -3,15 +3,15 @@
 
 use super::brdfs::{THETA0, THETA1};
 use super::light::light_hat;
+use super::planar::environment::Glow;
+use super::planar::{Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm};
 use super::primal::{about, between, transform};
 use super::words::Statement;
 use crate::orders::slope;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::environment::{Glow, irradiance};
-use etendue_theory::shading::{
-    Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
-};
+use etendue_theory::shading::PlanarLobe;
+use etendue_theory::shading::environment::irradiance;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) fn statements() -> Vec<Statement> {

@@ -1,18 +1,16 @@
 //! All seven steps of a reflection, compared with rays traced off a circle.
 
 use super::light::Bell;
+use super::planar::{Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm};
 use super::primal::{about, wave};
 use crate::orders::{self, ORDER, slope};
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row, worse};
 use crate::rows::Line;
-use crate::table1::apart;
+use crate::table1::{apart, content};
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::{
-    Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
-    cosine_squared_hat,
-};
+use etendue_theory::shading::{PlanarLobe, cosine_squared_hat};
 use std::f64::consts::TAU;
 
 /// Relative sizes of the neighbourhood of the central ray.
@@ -203,12 +201,12 @@ impl Circle {
         };
         plant(&mut reflection);
         let map = self.map(step);
-        let content = |i: i32| {
+        let frequency = |i: i32| {
             let radius = 0.06 * f64::from(i / 6) / size;
             let angle = TAU * f64::from(i % 6) / 6.0 + 0.2;
-            map.content([radius * angle.cos(), radius * angle.sin()])
+            content(&map, [radius * angle.cos(), radius * angle.sin()])
         };
-        let omegas: Vec<[f64; 2]> = (0..24).filter_map(content).collect();
+        let omegas: Vec<[f64; 2]> = (0..24).filter_map(frequency).collect();
         let said: Vec<Complex> = omegas
             .iter()
             .map(|w| reflection.spectrum(step, *w, &|w| bell.spectrum(w)))

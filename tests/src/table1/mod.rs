@@ -13,7 +13,7 @@ mod scenes;
 mod steps;
 mod volume;
 
-pub(crate) use quadrature::apart;
+pub(crate) use quadrature::{apart, content};
 
 use crate::report::ReportSection;
 use crate::scenes::{compared, predicted, traced};

@@ -3,13 +3,12 @@
 
 use super::path::MirrorPath;
 use super::path::PathStage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
-use super::quadrature::{apart, of_field, of_rays};
+use super::quadrature::{apart, content, of_field, of_rays};
 use crate::orders::{self, ORDER, slope};
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use etendue_field::Complex;
-use etendue_theory::geometry::covariance::gaussian_spectrum;
 use etendue_theory::geometry::{Matrix, Media};
 use std::f64::consts::TAU;
 
@@ -27,6 +26,10 @@ const TRAVELS: [f64; 2] = [1.0, 0.7];
 const GLASS: Media = Media {
     before: 1.0,
     after: 1.5,
+};
+const OUT_OF_GLASS: Media = Media {
+    before: 1.5,
+    after: 1.0,
 };
 
 fn paths() -> Vec<(&'static str, MirrorPath)> {
@@ -51,7 +54,7 @@ fn paths() -> Vec<(&'static str, MirrorPath)> {
         ("concave mirror", mirror(0.65, -0.5)),
         ("concave mirror", mirror(1.1, -0.1)),
         ("into glass", glass(0.65, 0.5, GLASS)),
-        ("out of glass", glass(0.4, -0.5, GLASS.reversed())),
+        ("out of glass", glass(0.4, -0.5, OUT_OF_GLASS)),
         ("into glass", glass(0.0, 0.5, GLASS)),
     ]
 }
@@ -175,15 +178,21 @@ impl MirrorPath {
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));
-        let content = |i: i32| {
+        let frequency = |i: i32| {
             // Frequencies of the original field, transformed by the map.
             let radius = 0.06 * f64::from(i / 6) / size;
             let angle = TAU * f64::from(i % 6) / 6.0 + 0.2;
-            map.content([radius * angle.cos(), radius * angle.sin()])
+            content(&map, [radius * angle.cos(), radius * angle.sin()])
         };
-        let frequencies: Vec<[f64; 2]> = (0..24).filter_map(content).collect();
+        let frequencies: Vec<[f64; 2]> = (0..24).filter_map(frequency).collect();
         let before = |omega| Complex::from(gaussian_spectrum(&field, omega));
         let said = frequencies.iter().map(|w| map.spectrum(*w, &before));
         (said.collect(), frequencies, field)
     }
+}
+
+/// Returns the spectrum of exp(−½ zᵀ S⁻¹ z): 2π √det S exp(−2π² Ωᵀ S Ω).
+fn gaussian_spectrum([[a, b], [_, d]]: &Matrix<2>, [x, theta]: [f64; 2]) -> f64 {
+    let form = a * x * x + 2.0 * b * x * theta + d * theta * theta;
+    TAU * (a * d - b * b).sqrt() * (-0.5 * TAU * TAU * form).exp()
 }

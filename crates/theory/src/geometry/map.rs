@@ -81,6 +81,7 @@ impl<const N: usize> AffineMap<N> {
         }
         most
     }
+
     /// Returns the map z' = A z.
     #[must_use]
     pub const fn linear(matrix: Matrix<N>) -> Self {
@@ -125,21 +126,6 @@ impl<const N: usize> AffineMap<N> {
     #[must_use]
     pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
         plus(&times(&self.matrix, &ray), &self.offset)
-    }
-
-    /// Returns Aᵀ Ω, the frequency before the map that corresponds to the frequency Ω after the
-    /// map.
-    #[must_use]
-    pub fn transpose_apply(&self, omega: [f64; N]) -> [f64; N] {
-        times(&transpose(&self.matrix), &omega)
-    }
-
-    /// Returns A⁻ᵀ Ω, the frequency to which the map moves spectral power at Ω. This is the
-    /// inverse of [`transpose_apply`](Self::transpose_apply). Returns `None` as for
-    /// [`inverse`](Self::inverse).
-    #[must_use]
-    pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
-        Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
     }
 
     /// Returns the effect of the map on spectra, which has the factor |det A|, the matrix Aᵀ and
@@ -209,18 +195,6 @@ impl<const N: usize> SpectrumMap<N> {
             matrix: transpose(&self.matrix),
             offset: self.phase,
         }
-    }
-}
-
-impl AffineMap<2> {
-    /// Returns the distance of the focus behind the map's end, −A₀₀/A₁₀ metres. Rays that were
-    /// parallel before the map meet at the focus. The distance is negative for a virtual focus.
-    /// Returns `None` if the rays stay parallel.
-    #[must_use]
-    pub fn focus(&self) -> Option<f64> {
-        let [[x, _], [slope, _]] = self.matrix;
-        let distance = -x / slope;
-        distance.is_finite().then_some(distance)
     }
 }
 

@@ -19,8 +19,8 @@
 //! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
 //! In the frame of a light ray, the last coordinates are slopes or angles to the central ray. These
-//! maps hold to first order, and to this order slopes and angles are equal ([`plane_sphere`] has
-//! the exact conversion). Lengths are in metres, angles in radians.
+//! maps hold to first order, and to this order slopes and angles are equal. Lengths are in metres,
+//! angles in radians.
 //!
 //! **Surface frame.** N is the normal at the point that the central ray hits, on the side from
 //! which light comes. T and N are the axes of the plane of incidence; if N points up, T points to
@@ -41,29 +41,25 @@
 //! use etendue_theory::geometry::AffineMap;
 //!
 //! // A concave mirror of radius 2 m, met at 0.3 rad, focuses parallel light at R/2 · cos 0.3.
-//! let map = AffineMap::<2>::mirror_reflection(0.3, -0.5);
-//! let f = map.focus().unwrap();
-//! assert!((f - 0.3_f64.cos()).abs() < 1e-15);
+//! let onto = AffineMap::<2>::incidence(0.3).then(&AffineMap::<2>::curvature(-0.5));
+//! let off = AffineMap::<2>::back(-0.5).then(&AffineMap::<2>::outgoing(-0.3));
+//! let map = onto.then(&AffineMap::mirror()).then(&off);
 //! // There the position of a ray depends on its direction alone.
+//! let f = 0.3_f64.cos();
 //! let [x, _] = map.then(&AffineMap::travel(f)).apply([0.01, 0.002]);
 //! assert!((x + f * 0.002).abs() < 1e-15);
 //! ```
 
-pub mod covariance;
-mod events;
-mod kernel;
 mod map;
 mod matrix;
-pub mod plane_sphere;
 mod printed;
 mod refraction;
 mod spectrum_map;
 mod surface;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod travel;
 
-pub use kernel::plane_sphere_kernel;
 pub use map::AffineMap;
 pub use matrix::Matrix;
 pub(crate) use matrix::{congruent, diagonal, from_fn, inverse, product, sum, times, transpose};

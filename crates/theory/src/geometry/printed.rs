@@ -67,17 +67,6 @@ impl Edition {
         }
     }
 
-    /// Returns a mirror reflection, composed of incidence, curvature, mirror, back, and outgoing at
-    /// −θ₀.
-    #[must_use]
-    pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
-        self.incidence(theta0)
-            .then(&self.curvature(k))
-            .then(&AffineMap::mirror().spectrum_map())
-            .then(&self.back(k))
-            .then(&self.outgoing(-theta0))
-    }
-
     /// Returns the step of light incidence in 4D, where (x, θ) change as in 2D. The paper does not
     /// mention that the latitude changes its sign; this function includes the change of sign for
     /// every edition.
@@ -106,17 +95,6 @@ impl Edition {
             &self.outgoing(theta1),
             &AffineMap::identity().spectrum_map(),
         )
-    }
-
-    /// Returns a mirror reflection in 4D, composed of incidence, curvature, mirror, back, and
-    /// outgoing at −θ₀.
-    #[must_use]
-    pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
-        self.incidence_4d(theta0)
-            .then(&self.curvature_4d(shape, theta0))
-            .then(&AffineMap::mirror().spectrum_map())
-            .then(&self.back_4d(shape, -theta0))
-            .then(&self.outgoing_4d(-theta0))
     }
 
     /// Returns the sign of the shear by curvature relative to the sign from ray geometry: −1 for

@@ -19,15 +19,6 @@ impl Media {
         self.before / self.after
     }
 
-    /// Returns the indices of the same interface for light from the other side.
-    #[must_use]
-    pub fn reversed(&self) -> Self {
-        Self {
-            before: self.after,
-            after: self.before,
-        }
-    }
-
     /// Returns the angle θ₂ of the refracted ray by Snell's law, n₁ sin θ₁ = n₂ sin θ₂. Returns
     /// `None` under total internal reflection.
     ///

@@ -94,8 +94,8 @@ fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::quadrature::integrate;
-    use crate::numerics::sinc::sinc;
+    use crate::quadrature::integrate;
+    use etendue_field::sinc;
     use std::f64::consts::{PI, TAU};
 
     const DISC: Disc = Disc {

@@ -17,7 +17,6 @@
 
 use super::{projection, slices};
 use crate::Chain;
-use crate::numerics::sinc::sinc;
 use crate::shading::PlanarLobe;
 use etendue_field::{
     FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
@@ -148,7 +147,7 @@ impl Blur {
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
         frequencies
-            .map(|(q, hat)| hat * transform(&self.window, nu - q))
+            .map(|(q, hat)| hat * self.window.transform(nu - q))
             .collect()
     }
 }
@@ -202,19 +201,6 @@ fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };
     tail * deviations * deviations / (TAU * reach)
-}
-
-/// Returns the Fourier transform of a profile at a frequency.
-fn transform(profile: &Profile, frequency: f64) -> f64 {
-    let half = profile.half_width();
-    let terms = profile.cosine_terms().into_iter();
-    terms
-        .map(|term| {
-            let side = |f: f64| sinc(2.0 * half * f);
-            let both = side(frequency - term.frequency) + side(frequency + term.frequency);
-            term.weight * half * both
-        })
-        .sum()
 }
 
 #[cfg(test)]

@@ -131,7 +131,7 @@ impl PlaneImage {
 #[cfg(test)]
 mod tests {
     use crate::at;
-    use crate::geometry::AffineMap;
+    use crate::geometry::{AffineMap, times};
     use crate::testing::*;
     use etendue_field::{Profile, Window};
 
@@ -161,7 +161,7 @@ mod tests {
             for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
                 // The shear is applied in both sections, because the mirror or lens has power
                 // along both axes.
-                let [x, u] = sheared.transpose_apply([rho, nu]);
+                let [x, u] = times(&sheared.spectrum_map().matrix, &[rho, nu]);
                 let before = at(&chain, &window, [x, 0.5 * x, u, 0.5 * u]);
                 let after = at(&imaged, &window, [rho, 0.5 * rho, nu, 0.5 * nu]);
                 let error = (after - before).norm() / at(&chain, &window, [0.0; 4]).re;

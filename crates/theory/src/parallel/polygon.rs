@@ -3,8 +3,7 @@
 //!
 //! Coordinates are in units of the window's half-widths, so they are of order 1.
 
-use crate::numerics::sinc::sinc;
-use etendue_field::{Complex, cis};
+use etendue_field::{Complex, cis, sinc};
 use std::f64::consts::TAU;
 
 /// The largest phase, in radians, for which the power series is used. Above this phase, the sum

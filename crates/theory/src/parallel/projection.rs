@@ -2,12 +2,12 @@
 
 use super::expansion::Expansion;
 use crate::Chain;
-use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::polygon::{Polygon, cross};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::SectionWave;
+use crate::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window, whole};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -271,7 +271,7 @@ impl<'a> Cells<'a> {
 mod tests {
     use super::*;
     use crate::at;
-    use crate::numerics::quadrature::integrate;
+    use crate::quadrature::integrate;
     use crate::testing::*;
     use etendue_field::{Light, Profile, Rectangle, Shape};
 

@@ -6,7 +6,7 @@
 //! whose period is longer than the window (a Fourier extension, Huybrechs 2010). The decomposition
 //! and each fit stop when their measured residual is below a threshold.
 
-use crate::numerics::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
 use std::f64::consts::{PI, TAU};
 use std::sync::{Mutex, PoisonError};

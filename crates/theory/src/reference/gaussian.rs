@@ -5,10 +5,9 @@
 //! Frequencies are (Ωx, Ωv), in cycles per metre and per unit slope. The slope is called v, as in
 //! the paper.
 
-use crate::numerics::quadrature::integrate;
-use crate::numerics::sinc::sinc;
+use crate::quadrature::integrate;
 use crate::shading::g_hat;
-use etendue_field::{Complex, whole};
+use etendue_field::{Complex, sinc, whole};
 use std::f64::consts::{PI, TAU};
 
 /// The window exp(−π(x²/a² + v²/b²)).

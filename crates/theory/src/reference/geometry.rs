@@ -1,8 +1,9 @@
 //! Checks of mirrors, Gaussian fields along a path, and the kernel from slopes to angles.
 
 use super::*;
-use crate::geometry::covariance::{gaussian_lobe, gaussian_window, power_spectrum};
-use crate::geometry::{AffineMap, Matrix, plane_sphere_kernel};
+use crate::geometry::tests::covariance::{gaussian_lobe, gaussian_window, power_spectrum};
+use crate::geometry::tests::plane_sphere_kernel::plane_sphere_kernel;
+use crate::geometry::{AffineMap, Matrix};
 use std::f64::consts::PI;
 
 #[test]

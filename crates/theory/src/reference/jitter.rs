@@ -1,6 +1,6 @@
 //! Checks of the expected power of jittered strips.
 
-use crate::numerics::sinc::sinc;
+use etendue_field::sinc;
 
 /// Opaque strips in a row, each displaced by an independent offset that is uniformly distributed
 /// within ± half the jitter.

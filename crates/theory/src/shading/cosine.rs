@@ -1,7 +1,7 @@
 //! Transforms of cosines on the half-circle.
 
 use super::gamma::reciprocal_gamma;
-use crate::numerics::sinc::sinc;
+use etendue_field::sinc;
 use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -11,21 +11,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// The transform is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)] with w = 2πΩ. This form is
 /// accurate also at Ω = 1/2π, where the quotient is 0/0 and the transform is π/2. The transform is
 /// 2 at zero and falls as 1/Ω², because the cosine has a corner at π/2. 99 % of the transform's
-/// energy lies below 0.376. The coefficients of a Fourier series differ from the transform by a
-/// factor; see [`cosine_series`].
+/// energy lies below 0.376. The coefficient of e^(inθ) in the Fourier series on the full circle
+/// is the transform at n/2π, divided by 2π.
 #[must_use]
 pub fn cosine_hat(omega: f64) -> f64 {
     let w = TAU * omega;
     FRAC_PI_2 * (sinc(0.5 * (1.0 - w)) + sinc(0.5 * (1.0 + w)))
-}
-
-/// Returns the coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full
-/// circle, which is [`cosine_hat`](n/2π)/2π.
-///
-/// Durand et al. 2005 print only the transform (Eq. 13).
-#[must_use]
-pub fn cosine_series(n: i32) -> f64 {
-    cosine_hat(f64::from(n) / TAU) / TAU
 }
 
 /// Returns the transform of cos² φ on |φ| < π/2, which is the factor of the cosine along latitudes
@@ -77,20 +68,6 @@ mod tests {
             // The limit is three times the rounding error of ln Γ for arguments up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // rounding
-        }
-    }
-
-    #[test]
-    fn the_series_adds_up_to_the_cosine() {
-        for theta in [0.0_f64, 0.4, 1.2, 2.0, 3.0] {
-            let wave = |n: i32| cosine_series(n) * libm::cos(f64::from(n) * theta);
-            let sum = wave(0) + 2.0 * (1..4000).map(wave).sum::<f64>();
-            // The tolerance covers the omitted coefficients beyond 4000, which fall as 1/n² and add
-            // up to less than 2/π/4000.
-            assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // A transform is 2π times the coefficient. The test detects if the transform is used in
-            // place of the coefficient.
-            assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }
 }

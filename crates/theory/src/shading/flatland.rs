@@ -1,8 +1,7 @@
 //! Diffuse shading in flatland. A light, strips and a receiver are on parallel lines, as in Fig. 6
 //! of Durand et al. 2005.
 
-use crate::numerics::sinc::sinc;
-use etendue_field::{Complex, FrequencyAxis, Profile, cis};
+use etendue_field::{Complex, FrequencyAxis, Profile, cis, sinc};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 

@@ -127,7 +127,7 @@ mod tests {
         let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
         let critical = libm::asin(1.0_f64 / 1.5);
         // A quadratic substitution on both sides of the critical angle removes the square root.
-        let below = crate::numerics::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
+        let below = crate::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
             let theta = critical - t * t;
             2.0 * t * inside.reflectance(theta) * libm::cos(theta)
         });

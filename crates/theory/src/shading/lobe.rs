@@ -2,7 +2,7 @@
 
 use super::cosine::cosine_power_hat;
 use super::panels::{doubling, even_transform};
-use crate::numerics::quadrature::integrate;
+use crate::quadrature::integrate;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D,

@@ -1,6 +1,6 @@
 //! Gauss rules on panels, for functions of an angle that are smooth inside each panel.
 
-use crate::numerics::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
 /// Number of nodes of a panel. The error is below 10⁻¹⁵ if two conditions hold: the panel contains
@@ -10,7 +10,8 @@ const CYCLES: f64 = 2.0;
 
 /// Returns 2 ∫ f(θ) cos(2πΩθ) dθ over the panels between `ends`. This is the transform of an even
 /// function that is given for θ > 0.
-pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -> f64 {
+#[must_use]
+pub fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rule = gauss_legendre(NODES);
     let panel = |ends: &[f64]| {
         let parts = (omega.abs() * (ends[1] - ends[0]) / CYCLES).ceil().max(1.0);

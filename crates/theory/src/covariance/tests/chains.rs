@@ -2,7 +2,7 @@
 
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
-use crate::geometry::covariance::{gaussian_window, power_spectrum};
+use crate::geometry::tests::covariance::{gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
 use crate::path::rays;
 use crate::path::{self, Interaction, PathSurface, PathSystem};

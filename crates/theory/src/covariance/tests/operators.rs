@@ -2,7 +2,7 @@
 
 use super::{apart, bent};
 use crate::covariance::{SpectralCovariance, power};
-use crate::geometry::covariance::{gaussian_spectrum, gaussian_window, power_spectrum};
+use crate::geometry::tests::covariance::{gaussian_spectrum, gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Matrix, diagonal, sum};
 use std::f64::consts::PI;
 

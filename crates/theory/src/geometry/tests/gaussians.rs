@@ -1,10 +1,8 @@
 //! Tests of the spectra and covariances of mapped fields.
 
+use super::covariance::{gaussian_lobe, gaussian_spectrum, gaussian_window, power_spectrum};
 use super::*;
 use crate::geometry::Edition;
-use crate::geometry::covariance::{
-    gaussian_lobe, gaussian_spectrum, gaussian_window, power_spectrum,
-};
 use crate::geometry::matrix::dot;
 use etendue_field::Complex;
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Tests of the kernel from slopes to angles.
 
-use crate::geometry::plane_sphere_kernel;
-use crate::numerics::quadrature::integrate;
+use super::plane_sphere_kernel::plane_sphere_kernel;
+use crate::quadrature::integrate;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 

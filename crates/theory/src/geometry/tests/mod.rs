@@ -1,9 +1,13 @@
 //! Tests of affine maps against general laws and traced rays, and tests of the effect of the
-//! misprints in Durand et al. 2005.
+//! misprints in Durand et al. 2005. The formulas that only tests use are here too: events of several
+//! steps, Gaussian covariances, and the conversion between slopes and angles.
 
+pub(crate) mod covariance;
+mod events;
 mod gaussians;
 mod kernel;
 mod laws;
+pub(crate) mod plane_sphere_kernel;
 mod prints;
 mod rays;
 mod slopes;
@@ -16,6 +20,10 @@ const SHAPE: Matrix<2> = [[0.6, 0.25], [0.25, -0.3]];
 const GLASS: Media = Media {
     before: 1.0,
     after: 1.5,
+};
+const OUT_OF_GLASS: Media = Media {
+    before: 1.5,
+    after: 1.0,
 };
 
 /// Returns the largest difference between two maps, entry by entry.

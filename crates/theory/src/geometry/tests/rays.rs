@@ -1,9 +1,9 @@
 //! Tests of the maps against traced rays: the error is of first or second order in the size of the
 //! neighbourhood.
 
+use super::slopes::{to_angles, to_slopes};
 use super::trace::{GraphSurface, LightAxes, reflected, refracted};
 use super::*;
-use crate::geometry::plane_sphere::{to_angles, to_slopes};
 
 /// Half the size of the largest tested neighbourhood.
 const SIZE: f64 = 1e-3;
@@ -77,7 +77,7 @@ fn mirrors_in_space() {
 
 #[test]
 fn refraction_in_space() {
-    for media in [GLASS, GLASS.reversed()] {
+    for media in [GLASS, OUT_OF_GLASS] {
         for (theta0, order) in [(0.6, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
             for k in [0.5, -0.5] {
                 let map = AffineMap::<4>::refracting_surface(theta0, [[k, 0.0], [0.0, k]], &media);

@@ -52,7 +52,7 @@ fn exitant_radiance_is_what_arrives() {
             let hann = |k: f64| {
                 // The Fourier transform of cos²(πt/2h) is h sinc(2hk)/(1 − (2hk)²).
                 let s = 0.6 * k;
-                0.3 * crate::numerics::sinc::sinc(s) / (1.0 - s * s)
+                0.3 * etendue_field::sinc(s) / (1.0 - s * s)
             };
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));

@@ -2,7 +2,7 @@
 //! slopes of light that arrives at a point.
 
 use crate::barrier::Bounds;
-use crate::numerics::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
@@ -293,7 +293,7 @@ fn cosine_along_u(u: f64, v: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::quadrature::integrate;
+    use crate::quadrature::integrate;
 
     fn density(integrator: &Integrator) -> ReceiverDensity<'_> {
         ReceiverDensity {

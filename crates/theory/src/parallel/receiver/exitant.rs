@@ -233,7 +233,10 @@ impl ExitantTable {
         let position: Complex = rows
             .map(|(row, x)| x * row.iter().zip(&y).map(|(e, y)| y * e).sum::<Complex>())
             .sum();
-        let slope = |k: usize, n| self.axes[k].slope_spectrum(frequencies[k].frequency(n)[1]);
+        let slope = |k: usize, n| {
+            let [_, nu] = frequencies[k].frequency(n);
+            self.axes[k].slope.transform(nu)
+        };
         (0..frequencies[0].count())
             .map(|n| position * slope(0, n) * slope(1, n))
             .collect()

@@ -1,8 +1,8 @@
 //! The kernel K(t). Light that leaves the receiver at coordinate t contributes K(t) to the spectrum
 //! under a window beyond the receiver.
 
-use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
+use crate::quadrature::gauss_legendre;
 use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
@@ -61,17 +61,6 @@ impl KernelAxis {
             add_scaled(&mut sum.im, &wave.im, 1.0);
         }
         sum
-    }
-
-    /// Returns the spectrum of the window's slope profile, computed from the profile's cosine
-    /// terms. If light does not travel after the receiver, this spectrum is the slope factor of K.
-    pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
-        let half = self.slope.half_width();
-        let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
-        let terms = self.slope.cosine_terms().into_iter();
-        terms
-            .map(|c| half * c.weight * (wave(nu - c.frequency) + wave(nu + c.frequency)))
-            .sum()
     }
 
     /// Returns the range of slopes for which light from the coordinate t of the receiver is inside

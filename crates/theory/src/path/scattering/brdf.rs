@@ -180,7 +180,7 @@ mod tests {
         let normal = DVec3::Z;
         let total = |lobe: Lobe, cosine: bool| {
             let brdf = Brdf::new(lobe, 1.0, Fresnel::White);
-            crate::numerics::quadrature::integrate(400, [0.0, PI / 2.0], |theta| {
+            crate::quadrature::integrate(400, [0.0, PI / 2.0], |theta| {
                 let (sin, cos) = libm::sincos(theta);
                 let to = DVec3::new(sin, 0.0, cos);
                 let factor = if cosine { cos } else { 1.0 };

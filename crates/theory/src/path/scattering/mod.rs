@@ -21,12 +21,10 @@ mod draw;
 mod exact;
 mod incoming;
 mod linear;
-mod operator;
 mod predict;
 #[cfg(test)]
 mod tests;
 
-pub use operator::semi_convolution;
 pub use predict::compare_chain;
 
 pub(crate) use brdf::narrowest;

@@ -2,7 +2,7 @@
 //! six variables.
 
 use super::*;
-use crate::numerics::quadrature::integrate;
+use crate::quadrature::integrate;
 use crate::testing::{blockers, window};
 use etendue_field::{Complex, FrequencyAxis, Profile, ProjectionGrid, SliceGrid, TwoPlane, Window};
 use std::f64::consts::{PI, TAU};

@@ -1,7 +1,7 @@
 //! Tests of predicted spectra against closed forms and Gauss rules.
 
 use super::*;
-use crate::numerics::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre;
 use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, square};
 use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};

@@ -412,7 +412,7 @@ fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
             TAU * sign * factorials / f64::from((l + 2) * (l - 1))
         };
         let light = TAU
-            * crate::numerics::quadrature::integrate(200, [-1.0, 1.0], |x| {
+            * crate::quadrature::integrate(200, [-1.0, 1.0], |x| {
                 libm::exp((x - 1.0) / squared) * legendre(l, x)
             });
         sum += f64::from(2 * l + 1) / (2.0 * TAU) * light * cosine * legendre(l, libm::cos(gamma));

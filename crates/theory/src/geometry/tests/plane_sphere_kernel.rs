@@ -1,6 +1,6 @@
 //! The kernel that converts spectra from slopes to angles.
 
-use crate::numerics::sinc::sinc;
+use etendue_field::sinc;
 use std::f64::consts::{PI, TAU};
 
 /// The step of the trapezoid rule in ln t. For frequencies from 10⁻¹² to 160, a rule with twice
@@ -20,8 +20,7 @@ const MAX_FREQUENCY: f64 = 1e5;
 ///
 /// K is π times Bateman's function k_b(a) with a = 2πΩv and b = 2πΩθ (docs/theory.md (30)). It
 /// satisfies K(−Ωv, −Ωθ) = K(Ωv, Ωθ) and K(0, Ωθ) = π sinc(b/2).
-#[must_use]
-pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
+pub(crate) fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     let sign = if omega_v < 0.0 { -1.0 } else { 1.0 };
     let (a, b) = (sign * TAU * omega_v, sign * TAU * omega_theta);
     let evaluated = a <= TAU * MAX_FREQUENCY && b.abs() <= TAU * MAX_FREQUENCY;

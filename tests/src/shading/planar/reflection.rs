@@ -1,9 +1,10 @@
 //! The seven steps of a reflection.
 
 use super::product::{Lattice, TextureWave, angular_product, texture};
-use super::{FresnelFactor, PlanarLobe, cosine_hat, table_hat};
-use crate::geometry::AffineMap;
+use super::table::table_hat;
 use etendue_field::{AngleTable, Complex};
+use etendue_theory::geometry::AffineMap;
+use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat};
 use std::fmt;
 
 /// The spectrum of a light field, L(Ωx, Ωθ).
@@ -11,7 +12,7 @@ type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 
 /// Steps of a reflection in the order of propagation (Durand et al. 2005, section 4.1 and Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReflectionStep {
+pub(crate) enum ReflectionStep {
     /// Step 1, onto the surface: [`AffineMap::incidence`](AffineMap::<2>::incidence).
     Incidence,
     /// Step 2, into the frames of the local normals:
@@ -31,7 +32,7 @@ pub enum ReflectionStep {
 
 impl ReflectionStep {
     /// All steps, in order.
-    pub const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Incidence,
         Self::Curvature,
         Self::Cosine,
@@ -44,7 +45,7 @@ impl ReflectionStep {
 
 /// A factor that depends on the local direction and is given by its transform.
 #[derive(Clone, Copy)]
-pub enum Factor<'a> {
+pub(crate) enum Factor<'a> {
     /// The constant 1, which does not cut off light at the horizon. A surface with this factor and
     /// without a [`PlanarLobe`] is an ideal mirror. Its BRDF δ/cos θ_i' cancels the cosine.
     One,
@@ -98,40 +99,40 @@ use angular_product as product;
 
 /// A separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
-pub struct SeparableTerm<'a> {
+pub(crate) struct SeparableTerm<'a> {
     /// The factor f(θ_i'), including the cosine.
-    pub before: Factor<'a>,
+    pub(crate) before: Factor<'a>,
     /// The lobe ρ'; `None` represents a Dirac.
-    pub lobe: Option<PlanarLobe>,
+    pub(crate) lobe: Option<PlanarLobe>,
     /// The factor h(θ_o').
-    pub after: Factor<'a>,
+    pub(crate) after: Factor<'a>,
     /// The weight w(s), as a sum of waves; `None` represents the weight 1.
-    pub weight: Option<&'a [TextureWave]>,
+    pub(crate) weight: Option<&'a [TextureWave]>,
 }
 
 /// A reflection in 2D, from the light frame before the surface to the light frame after the
 /// surface.
 #[derive(Clone, Debug)]
-pub struct PlanarReflection<'a> {
+pub(crate) struct PlanarReflection<'a> {
     /// θ₀, the direction from which the central ray comes, in radians from the normal.
-    pub incidence: f64,
+    pub(crate) incidence: f64,
     /// θ₁, the direction in which the central ray leaves, in radians from the normal. For a mirror,
     /// θ₁ is −θ₀.
-    pub outgoing: f64,
+    pub(crate) outgoing: f64,
     /// Curvature k, in 1/m, convex positive.
-    pub curvature: f64,
+    pub(crate) curvature: f64,
     /// The terms of the BRDF.
-    pub terms: Vec<SeparableTerm<'a>>,
+    pub(crate) terms: Vec<SeparableTerm<'a>>,
     /// Frequencies along Ωθ over which products are summed. These frequencies must reach beyond the
     /// spectrum of the light in the frames of the local normals.
-    pub lattice: Lattice,
+    pub(crate) lattice: Lattice,
 }
 
 impl PlanarReflection<'_> {
     /// Returns the spectrum at Ω after a step, for light with the spectrum `before` in the light
     /// frame.
     ///
-    /// Like the [maps](crate::geometry), the spectrum holds to first order in the size of the
+    /// Like the [maps](etendue_theory::geometry), the spectrum holds to first order in the size of the
     /// neighbourhood. The effects of the cosine, the lobe and the factors are exact. If the BRDF
     /// has several terms, the spectrum between the cosine and the BRDF is the sum of the
     /// differential irradiances of all terms.
@@ -140,8 +141,7 @@ impl PlanarReflection<'_> {
     /// q) f̂(−Ωθ − q) dq (docs/theory.md (36)). If f is asymmetric, the sign of −Ωθ affects the
     /// result. Table 1 of Durand et al. 2005 omits this sign and the hat of ρ̂', and Eqs. 15 and 17
     /// of the paper lack primes.
-    #[must_use]
-    pub fn spectrum(
+    pub(crate) fn spectrum(
         &self,
         step: ReflectionStep,
         omega: [f64; 2],

@@ -11,19 +11,18 @@ use std::f64::consts::TAU;
 /// This part is zero if the light and the factor have bounded support and the spacing is small
 /// enough. The second part is due to the spectrum of the light beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lattice {
+pub(crate) struct Lattice {
     /// Distance between two frequencies, in cycles per unit of the axis.
-    pub spacing: f64,
+    pub(crate) spacing: f64,
     /// The largest frequency at which the spectrum of the *light* is not negligible, in cycles per
     /// unit of the axis.
-    pub reach: f64,
+    pub(crate) reach: f64,
 }
 
 impl Lattice {
     /// Returns the frequencies of a Fourier series on the full circle, which are 1/2π apart. Sums
     /// over these frequencies are exact for factors on the half-circle and light within ± 3π/2.
-    #[must_use]
-    pub fn circle(reach: f64) -> Self {
+    pub(crate) fn circle(reach: f64) -> Self {
         let spacing = 1.0 / TAU;
         Self { spacing, reach }
     }
@@ -44,8 +43,7 @@ impl Lattice {
 /// 2005, Eq. 12, where ⊗ is a convolution in 2D with a Dirac along Ωx).
 ///
 /// `factor` is f̂, in cycles per radian; `before` is L.
-#[must_use]
-pub fn angular_product(
+pub(crate) fn angular_product(
     lattice: &Lattice,
     omega: [f64; 2],
     factor: &dyn Fn(f64) -> Complex,
@@ -58,11 +56,11 @@ pub fn angular_product(
 /// A wave A e^(2πi f s) of a texture along the surface. A real texture also contains the conjugate
 /// of each wave, at −f.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextureWave {
+pub(crate) struct TextureWave {
     /// Frequency f, in cycles per metre of arc length.
-    pub frequency: f64,
+    pub(crate) frequency: f64,
     /// Amplitude A.
-    pub amplitude: Complex,
+    pub(crate) amplitude: Complex,
 }
 
 /// Returns the spectrum at Ω of T(s) ℓ(s, θ), where the texture T is a sum of waves: Σ A L(Ωx − f,
@@ -70,8 +68,7 @@ pub struct TextureWave {
 ///
 /// A texture depends only on positions, so it may be applied before or after the step back from the
 /// local normals, but must be applied before the step of the outgoing angle.
-#[must_use]
-pub fn texture(
+pub(crate) fn texture(
     waves: &[TextureWave],
     omega: [f64; 2],
     before: &dyn Fn([f64; 2]) -> Complex,
@@ -89,8 +86,7 @@ pub fn texture(
 ///
 /// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. If
 /// `brdf` does not depend on Ωθ, it represents a texture.
-#[must_use]
-pub fn semi_convolution(
+pub(crate) fn semi_convolution(
     lattice: &Lattice,
     omega: [f64; 2],
     brdf: &dyn Fn([f64; 2]) -> Complex,

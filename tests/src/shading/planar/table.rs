@@ -1,7 +1,7 @@
 //! Transforms of factors that are tables of values over an angle.
 
-use super::panels::even_transform;
 use etendue_field::AngleTable;
+use etendue_theory::shading::even_transform;
 use std::f64::consts::FRAC_PI_2;
 
 /// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
@@ -11,8 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 ///
 /// The transform is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth
 /// g.
-#[must_use]
-pub fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 {
+pub(crate) fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;
     let nodes = table.values.iter().zip(0_u32..);
     let ends: Vec<f64> = nodes
@@ -26,7 +25,7 @@ pub fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shading::cosine_hat;
+    use etendue_theory::shading::cosine_hat;
     use std::f64::consts::{PI, TAU};
 
     #[test]

@@ -1,7 +1,7 @@
 //! One operator for the effect of a weighted sum of BRDFs on spectra.
 
-use crate::shading::cosine_power_hat;
 use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
+use etendue_theory::shading::cosine_power_hat;
 use std::f64::consts::TAU;
 
 /// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface, in the frames
@@ -14,8 +14,7 @@ use std::f64::consts::TAU;
 /// window over positions must be included in `before`. `axes` are the axes X and Y of the surface's
 /// patch in the coordinates (x, y). Returns `None` if a lobe is not a Phong lobe, if a BRDF has a
 /// factor that depends on an angle, or if a weight or a texture is not a cosine.
-#[must_use]
-pub fn semi_convolution(
+pub(super) fn semi_convolution(
     reflectance: &Reflectance,
     axes: [[f64; 2]; 2],
     omega: [f64; 4],
