@@ -1,7 +1,7 @@
 //! Masks that are prepared for many queries. A query asks what fraction of a ray's radiance passes,
 //! or which shapes are near a ray.
 
-use etendue_field::{HalfPlane, Hole, Mask, Shape};
+use etendue_field::{HalfPlane, Hole, Mask, Shape, whole};
 
 /// The lowest and highest coordinate of a rectangle along each of two axes.
 pub(crate) type Bounds = [[f64; 2]; 2];
@@ -138,14 +138,10 @@ impl<'a> Bins<'a> {
         self.cell(axis, low)..=self.cell(axis, high)
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the value is clamped first, and NaN becomes zero"
-    )]
     fn cell(&self, axis: usize, coordinate: f64) -> usize {
         let cell = (coordinate - self.low[axis]) * self.per_length[axis];
-        cell.clamp(0.0, (self.sides[axis] - 1) as f64) as usize
+        // NaN becomes zero.
+        whole(cell.clamp(0.0, (self.sides[axis] - 1) as f64))
     }
 
     /// Calls `each` once for every shape whose bounds overlap the rectangle `sides`; the order of
@@ -178,11 +174,6 @@ impl<'a> Bins<'a> {
 
 /// Returns the numbers of cells along two axes, with about `count` cells in all. There are at most
 /// about as many along an axis as shapes fit side by side, which `abreast` gives.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the numbers are between 1 and the number of shapes"
-)]
 fn sides(count: usize, abreast: [f64; 2]) -> [usize; 2] {
     let count = count.max(1) as f64;
     let most = abreast.map(|fit| {
@@ -195,7 +186,7 @@ fn sides(count: usize, abreast: [f64; 2]) -> [usize; 2] {
     let narrow = count.sqrt().ceil();
     // What one axis does not take is left for the other.
     let other = |axis: usize| (count / most[1 - axis].min(narrow)).ceil();
-    [0, 1].map(|axis| most[axis].min(narrow.max(other(axis))) as usize)
+    [0, 1].map(|axis| whole(most[axis].min(narrow.max(other(axis)))))
 }
 
 #[cfg(test)]

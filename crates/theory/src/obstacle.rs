@@ -123,35 +123,19 @@ pub enum ObstacleForm {
     Mesh(Vec<[DVec3; 3]>),
 }
 
-/// Obstacles prepared for many rays.
+/// Obstacles prepared for many rays, each with the centre and the radius of a sphere around its mesh.
 #[derive(Debug)]
-pub(crate) struct PreparedObstacles<'a>(Vec<(Option<usize>, Ready<'a>)>);
-
-#[derive(Debug)]
-enum Ready<'a> {
-    Rectangle(&'a Frame, [f64; 2]),
-    Patch(&'a Patch),
-    Mesh {
-        /// Centre of the bounding sphere.
-        center: DVec3,
-        radius: f64,
-        triangles: &'a [[DVec3; 3]],
-    },
-}
+pub(crate) struct PreparedObstacles<'a>(Vec<(&'a Obstacle, DVec3, f64)>);
 
 /// Maximum relative rounding error of a distance.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
-        let ready = |form: &'a ObstacleForm| match form {
-            ObstacleForm::Rectangle { frame, size } => Ready::Rectangle(frame, *size),
-            ObstacleForm::Patch(patch) => Ready::Patch(patch),
-            ObstacleForm::Mesh(triangles) => around(triangles),
-        };
-        let each = obstacles
-            .iter()
-            .map(|obstacle| (obstacle.until, ready(&obstacle.form)));
+        let each = obstacles.iter().map(|obstacle| {
+            let (center, radius) = around(&obstacle.form);
+            (obstacle, center, radius)
+        });
         Self(each.collect())
     }
 
@@ -160,18 +144,14 @@ impl<'a> PreparedObstacles<'a> {
     pub(crate) fn stop(&self, leg: usize, ray: &LegRay, length: f64) -> bool {
         let start = ray.start();
         let is_between = |t: f64| start < t && t < length;
-        let is_there = |until: &Option<usize>| until.is_none_or(|until| leg < until);
-        let mut there = self.0.iter().filter(|(until, _)| is_there(until));
-        there.any(|(_, ready)| match ready {
-            Ready::Rectangle(frame, size) => {
+        let is_there = |obstacle: &Obstacle| obstacle.until.is_none_or(|until| leg < until);
+        let mut there = self.0.iter().filter(|(obstacle, ..)| is_there(obstacle));
+        there.any(|(obstacle, center, radius)| match &obstacle.form {
+            ObstacleForm::Rectangle { frame, size } => {
                 on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
-            Ready::Patch(patch) => ray.hits(patch).any(is_between),
-            Ready::Mesh {
-                center,
-                radius,
-                triangles,
-            } => {
+            ObstacleForm::Patch(patch) => ray.hits(patch).any(is_between),
+            ObstacleForm::Mesh(triangles) => {
                 let mut meets = triangles.iter().filter_map(|triangle| on(triangle, ray));
                 is_near(*center, *radius, ray) && meets.any(is_between)
             }
@@ -179,17 +159,18 @@ impl<'a> PreparedObstacles<'a> {
     }
 }
 
-fn around(triangles: &[[DVec3; 3]]) -> Ready<'_> {
+/// Returns the centre and the radius of a sphere around a mesh; a sphere without bounds around
+/// other forms.
+fn around(form: &ObstacleForm) -> (DVec3, f64) {
+    let ObstacleForm::Mesh(triangles) = form else {
+        return (DVec3::ZERO, f64::INFINITY);
+    };
     let corners = || triangles.as_flattened().iter();
     let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
     let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
     let center = 0.5 * (low + high);
     let radius = corners().map(|corner| corner.distance(center));
-    Ready::Mesh {
-        center,
-        radius: radius.fold(0.0, f64::max),
-        triangles,
-    }
+    (center, radius.fold(0.0, f64::max))
 }
 
 fn is_near(center: DVec3, radius: f64, ray: &LegRay) -> bool {

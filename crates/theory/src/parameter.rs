@@ -259,7 +259,7 @@ const MAX_SIDE: f64 = 1e9;
 const MAX_SEPARATE: usize = 4;
 
 /// Returns the shapes of a mask or of its hole; none for a polygon or a grating.
-fn shapes_of(mask: &Mask) -> &[Shape] {
+pub(crate) fn shapes_of(mask: &Mask) -> &[Shape] {
     match mask {
         Mask::Opaque { shapes, .. } => shapes,
         Mask::Aperture(Hole::Shape(shape)) => std::slice::from_ref(shape),

@@ -45,6 +45,21 @@ pub struct Predicted {
 }
 
 impl Predicted {
+    /// Returns a prediction without an error, moments or derivatives, which is no sum over nets.
+    pub(crate) fn exact(slices: Slices, projection: Projection) -> Self {
+        Self {
+            slices,
+            replicates: Vec::new(),
+            error: None,
+            unblocked: 0.0,
+            projection,
+            covariance: None,
+            derivatives: Vec::new(),
+            to_first_order: None,
+            nodes: 0.0,
+        }
+    }
+
     /// Returns this prediction minus another one from the same nets, as a mean over the nets.
     /// Returns `None` if a prediction is no sum over nets.
     #[must_use]

@@ -1,6 +1,6 @@
 //! Samples directions of an environment in proportion to its radiance.
 
-use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian};
+use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian, whole};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -145,16 +145,11 @@ impl<'a> Pixels<'a> {
         self.map.direction([i as f64 + across, row])
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the value is not negative, and is limited to the size of the map"
-    )]
     fn density(&self, from: DVec3) -> f64 {
         let [column, row] = self.map.place(from);
         let (h, w) = (self.rows.len(), self.cells[0].len());
-        let j = (row.max(0.0) as usize).min(h - 1);
-        let i = (column.max(0.0) as usize).min(w - 1);
+        let j = whole(row.max(0.0)).min(h - 1);
+        let i = whole(column.max(0.0)).min(w - 1);
         let solid_angle = solid_angle(h, j) * TAU / w as f64;
         share(&self.rows, j) * share(&self.cells[j], i) / solid_angle
     }

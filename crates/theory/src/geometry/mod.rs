@@ -62,7 +62,9 @@ mod travel;
 
 pub use map::AffineMap;
 pub use matrix::Matrix;
-pub(crate) use matrix::{congruent, diagonal, from_fn, inverse, product, sum, times, transpose};
+pub(crate) use matrix::{
+    congruent, diagonal, from_fn, inverse, plus, product, sum, times, transpose,
+};
 pub use printed::Edition;
 pub use refraction::Media;
 pub use spectrum_map::SpectrumMap;

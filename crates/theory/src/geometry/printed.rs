@@ -39,20 +39,6 @@ impl Edition {
         }
     }
 
-    /// Returns the step of curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ,
-    /// Ωθ).
-    #[must_use]
-    pub fn curvature(self, k: f64) -> SpectrumMap<2> {
-        AffineMap::<2>::curvature(self.sign() * k).spectrum_map()
-    }
-
-    /// Returns the step back from the frames of the local normals. It is the inverse of
-    /// [`curvature`](Self::curvature), as the text of step 6 says.
-    #[must_use]
-    pub fn back(self, k: f64) -> SpectrumMap<2> {
-        AffineMap::<2>::back(self.sign() * k).spectrum_map()
-    }
-
     /// Returns the step of the outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
     #[must_use]
     pub fn outgoing(self, theta1: f64) -> SpectrumMap<2> {
@@ -99,7 +85,7 @@ impl Edition {
 
     /// Returns the sign of the shear by curvature relative to the sign from ray geometry: −1 for
     /// Eq. 11, which has the opposite sign, and 1 otherwise.
-    fn sign(self) -> f64 {
+    pub(super) fn sign(self) -> f64 {
         match self {
             Self::Corrected | Self::Table => 1.0,
             Self::Equations => -1.0,

@@ -1,7 +1,7 @@
 //! Steps in the frame of the central ray.
 
 use super::AffineMap;
-use super::matrix::{diagonal, from_fn};
+use super::matrix::{diagonal, from_fn, transpose};
 use std::array;
 
 impl<const N: usize> AffineMap<N> {
@@ -27,14 +27,7 @@ impl<const N: usize> AffineMap<N> {
     /// slopes (docs/theory.md (24)). Durand et al. 2005 do not treat lenses.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {
-        let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
-        Self::linear(from_fn(|i, j| {
-            if i == j + half {
-                -1.0 / focal_length
-            } else {
-                one[i][j]
-            }
-        }))
+        Self::linear(transpose(&Self::travel(-1.0 / focal_length).matrix))
     }
 
     /// Returns the map of the mirror reflection of local directions, θ' = −θ and φ' = −φ, in the

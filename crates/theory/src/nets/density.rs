@@ -1,6 +1,6 @@
 //! A probability density of one coordinate, which is sampled by its quantile function.
 
-use etendue_field::Profile;
+use etendue_field::{Profile, whole};
 
 /// Number of equal cells into which the interval is divided. The density is linear in each cell.
 const CELLS: usize = 512;
@@ -77,14 +77,9 @@ impl LinearDensity {
 
     /// Returns the quantile at which the cumulative density equals `share`, and the density at
     /// this quantile.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a share from 0 to 1 of the number of cells"
-    )]
     pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.below.len() - 2;
-        let mut cell = self.first[(share * (self.first.len() - 1) as f64) as usize];
+        let mut cell = self.first[whole(share * (self.first.len() - 1) as f64)];
         while cell < last && self.below[cell + 1] <= share {
             cell += 1;
         }
@@ -104,18 +99,13 @@ impl LinearDensity {
     }
 
     /// Returns the value of the density; zero outside the interval.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the coordinate was checked to be within the interval"
-    )]
     pub(crate) fn value(&self, t: f64) -> f64 {
         let at = (t - self.low) / self.step;
         let cells = self.values.len() - 1;
         if !(0.0..=cells as f64).contains(&at) {
             return 0.0;
         }
-        let cell = (at as usize).min(cells - 1);
+        let cell = whole(at).min(cells - 1);
         let share = at - cell as f64;
         self.values[cell] + share * (self.values[cell + 1] - self.values[cell])
     }

@@ -75,7 +75,9 @@ impl RayNode {
 /// Light fields whose rays are functions of a point of the unit cube.
 pub(crate) trait Integrand: Sync {
     /// Returns the number of fields.
-    fn fields(&self) -> usize;
+    fn fields(&self) -> usize {
+        1
+    }
     /// Returns how many coordinates of a point the fields depend on. The number is at most
     /// [`DIMENSIONS`].
     fn dimensions(&self) -> usize {
@@ -90,22 +92,31 @@ pub(crate) trait Integrand: Sync {
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
+/// Writes the difference between two rays of increased and decreased parameters, `apart` from each
+/// other, to two nodes. A ray that does not arrive contributes nothing.
+pub(crate) fn difference(sides: [Option<RayNode>; 2], apart: f64, nodes: &mut [RayNode]) {
+    for ((side, sign), node) in sides.into_iter().zip([1.0, -1.0]).zip(nodes) {
+        if let Some(RayNode { z, weight }) = side {
+            let weight = sign * weight / apart;
+            *node = RayNode { z, weight };
+        }
+    }
+}
+
 impl Predicted {
-    /// Returns the prediction of zero, for the case in which no ray in any net carries light.
-    pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
+    /// Returns the prediction of zero, with a number of derivatives, for the case in which no ray in
+    /// any net carries light.
+    pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid, derivatives: usize) -> Self {
+        let values = Array2::zeros((picture.bins, picture.bins));
+        let projection = Projection {
+            grid: *picture,
+            values,
+        };
         Self {
-            slices: Slices::zeros(*grid),
             replicates: vec![Slices::zeros(*grid); REPLICATES],
             error: Some(f64::INFINITY),
-            unblocked: 0.0,
-            projection: Projection {
-                grid: *picture,
-                values: Array2::zeros((picture.bins, picture.bins)),
-            },
-            covariance: None,
-            derivatives: Vec::new(),
-            to_first_order: None,
-            nodes: 0.0,
+            derivatives: vec![Slices::zeros(*grid); derivatives],
+            ..Self::exact(Slices::zeros(*grid), projection)
         }
     }
 }
@@ -129,10 +140,11 @@ pub(crate) fn sums(
     bins: usize,
     budget: RayBudget,
 ) -> Predicted {
-    let nets = begin(integrand, grid, bins, 0, REPLICATES);
+    let mut nets = begin(integrand, grid, bins, 0, REPLICATES);
     let all = budget.nodes / REPLICATES as f64;
     let first = power_of_two(all, [FIRST_NODES, MIN_NODES]);
-    let (nets, error) = doubled(integrand, (window, grid), nets, (first, budget));
+    let end = within(budget);
+    let error = doubled(integrand, (window, grid), &mut nets, first, end);
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
@@ -145,10 +157,10 @@ pub(crate) fn trial(
     budget: RayBudget,
 ) -> f64 {
     const TRIED: RayBudget = RayBudget::new(0.0, f64::INFINITY);
-    let nets = begin(integrand, grid, 1, REPLICATES, OF_TRIALS);
+    let mut nets = begin(integrand, grid, 1, REPLICATES, OF_TRIALS);
     let all = OF_TRIAL * budget.nodes;
     let each = power_of_two(all / OF_TRIALS as f64, [TRIAL_NODES, FIRST_NODES]);
-    doubled(integrand, (window, grid), nets, (each, TRIED)).1
+    doubled(integrand, (window, grid), &mut nets, each, within(TRIED))
 }
 
 /// Returns the largest power of two that is at most `count` and within a range of powers of two.
@@ -161,16 +173,16 @@ fn power_of_two(count: f64, [least, most]: [u32; 2]) -> u32 {
     1 << (count.clamp(f64::from(least), f64::from(most)) as u32).ilog2()
 }
 
-/// Adds `first` nodes to all nets, doubles the number of nodes until the budget is reached, and
-/// returns the nets with the error of their mean.
-fn doubled(
+/// Adds `first` nodes to all nets, and doubles the number of nodes until `end` returns a result for
+/// the nets and the number of nodes of each.
+fn doubled<T>(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
-    mut running: Vec<Running>,
-    (first, budget): (u32, RayBudget),
-) -> (Vec<Running>, f64) {
-    let bins = running[0].projection.nrows();
-    let picture = ProjectionGrid::new(window, bins);
+    running: &mut [Running],
+    first: u32,
+    end: impl Fn(&[Running], u32) -> Option<T>,
+) -> T {
+    let picture = ProjectionGrid::new(window, running[0].projection.nrows());
     let transform = SliceTransform::new(grid);
     let (mut each, mut more) = (0, first);
     loop {
@@ -178,13 +190,21 @@ fn doubled(
             .par_iter_mut()
             .for_each(|net| net.add(integrand, &transform, &picture, more));
         each += more;
+        if let Some(result) = end(running, each) {
+            return result;
+        }
+        more = each;
+    }
+}
+
+/// Returns the end of a prediction: the error of the mean over nets, once the budget is reached.
+fn within(budget: RayBudget) -> impl Fn(&[Running], u32) -> Option<f64> {
+    move |running, each| {
         let nodes = f64::from(each) * REPLICATES as f64;
         let [error, own] = error_and_norm(running.iter().map(|net| &net.slices[0]));
         let is_enough = error <= budget.error * own.max(f64::from(each) * budget.beside);
-        if is_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
-            return (running, relative([error, own]));
-        }
-        more = each;
+        let ends = is_enough || 2.0 * nodes > budget.nodes || each > 1 << 29;
+        ends.then(|| relative([error, own]))
     }
 }
 
@@ -201,30 +221,20 @@ pub(crate) fn means(
     if integrand.fields() == 0 {
         return Vec::new();
     }
-    let picture = ProjectionGrid::new(window, 1);
-    let transform = SliceTransform::new(grid);
     let first = REPLICATES + OF_TRIALS;
     let mut running = begin(integrand, grid, 1, first, OF_DERIVATIVES);
-    let of_field = |running: &[Running], field: usize| {
-        NetMean::new(running.iter().map(|net| &net.slices[field]))
-    };
     let most = most_for_derivatives(integrand.fields(), predicted.nodes);
-    let (mut each, mut more) = (0, DERIVATIVE_NODES[0]);
-    loop {
-        running
-            .par_iter_mut()
-            .for_each(|net| net.add(integrand, &transform, &picture, more));
-        each += more;
-        let fields = (0..integrand.fields()).map(|field| of_field(&running, field));
-        let mut means: Vec<NetMean> = fields.collect();
-        if each >= most || means.iter().all(|mean| mean.error <= DERIVATIVE_ERROR) {
-            for mean in &mut means {
-                mean.slices.half /= Complex::from(f64::from(each));
-            }
-            return means;
+    let end = |running: &[Running], each: u32| {
+        let of_field = |field: usize| NetMean::new(running.iter().map(|net| &net.slices[field]));
+        let mut means: Vec<NetMean> = (0..integrand.fields()).map(of_field).collect();
+        let is_accurate = means.iter().all(|mean| mean.error <= DERIVATIVE_ERROR);
+        for mean in &mut means {
+            mean.slices.half /= Complex::from(f64::from(each));
         }
-        more = each;
-    }
+        (each >= most || is_accurate).then_some(means)
+    };
+    let over = (window, grid);
+    doubled(integrand, over, &mut running, DERIVATIVE_NODES[0], end)
 }
 
 /// Returns the maximum number of nodes in each net for derivatives.
@@ -337,16 +347,13 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
         replicates.push(slices);
     }
     values /= grid.cell_area() * each * replicates.len() as f64;
+    let slices = mean(replicates.iter());
     Predicted {
-        slices: mean(replicates.iter()),
         replicates,
         error: Some(error),
-        unblocked: 0.0,
-        projection: Projection { grid, values },
         covariance: moments.central(),
-        derivatives: Vec::new(),
-        to_first_order: None,
         nodes: each * REPLICATES as f64,
+        ..Predicted::exact(slices, Projection { grid, values })
     }
 }
 
@@ -461,7 +468,7 @@ mod tests {
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
         let picture = ProjectionGrid::new(&window, 1);
-        let dark = Predicted::dark(&grid, &picture);
+        let dark = Predicted::dark(&grid, &picture, 0);
         let derivative = &means(&Waves, (&window, &grid), &dark)[0];
         let mut running = begin(&Waves, &grid, 1, 0, OF_DERIVATIVES);
         let (picture, transform) = (ProjectionGrid::new(&window, 1), SliceTransform::new(&grid));

@@ -1,5 +1,6 @@
 //! Chains: a light and the operators on its light field along the path.
 
+use crate::parameter::shapes_of;
 use etendue_field::{Hole, Light, Mask, Shape};
 
 /// The light, which is in a plane perpendicular to the central ray.
@@ -185,14 +186,10 @@ impl ChainSegment<'_> {
     /// Returns the shapes in each plane that has edges: first the shapes of the light, then the
     /// shapes of each opaque mask, or the hole of each aperture.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
-        let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
-            Mask::Opaque { shapes, .. } => Some(&shapes[..]),
-            Mask::Aperture(Hole::Shape(shape)) => Some(std::slice::from_ref(shape)),
-            Mask::Aperture(Hole::Polygon(_)) => Some(&[]),
-            Mask::Grating(_) => None,
-        });
+        let masks = self.layers.iter().map(|layer| layer.mask);
+        let with_edges = masks.filter(|mask| !matches!(mask, Mask::Grating(_)));
         std::iter::once(self.light_shapes())
-            .chain(of_masks)
+            .chain(with_edges.map(shapes_of))
             .collect()
     }
 

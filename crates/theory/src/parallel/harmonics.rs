@@ -8,7 +8,7 @@ use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
-use etendue_field::{Assignment, Complex, FieldGrid, Window};
+use etendue_field::{Assignment, Complex, FieldGrid, Window, whole};
 use rayon::prelude::*;
 
 /// The spectrum of a chain on a grid of frequencies. Along each of the four axes, the frequencies
@@ -240,15 +240,10 @@ impl Folds {
 
     /// Returns the same harmonics as [`of`](Self::of), as indices among all harmonics within
     /// [`reach`](Self::reach).
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the values are whole numbers within reach"
-    )]
     fn indices(self, index: usize) -> impl Iterator<Item = (usize, f64)> {
         let reach = self.reach() as f64;
         let each = self.of(index);
-        each.map(move |(harmonic, share)| ((harmonic + reach) as usize, share))
+        each.map(move |(harmonic, share)| (whole(harmonic + reach), share))
     }
 }
 

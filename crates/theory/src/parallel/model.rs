@@ -78,21 +78,16 @@ impl Model for Chain {
             derivatives: derivatives
                 .map(|parameter| derivative(self, *parameter, window, grid, &slices))
                 .collect(),
-            replicates: Vec::new(),
             error: quadrature_error(self, window, grid, &slices),
             unblocked: self.unblocked(window),
-            projection: projection(self, window, picture),
-            covariance: None,
-            to_first_order: None,
-            nodes: 0.0,
-            slices,
+            ..Predicted::exact(slices, projection(self, window, picture))
         }
     }
 
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         match self.given() {
             Some(rays) => then(&ray_list::GivenRays::new(self, rays, over.0)),
-            None => self.with_sampled(over, budget, then),
+            None => self.followed(over.0).with_rays(over, budget, then),
         }
     }
 

@@ -58,15 +58,8 @@ pub(super) fn predicted(
     let unblocked = rays.rays().iter();
     let unblocked = unblocked.filter_map(|given| arrives(given, &open, window));
     Predicted {
-        slices,
-        replicates: Vec::new(),
-        error: None,
         unblocked: unblocked.map(|(_, weight)| weight).sum(),
-        projection,
-        covariance: None,
-        derivatives: Vec::new(),
-        to_first_order: None,
-        nodes: 0.0,
+        ..Predicted::exact(slices, projection)
     }
 }
 

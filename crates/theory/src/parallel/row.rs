@@ -1,6 +1,7 @@
 //! Arithmetic along a row of frequencies.
 
-use etendue_field::{Complex, cis};
+use etendue_field::{Complex, SliceGrid, Slices, cis};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A row of frequencies with a common position frequency, in cycles per half-width.
@@ -76,4 +77,26 @@ pub(crate) fn add_product(
         *re += a_re * b_re - a_im * b_im;
         *im += a_re * b_im + a_im * b_re;
     }
+}
+
+/// Computes slices by rows of constant (azimuth, ρ). `row` receives the cosine and the sine of the
+/// azimuth, and ρ. Rows are computed in parallel, but each row by a single thread, so the result is
+/// the same for any number of threads.
+pub(crate) fn slices_by_rows(
+    grid: &SliceGrid,
+    row: impl Fn([f64; 2], f64) -> Vec<Complex> + Sync,
+) -> Slices {
+    let [azimuths, rows, _] = grid.half_shape();
+    let values: Vec<Vec<Complex>> = (0..azimuths * rows)
+        .into_par_iter()
+        .map(|i| {
+            let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
+            row([cos, sin], (i % rows) as f64 * grid.rho.spacing)
+        })
+        .collect();
+    let mut slices = Slices::zeros(*grid);
+    for (to, from) in slices.half.rows_mut().into_iter().zip(values) {
+        to.into_iter().zip(from).for_each(|(to, from)| *to = from);
+    }
+    slices
 }

@@ -1,8 +1,8 @@
 //! Predictions by nets of rays. They are used for chains whose closed form takes too long or does
 //! not resolve a pattern.
 
-use crate::model::{Model, Over, ShiftedModels};
-use crate::nets::{RayBudget, RayNets};
+use crate::model::{Over, ShiftedModels};
+use crate::nets::RayBudget;
 use crate::path::{Interaction, Observed, PathSurface, PathSystem};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
@@ -12,6 +12,9 @@ use glam::DVec3;
 
 impl Chain {
     /// Returns the prediction by nets of rays, with derivatives with respect to some parameters.
+    ///
+    /// # Panics
+    /// Panics if the chain has no such parameter.
     #[must_use]
     pub fn sampled(
         &self,
@@ -19,43 +22,22 @@ impl Chain {
         over: Over<'_>,
         budget: RayBudget,
     ) -> Predicted {
-        let moved = self.moved(parameters, over, |chain| chain.followed(over.0));
-        self.followed(over.0).predicted(&moved, over, budget)
-    }
-
-    /// Calls a function with the nets of rays that [`sampled`](Self::sampled) sums.
-    pub(super) fn with_sampled(
-        &self,
-        over: Over<'_>,
-        budget: RayBudget,
-        then: &mut dyn FnMut(&dyn RayNets),
-    ) {
-        self.followed(over.0).with_rays(over, budget, then);
-    }
-
-    /// Returns, for each parameter, the system with this parameter slightly increased and slightly
-    /// decreased.
-    fn moved<V>(
-        &self,
-        parameters: &[Parameter],
-        over: Over<'_>,
-        into: impl Fn(Self) -> V,
-    ) -> Vec<ShiftedModels<V>> {
         // Steps of parameters of masks move shadows. They are large enough for some rays to cross the
         // shadow's edge, and small enough to change phases by at most a third of a radian.
         const RELATIVE_STEP: f64 = 1e-2;
         const TURNS: f64 = 0.05;
         let moved = |parameter: &Parameter| {
             let step = self.step(*parameter, (over.0, over.1), [RELATIVE_STEP, TURNS])?;
-            ShiftedModels::new(self, *parameter, step, &into)
+            ShiftedModels::new(self, *parameter, step, |chain| chain.followed(over.0))
         };
         let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
-        moved.expect("parameters of the chain")
+        let moved = moved.expect("parameters of the chain");
+        self.followed(over.0).predicted(&moved, over, budget)
     }
 
     /// Returns the chain as a path, which has a flat surface that scatters if the chain ends in a
     /// diffuse reflection.
-    fn followed(&self, window: &Window) -> Observed {
+    pub(super) fn followed(&self, window: &Window) -> Observed {
         let path = self.path();
         let distance = path.distance;
         let mut system = PathSystem::new(self.source.light.clone(), Vec::new());

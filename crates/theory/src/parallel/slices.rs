@@ -5,11 +5,10 @@ use crate::Chain;
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::corners::Corners;
 use crate::parallel::disc_resolution::DiscResolution;
-use crate::parallel::row::FrequencyRow;
+use crate::parallel::row::{FrequencyRow, slices_by_rows};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
-use rayon::prelude::*;
 
 /// If the absolute value of the cosine or sine of an azimuth is below this threshold, it is treated
 /// as exactly zero. Up to rounding errors, such azimuths are π/2 and 0.
@@ -17,9 +16,8 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// Returns the slices of the spectrum on a grid.
 ///
-/// Rows of constant (azimuth, ρ) are computed in parallel, but each row by a single thread, so the
-/// result is the same for any number of threads. The slices differ from [`at`](crate::at) by less
-/// than 1e-10 of the largest value or, if the chain has discs, by the quadrature error of discs.
+/// The result is the same for any number of threads. The slices differ from [`at`](crate::at) by
+/// less than 1e-10 of the largest value or, if the chain has discs, by the quadrature error of discs.
 /// Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
@@ -54,29 +52,18 @@ pub(crate) fn slices_at_fineness(
         .map(|waves| Product::new(&expansion, waves))
         .collect();
     let columns = path.has_discs().then(|| expansion.columns());
-    let [azimuths, rows, _] = grid.half_shape();
-    let values: Vec<Vec<Complex>> = (0..azimuths * rows)
-        .into_par_iter()
-        .map(|i| {
-            let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
-            let rho = (i % rows) as f64 * grid.rho.spacing;
-            let mut row = vec![Complex::ZERO; grid.nu.count()];
-            for product in &products {
-                let x = product.factors(0, rho, cos, grid);
-                let y = product.factors(1, rho, sin, grid);
-                match &columns {
-                    Some(columns) => columns.add(expansion.brightness, &x, &y, &mut row),
-                    None => expansion.add_terms(&x, &y, &mut row),
-                }
+    slices_by_rows(grid, |[cos, sin], rho| {
+        let mut row = vec![Complex::ZERO; grid.nu.count()];
+        for product in &products {
+            let x = product.factors(0, rho, cos, grid);
+            let y = product.factors(1, rho, sin, grid);
+            match &columns {
+                Some(columns) => columns.add(expansion.brightness, &x, &y, &mut row),
+                None => expansion.add_terms(&x, &y, &mut row),
             }
-            row
-        })
-        .collect();
-    let mut slices = Slices::zeros(*grid);
-    for (to, from) in slices.half.rows_mut().into_iter().zip(values) {
-        to.into_iter().zip(from).for_each(|(to, from)| *to = from);
-    }
-    slices
+        }
+        row
+    })
 }
 
 /// The polygons of both sections, with one product of waves that multiplies the terms.

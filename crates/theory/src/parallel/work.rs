@@ -8,7 +8,7 @@ use crate::Chain;
 use crate::Model;
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc_resolution::DiscResolution;
-use crate::parallel::expansion::Expansion;
+use crate::parallel::expansion::{AxisSection, Expansion};
 use crate::parallel::projection::nodes_of_cells;
 use crate::parallel::slices::fineness;
 use crate::parallel::slope::Slope;
@@ -93,22 +93,15 @@ fn of_slices(
     grid: &SliceGrid,
 ) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
-    let polygons = expansion
-        .sections
-        .each_ref()
-        .map(|s| s.polygons.len() as f64);
-    let corners = expansion
-        .sections
-        .each_ref()
-        .map(|s| s.polygons.iter().map(|p| p.corners().len()).sum::<usize>() as f64);
+    let count_of =
+        |of: fn(&AxisSection) -> usize| expansion.sections.each_ref().map(|s| of(s) as f64);
+    let polygons = count_of(|section| section.polygons.len());
+    let corners = count_of(|section| section.polygons.iter().map(|p| p.corners().len()).sum());
+    let directions = count_of(|section| section.directions.len());
     let columns = expansion.columns();
     let sums = columns.sums.iter().chain(&columns.beside);
     let summands = sums.map(Vec::len).sum::<usize>();
     let terms = summands.min(expansion.terms.len()) as f64;
-    let directions = expansion
-        .sections
-        .each_ref()
-        .map(|s| s.directions.len() as f64);
     let pairs = directions.map(|n| 0.5 * n * (n - 1.0));
     let along = |axis: usize| {
         let wave = WAVE * pairs[axis] + CANCELLED * polygons[axis] + AT_CORNER * corners[axis];

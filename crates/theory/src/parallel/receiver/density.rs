@@ -3,7 +3,7 @@
 
 use crate::barrier::Bounds;
 use crate::quadrature::gauss_legendre;
-use etendue_field::Grating;
+use etendue_field::{Grating, whole};
 use std::f64::consts::TAU;
 
 /// The value −ln ε for the relative error ε = 10⁻¹² of a Gauss rule.
@@ -21,7 +21,7 @@ const LEVELS: usize = 24;
 const CLOSED: f64 = 100.0;
 /// Rectangles that need at most this number of nodes are integrated numerically, because the terms
 /// of the closed form nearly cancel for small rectangles.
-const FEW_NODES: usize = 16;
+const FEW_NODES: f64 = 16.0;
 
 /// The lobe (1 + u² + v²)^(−p), where u and v are slopes.
 #[derive(Clone, Copy, Debug)]
@@ -86,17 +86,12 @@ impl NodeCounts {
 
     /// Returns the number of panels for an interval of the given length, and the number of nodes
     /// in each panel.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the value is rounded and not negative"
-    )]
     fn of(&self, length: f64) -> [usize; 2] {
         let ratio = self.longest / length.abs();
         if ratio < 1.0 {
-            return [(1.0 / ratio).ceil() as usize, self.levels[0]];
+            return [whole((1.0 / ratio).ceil()), self.levels[0]];
         }
-        let level = libm::log2(ratio).min((LEVELS - 1) as f64) as usize;
+        let level = whole(libm::log2(ratio).min((LEVELS - 1) as f64));
         [1, self.levels[level]]
     }
 }
@@ -109,11 +104,6 @@ impl NodeCounts {
 /// arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
 /// 19.3). The ellipse contains no pole if b < 1. The number is computed for several values of b,
 /// and the smallest number is used.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the value is small, positive and rounded up"
-)]
 fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     let power = power.abs();
     let counts = (0..12).map(|k| {
@@ -122,7 +112,7 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
         let growth = power * (beyond - libm::log(1.0 - b * b)) + TAU * frequency.abs() * b;
         (NATS + growth) / (2.0 * libm::asinh(2.0 * b / length))
     });
-    counts.fold(f64::INFINITY, f64::min).ceil() as usize
+    whole(counts.fold(f64::INFINITY, f64::min).ceil())
 }
 
 /// The lobe, and Gauss rules for its integrals. The rules integrate the product of the lobe and the
@@ -159,6 +149,7 @@ pub(crate) struct ReceiverDensity<'a> {
 
 impl ReceiverDensity<'_> {
     /// Returns the value of the integrand at the slopes (u, v).
+    #[cfg(test)]
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
         self.integrator.lobe.value(1.0 + u * u + v * v) * gratings.product::<f64>()
@@ -169,9 +160,10 @@ impl ReceiverDensity<'_> {
     pub(crate) fn rectangle(&self, sides: Bounds) -> f64 {
         let [u, v] = sides;
         if self.gratings.is_empty() {
+            let [along_u, along_v] = self.along(sides);
             match self.integrator.lobe {
                 SlopePower::Flat => return (u[1] - u[0]) * (v[1] - v[0]),
-                SlopePower::Cosine if self.size(sides) > FEW_NODES => return cosine(sides),
+                SlopePower::Cosine if along_u * along_v > FEW_NODES => return cosine(sides),
                 _ => {}
             }
         }
@@ -209,10 +201,9 @@ impl ReceiverDensity<'_> {
     /// Estimates the number of computing steps of [`Self::rectangle`].
     pub(crate) fn steps(&self, sides: Bounds) -> f64 {
         let [u, v] = self.along(sides);
-        let few = u * v <= FEW_NODES as f64;
         match self.integrator.lobe {
             SlopePower::Flat if self.gratings.is_empty() => CLOSED,
-            SlopePower::Cosine if self.gratings.is_empty() && !few => CLOSED,
+            SlopePower::Cosine if self.gratings.is_empty() && u * v > FEW_NODES => CLOSED,
             _ => self.step() * (u * v + 10.0 * (u + v)),
         }
     }
@@ -242,15 +233,6 @@ impl ReceiverDensity<'_> {
             let [panels, nodes] = self.integrator.counts[axis].of(high - low);
             panels as f64 * nodes as f64
         })
-    }
-
-    /// Returns the total number of nodes of a rectangle of slopes.
-    fn size(&self, sides: Bounds) -> usize {
-        let along = [0, 1].map(|axis| {
-            let [low, high] = sides[axis];
-            self.integrator.counts[axis].of(high - low)
-        });
-        along.as_flattened().iter().product()
     }
 
     /// Returns the nodes of an interval of slopes along an axis; the nodes' weights include the

@@ -2,8 +2,10 @@
 
 use super::Receiver;
 use super::kernel::{KernelAxis, Kernels};
-use crate::parallel::row::FrequencyRow;
-use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window, cis};
+use crate::parallel::row::{FrequencyRow, slices_by_rows};
+use etendue_field::{
+    Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window, cis, whole,
+};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -42,8 +44,7 @@ impl Receiver<'_> {
     ///
     /// The sum over the receiver is a midpoint rule of second order, and
     /// [`quadrature_error`](Self::quadrature_error) returns its error. The integral over slopes is
-    /// exact. Rows are computed in parallel, but each row by a single thread, so the result is the
-    /// same for any number of threads. Unit: W m⁻² sr⁻¹ · m².
+    /// exact. The result is the same for any number of threads. Unit: W m⁻² sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
@@ -87,16 +88,11 @@ impl Receiver<'_> {
     /// Returns the number of nodes along each axis that resolves the narrowest penumbra or period
     /// and the highest frequency. The number is even, so that the error can be estimated with half
     /// as many nodes.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped first"
-    )]
     pub(crate) fn nodes(&self, window: &Window, highest: f64) -> usize {
         let [fewest, most] = NODES;
         let side = self.side(window);
         let nodes = (ACROSS * side / self.finest()).max(fewest + PER_CYCLE * highest * side);
-        2 * (0.5 * nodes.min(most)).ceil() as usize
+        2 * whole((0.5 * nodes.min(most)).ceil())
     }
 
     /// Returns the width of the receiver that is seen through a window, in metres.
@@ -182,29 +178,18 @@ pub(super) fn axes(window: &Window, after: f64) -> [KernelAxis; 2] {
 
 impl ExitantTable {
     pub(super) fn slices(&self, grid: &SliceGrid) -> Slices {
-        let [azimuths, rows, _] = grid.half_shape();
-        let values: Vec<Vec<Complex>> = (0..azimuths * rows)
-            .into_par_iter()
-            .map(|i| {
-                let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
-                let rho = (i % rows) as f64 * grid.rho.spacing;
-                let frequencies = [cos, sin].map(|along| FrequencyRow {
-                    position: rho * along,
-                    step: grid.nu.spacing * along,
-                    half: grid.nu.half,
-                });
-                if self.axes[0].after > 0.0 {
-                    self.travelled(&frequencies)
-                } else {
-                    self.at_receiver(&frequencies)
-                }
-            })
-            .collect();
-        let mut slices = Slices::zeros(*grid);
-        for (to, from) in slices.half.rows_mut().into_iter().zip(values) {
-            to.into_iter().zip(from).for_each(|(to, from)| *to = from);
-        }
-        slices
+        slices_by_rows(grid, |along, rho| {
+            let frequencies = along.map(|along| FrequencyRow {
+                position: rho * along,
+                step: grid.nu.spacing * along,
+                half: grid.nu.half,
+            });
+            if self.axes[0].after > 0.0 {
+                self.travelled(&frequencies)
+            } else {
+                self.at_receiver(&frequencies)
+            }
+        })
     }
 
     /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv), as a plain sum over nodes.
@@ -263,7 +248,7 @@ impl ExitantTable {
         let bins = grid.bins;
         let axis = &self.axes[0];
         let spacing = 2.0 * axis.reach() / across.len() as f64;
-        let places = PLACES.max(places(2.0 * grid.half_x / bins as f64 / spacing));
+        let places = PLACES.max(whole((2.0 * grid.half_x / bins as f64 / spacing).ceil()));
         let inside = move |cell: usize, half: f64| {
             let fine = (bins * places) as f64;
             (0..places).map(move |k| ((cell * places + k) as f64 + 0.5) / fine * 2.0 * half - half)
@@ -297,26 +282,12 @@ impl ExitantTable {
     }
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the value is positive and rounded up"
-)]
-fn places(nodes: f64) -> usize {
-    nodes.ceil() as usize
-}
-
 /// Interpolates linearly between the two values next to a position; the position is relative to
 /// the middle of the values, in units of their spacing.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "clamped first"
-)]
 fn interpolated(values: &[f64], place: f64) -> f64 {
     let last = values.len() - 1;
     let place = (place + 0.5 * last as f64).clamp(0.0, last as f64);
-    let below = (place as usize).min(last - 1);
+    let below = whole(place).min(last - 1);
     let share = place - below as f64;
     values[below] * (1.0 - share) + values[below + 1] * share
 }

@@ -3,7 +3,7 @@
 
 use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
 use crate::quadrature::gauss_legendre;
-use etendue_field::{Complex, Profile, cis};
+use etendue_field::{Complex, Profile, cis, whole};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
 
@@ -89,13 +89,8 @@ impl KernelAxis {
     }
 
     /// Returns a Gauss rule on (−1, 1) with enough nodes for a frequency.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a positive whole number"
-    )]
     fn rule(&self, frequency: [f64; 2]) -> Vec<(f64, f64)> {
-        gauss_legendre(self.nodes(frequency) as usize)
+        gauss_legendre(whole(self.nodes(frequency)))
     }
 
     /// Returns the number of nodes of the rule for a frequency. It is the number that the

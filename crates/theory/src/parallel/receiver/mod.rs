@@ -11,7 +11,6 @@
 mod density;
 mod exitant;
 mod kernel;
-mod reflection;
 mod region;
 mod slopes;
 #[cfg(test)]
@@ -19,7 +18,7 @@ mod tests;
 mod work;
 
 use crate::barrier::Barrier;
-use crate::parallel::chain::{MaskLayer, ParallelEmitter};
+use crate::parallel::chain::{ChainSegment, MaskLayer, ParallelEmitter};
 use density::{Integrator, ReceiverDensity};
 use etendue_field::Rectangle;
 use region::ReceiverRegion;
@@ -83,40 +82,34 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the irradiance at a point of the receiver, in the frame of the arriving light, W
-    /// m⁻².
+    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point, and
+    /// the irradiance at the rectangle's centre for other lights, in the frame of the arriving
+    /// light, W m⁻². Shadows of a point light have sharp edges, so a value at the centre of a cell
+    /// would not represent the cell.
     ///
     /// The result is accurate to 10⁻¹² of the irradiance without blockers.
-    pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
-        let brightness = self.light.brightness;
-        if let Some(shape) = &self.light.shape {
-            let bundle = SlopeProjection::At([x, y]);
-            let region = ReceiverRegion::shape(&bundle.seen(shape, self.distance));
-            return brightness * self.received(&bundle, region);
-        }
-        let [u, v] = [x, y].map(|c| c / self.distance);
-        let bundle = SlopeProjection::From(self.distance);
-        let through = self.barriers.iter().map(|barrier| {
-            let scale = bundle.scale(barrier.distance);
-            barrier.transmittance(scale * u, scale * v)
-        });
-        let lobe = self.density(&bundle, &[]).value(u, v);
-        through.product::<f64>() * brightness * lobe / self.distance.powi(2)
-    }
-
-    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point, and
-    /// the irradiance at the rectangle's centre for other lights. Shadows of a point light have
-    /// sharp edges, so a value at the centre of a cell would not represent the cell.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
+        let (bundle, region) = self.lit(center, size);
+        let received = self.light.brightness * self.received(&bundle, region);
         if self.light.shape.is_some() {
-            return self.irradiance(center[0], center[1]);
+            return received;
         }
         // dx dy = D² du dv cancels the square of the distance.
+        received / Rectangle { center, size }.area()
+    }
+
+    /// Returns the slopes of the light that arrives in a cell, without barriers: at its centre, or,
+    /// if the light is a point, in the whole cell.
+    fn lit(&self, center: [f64; 2], size: [f64; 2]) -> (SlopeProjection, ReceiverRegion) {
+        if let Some(shape) = &self.light.shape {
+            let bundle = SlopeProjection::At(center);
+            let region = ReceiverRegion::shape(&bundle.seen(shape, self.distance));
+            return (bundle, region);
+        }
         let bundle = SlopeProjection::From(self.distance);
         let sides = Rectangle { center, size };
-        let region =
-            ReceiverRegion::rectangle(bundle.slopes([sides.extent(0), sides.extent(1)], 0.0));
-        self.light.brightness * self.received(&bundle, region) / sides.area()
+        let sides = bundle.slopes([sides.extent(0), sides.extent(1)], 0.0);
+        (bundle, ReceiverRegion::rectangle(sides))
     }
 
     /// Returns the integral over those slopes of a region for which no blocker stops the light.
@@ -170,5 +163,25 @@ impl<'a> Receiver<'a> {
     /// directions. (In the paper's Eq. 6, ρ is the BRDF, albedo / π.)
     fn exitance(&self) -> f64 {
         self.albedo / PI
+    }
+}
+
+impl<'a> ChainSegment<'a> {
+    /// Returns the diffuse surface at the end of the path, if there is one, with the light and
+    /// masks before it.
+    ///
+    /// # Panics
+    /// Panics if there is more than one factor G.
+    pub(crate) fn receiver(&self) -> Option<Receiver<'a>> {
+        let reflection = self.reflection?;
+        assert!(self.cosines < 2, "a receiver has one cosine");
+        Some(Receiver::new(
+            self.light,
+            &self.layers,
+            self.distance,
+            self.cosines == 1,
+            reflection.after,
+            reflection.albedo,
+        ))
     }
 }

@@ -3,7 +3,7 @@
 use super::density::ReceiverDensity;
 use super::slopes::SlopeProjection;
 use crate::barrier::{Barrier, Bounds};
-use etendue_field::{Disc, Shape};
+use etendue_field::{Disc, Shape, whole};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Discs whose centres and radii differ by less than this fraction of the radius are treated as
@@ -207,13 +207,8 @@ impl ReceiverRegion {
 }
 
 /// Returns ∫ A dv along an arc of a circle, for the antiderivative A that is zero at u = `from`.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "there are 1 to 4 parts"
-)]
 fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensity<'_>) -> f64 {
-    let quarters = ((end - start) / FRAC_PI_2).ceil().max(1.0) as usize;
+    let quarters = whole(((end - start) / FRAC_PI_2).ceil().max(1.0));
     let (panels, rule) = density.arc(disc.radius * (end - start) / quarters as f64);
     let parts = quarters * panels;
     let half = 0.5 * (end - start) / parts as f64;

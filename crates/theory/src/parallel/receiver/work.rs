@@ -7,7 +7,7 @@ use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
 use crate::barrier::Barrier;
 use crate::work::PredictionWork;
-use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
+use etendue_field::{ProjectionGrid, SliceGrid, Window};
 
 /// Number of points along each axis at which steps are counted.
 const SOME: usize = 4;
@@ -71,21 +71,7 @@ impl Receiver<'_> {
 
     /// Estimates the number of computing steps of [`Self::cell`].
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
-        let (bundle, region) = match &self.light.shape {
-            Some(shape) => {
-                let bundle = SlopeProjection::At(center);
-                (
-                    bundle,
-                    ReceiverRegion::shape(&bundle.seen(shape, self.distance)),
-                )
-            }
-            None => {
-                let bundle = SlopeProjection::From(self.distance);
-                let sides = Rectangle { center, size };
-                let sides = bundle.slopes([sides.extent(0), sides.extent(1)], 0.0);
-                (bundle, ReceiverRegion::rectangle(sides))
-            }
-        };
+        let (bundle, region) = self.lit(center, size);
         let density = self.density(&bundle, &self.barriers);
         let mut steps = SHAPE;
         self.count(&bundle, &region, &self.barriers, &density, &mut steps);
@@ -128,28 +114,20 @@ impl Receiver<'_> {
 fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let highest = [grid.rho.max(), grid.nu.max()];
-    let travels = axes[0].after > 0.0;
-    let rule = if travels {
-        axes.each_ref().map(|axis| axis.nodes(highest))
+    let (rule, row, bytes_each) = if axes[0].after > 0.0 {
+        let rule = axes.each_ref().map(|axis| axis.nodes(highest));
+        // The Gauss rule of n nodes is computed again for each row. For each of its nodes, a
+        // recurrence of n steps is computed.
+        let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
+        let sums = 2.0 * SUM * nodes * nodes * count;
+        (rule, kernels[0] + kernels[1] + sums, 48.0 * nodes * count)
     } else {
-        [0.0; 2]
-    };
-    // The Gauss rule of n nodes is computed again for each row. For each of its nodes, a recurrence
-    // of n steps is computed.
-    let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
-    let row = if travels {
-        kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count
-    } else {
-        5.0 * nodes * nodes + 50.0 * count
+        ([0.0; 2], 5.0 * nodes * nodes + 50.0 * count, 32.0 * nodes)
     };
     PredictionWork {
         steps: azimuths * rows * row,
         bytes: 32.0 * azimuths * rows * count,
-        bytes_each: if travels {
-            48.0 * nodes * count
-        } else {
-            32.0 * nodes
-        },
+        bytes_each,
         drivers: format!(
             "{azimuths} x {rows} x {count} frequencies x {nodes} x {nodes} places, with {:.0} nodes over slopes",
             rule[0].max(rule[1])

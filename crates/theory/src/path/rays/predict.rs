@@ -59,18 +59,26 @@ pub(crate) fn with_rays(
     budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
-    let Observed { system, plane } = view;
-    let observed = (system, Some(plane));
-    let path = PreparedPath::new(system);
+    let path = PreparedPath::new(&view.system);
     let field = exact_field(view, &path);
-    let draw = neighbourhood(system, plane).and_then(|lands| {
-        let strategy = best(&field, observed, &lands, (over.0, over.1), budget)?;
-        RaySampler::new(observed, over.0, &lands, strategy)
-    });
-    if let Some(draw) = draw {
+    if let Some(draw) = sampler(view, &field, (over.0, over.1), budget) {
         let drawn = SampledField::new(field, &draw, over.0);
         then(&nets::SampledNets::new(&drawn, budget));
     }
+}
+
+/// Returns the best sampler of a view's rays, or `None` if no ray arrives.
+fn sampler<'a>(
+    view: &'a Observed,
+    field: &impl RayField,
+    (window, grid): (&Window, &SliceGrid),
+    budget: RayBudget,
+) -> Option<RaySampler<'a>> {
+    let Observed { system, plane } = view;
+    let observed = (system, Some(plane));
+    let lands = neighbourhood(system, plane)?;
+    let strategy = best(field, observed, &lands, (window, grid), budget)?;
+    RaySampler::new(observed, window, &lands, strategy)
 }
 
 /// A ray of the light that is aimed at a window.
@@ -92,16 +100,10 @@ pub fn sampled(
     (window, grid): (&Window, &SliceGrid),
     most: usize,
 ) -> Vec<LightRay> {
-    let Observed { system, plane } = view;
-    let observed = (system, Some(plane));
-    let path = PreparedPath::new(system);
+    let path = PreparedPath::new(&view.system);
     let field = exact_field(view, &path);
     let budget = RayBudget::new(most as f64, 0.0);
-    let draw = neighbourhood(system, plane).and_then(|lands| {
-        let strategy = best(&field, observed, &lands, (window, grid), budget)?;
-        RaySampler::new(observed, window, &lands, strategy)
-    });
-    let Some(draw) = draw else {
+    let Some(draw) = sampler(view, &field, (window, grid), budget) else {
         return Vec::new();
     };
     let mut net = NetPoints::new(0, DIMENSIONS);
@@ -166,14 +168,15 @@ fn derivatives(
         })
         .collect();
     let Some(draws) = draws else { return zeros() };
-    let sides: Vec<SampledField<'_>> = sides()
-        .zip(paths.iter().zip(&draws))
-        .map(|(view, (path, draw))| SampledField::new(exact_field(view, path), draw, over.0))
-        .collect();
-    let differences = Differences {
-        apart: moved.iter().map(|moved| moved.apart).collect(),
-        sides,
-    };
+    let pairs = moved.iter().zip(paths.chunks(2).zip(draws.chunks(2)));
+    let pairs = pairs.map(|(moved, (paths, draws))| {
+        let side = |i: usize| {
+            let field = exact_field(&moved.sides[i], &paths[i]);
+            SampledField::new(field, &draws[i], over.0)
+        };
+        (moved.apart, [0, 1].map(side))
+    });
+    let differences = Differences(pairs.collect());
     let means = nets::means(&differences, (over.0, over.1), predicted);
     means.into_iter().map(|mean| mean.slices).collect()
 }
@@ -323,7 +326,7 @@ fn summed(
         way.and_then(|(lands, strategy)| RaySampler::new(observed, window, &lands, strategy));
     let (system, _) = observed;
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
-        return Predicted::dark(grid, picture);
+        return Predicted::dark(grid, picture, 0);
     };
     let drawn = SampledField::new(field, &draw, window);
     let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
@@ -408,26 +411,18 @@ impl<'a> SampledField<'a> {
 }
 
 impl Integrand for SampledField<'_> {
-    fn fields(&self) -> usize {
-        1
-    }
-
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         nodes[0] = self.node(at);
     }
 }
 
-/// Derivatives by finite differences: light fields with each parameter increased and decreased.
-struct Differences<'a> {
-    /// For each parameter, the difference between its increased and its decreased value.
-    apart: Vec<f64>,
-    /// The fields with each parameter increased and decreased.
-    sides: Vec<SampledField<'a>>,
-}
+/// Derivatives by finite differences. For each parameter, the difference between its increased and
+/// its decreased value, and the fields with these values.
+struct Differences<'a>(Vec<(f64, [SampledField<'a>; 2])>);
 
 impl Integrand for Differences<'_> {
     fn fields(&self) -> usize {
-        self.apart.len()
+        self.0.len()
     }
 
     fn rays(&self) -> usize {
@@ -435,11 +430,12 @@ impl Integrand for Differences<'_> {
     }
 
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        for (i, (side, node)) in self.sides.iter().zip(nodes).enumerate() {
-            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
-            let RayNode { z, weight } = side.node(at);
-            let weight = sign * weight / self.apart[i / 2];
-            *node = RayNode { z, weight };
+        for ((apart, sides), nodes) in self.0.iter().zip(nodes.chunks_mut(2)) {
+            nets::difference(
+                sides.each_ref().map(|side| Some(side.node(at))),
+                *apart,
+                nodes,
+            );
         }
     }
 }

@@ -10,7 +10,7 @@
 use super::region::{Finder, RayField};
 use super::sums::sums;
 use crate::nets::RayNode;
-use etendue_field::{SliceGrid, Slices};
+use etendue_field::{SliceGrid, Slices, whole};
 use rayon::prelude::*;
 
 /// Maximum number of nodes of an acceptable rule along each coordinate.
@@ -85,11 +85,6 @@ impl<F: RayField> Finder<'_, F> {
 
     /// Returns the number of nodes along each coordinate that should suffice. It exceeds the number
     /// of cycles, because a midpoint rule is exact for functions with fewer cycles than nodes.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number is not negative, and has an upper limit"
-    )]
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
@@ -111,6 +106,6 @@ impl<F: RayField> Finder<'_, F> {
             };
             MIN_NODES + along(0).max(along(1))
         });
-        count.ceil().clamp(1.0, 1e6) as usize
+        whole(count.ceil().clamp(1.0, 1e6))
     }
 }

@@ -7,7 +7,7 @@
 //! window.
 
 use crate::geometry::{
-    AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
+    AffineMap, Matrix, congruent, diagonal, from_fn, inverse, plus, product, sum, times,
 };
 use crate::path::scattering::{bell, bell_density};
 use etendue_field::{Profile, Window};
@@ -69,14 +69,7 @@ impl Gaussian<4> {
     /// Returns the product of this Gaussian and an independent Gaussian along each axis, given by
     /// means and inverse variances.
     pub(super) fn narrowed(&self, means: [f64; 4], precisions: [f64; 4]) -> Option<Self> {
-        let own = inverse(&self.covariance)?;
-        let covariance = inverse(&sum(&own, &diagonal(precisions)))?;
-        let pull = times(&own, &self.mean);
-        let pull = std::array::from_fn(|i| pull[i] + precisions[i] * means[i]);
-        Some(Self {
-            mean: times(&covariance, &pull),
-            covariance,
-        })
+        self.times(&means, &diagonal(precisions))
     }
 
     /// Returns the marginal Gaussian of two coordinates; the other two coordinates are arbitrary.
@@ -145,10 +138,17 @@ impl Gaussian<2> {
 
     /// Returns the product of two Gaussians.
     pub(super) fn product(&self, other: &Self) -> Option<Self> {
-        let [a, b] = [inverse(&self.covariance)?, inverse(&other.covariance)?];
-        let covariance = inverse(&sum(&a, &b))?;
-        let pulls = [times(&a, &self.mean), times(&b, &other.mean)];
-        let pull = std::array::from_fn(|i| pulls[0][i] + pulls[1][i]);
+        self.times(&other.mean, &inverse(&other.covariance)?)
+    }
+}
+
+impl<const N: usize> Gaussian<N> {
+    /// Returns the product of this Gaussian and another, given by its mean and the inverse of its
+    /// covariance.
+    fn times(&self, mean: &[f64; N], precision: &Matrix<N>) -> Option<Self> {
+        let own = inverse(&self.covariance)?;
+        let covariance = inverse(&sum(&own, precision))?;
+        let pull = plus(&times(&own, &self.mean), &times(precision, mean));
         Some(Self {
             mean: times(&covariance, &pull),
             covariance,

@@ -7,7 +7,6 @@ use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::path::Observed;
 use crate::predicted::Predicted;
-use etendue_field::Slices;
 
 /// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
 /// is bitwise identical on any number of threads.
@@ -23,7 +22,7 @@ pub(crate) fn predict(
 ) -> Predicted {
     let (window, grid, picture) = over;
     let Some(paths) = best(view, over, budget) else {
-        return dark(moved, over);
+        return Predicted::dark(grid, picture, moved.len());
     };
     let of = |view| {
         let mut moved = FieldPaths::new(view, window)?;
@@ -88,19 +87,7 @@ fn best<'a>(
     Some(paths)
 }
 
-/// Returns the prediction for the case in which the chain does not lead light to the plane.
-fn dark(moved: &[ShiftedModels<Observed>], (_, grid, picture): Over<'_>) -> Predicted {
-    Predicted {
-        derivatives: vec![Slices::zeros(*grid); moved.len()],
-        ..Predicted::dark(grid, picture)
-    }
-}
-
 impl Integrand for FieldPaths<'_> {
-    fn fields(&self) -> usize {
-        1
-    }
-
     fn dimensions(&self) -> usize {
         FieldPaths::dimensions(self)
     }
@@ -133,22 +120,17 @@ impl Integrand for ChainDifferences<'_> {
     }
 
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        let times = |node: RayNode, factor: f64| RayNode {
-            weight: factor * node.weight,
-            ..node
-        };
         let (chain, others) = nodes.split_at_mut(2);
         if let Some(drawn) = self.paths.draw(at) {
             chain[0] = drawn.first_order;
-            chain[1] = times(drawn.exact, -1.0);
+            chain[1] = drawn.exact;
+            chain[1].weight *= -1.0;
         }
         for ((apart, sides), nodes) in self.moved.iter().zip(others.chunks_mut(2)) {
-            for ((side, sign), node) in sides.iter().zip([1.0, -1.0]).zip(nodes) {
-                let drawn = side.as_ref().and_then(|paths| paths.draw(at));
-                if let Some(drawn) = drawn {
-                    *node = times(drawn.exact, sign / apart);
-                }
-            }
+            let drawn = sides
+                .each_ref()
+                .map(|side| Some(side.as_ref()?.draw(at)?.exact));
+            nets::difference(drawn, *apart, nodes);
         }
     }
 }

@@ -31,23 +31,12 @@ pub(super) struct LightStrategy {
 }
 
 impl LightStrategy {
-    /// Returns the strategies that differ from this one in a single choice.
-    pub(super) fn neighbours(self) -> [Self; 3] {
-        [
-            Self {
-                mirrored: !self.mirrored,
-                ..self
-            },
-            Self {
-                by_lobe: !self.by_lobe,
-                ..self
-            },
-            Self {
-                quarters: !self.quarters,
-                ..self
-            },
-        ]
-    }
+    /// Changes of a strategy, each in a single choice.
+    pub(super) const CHOICES: [fn(&mut Self); 3] = [
+        |strategy| strategy.mirrored ^= true,
+        |strategy| strategy.by_lobe ^= true,
+        |strategy| strategy.quarters ^= true,
+    ];
 
     /// Returns this strategy without the choices that have no effect for a system.
     pub(super) fn in_effect(self, system: &PathSystem) -> Self {
@@ -207,24 +196,8 @@ pub(super) struct Lights<'a> {
 }
 
 impl<'a> Lights<'a> {
-    /// Builds the sampler for a surface. `normal` is the surface's normal at the point that the
-    /// central ray hits.
-    pub(super) fn new(system: &'a PathSystem, normal: DVec3, strategy: LightStrategy) -> Self {
-        let sky = match &system.light {
-            Light::Environment { environment } => {
-                SkyDensity::new(environment, normal).map(Arc::new)
-            }
-            _ => None,
-        };
-        Self::under(system, sky, strategy)
-    }
-
-    /// Builds the sampler for a changed system in the same environment.
-    pub(super) fn of<'b>(&'b self, system: &'b PathSystem, strategy: LightStrategy) -> Lights<'b> {
-        Lights::under(system, self.sky.clone(), strategy)
-    }
-
-    fn under(
+    /// Builds the sampler for a system in an environment with the density `sky`.
+    pub(super) fn new(
         system: &'a PathSystem,
         sky: Option<Arc<SkyDensity<'a>>>,
         strategy: LightStrategy,
@@ -236,6 +209,11 @@ impl<'a> Lights<'a> {
             by_lobe: strategy.by_lobe,
             side: if strategy.quarters { 2 } else { 1 },
         }
+    }
+
+    /// Builds the sampler for a changed system in the same environment.
+    pub(super) fn of<'b>(&'b self, system: &'b PathSystem, strategy: LightStrategy) -> Lights<'b> {
+        Lights::new(system, self.sky.clone(), strategy)
     }
 
     /// Checks whether the density of sampled parts depends on the point where a ray leaves the
@@ -340,6 +318,14 @@ impl<'a> Lights<'a> {
             LightPart::Point([a, b]) => 1.0 / (z * z * secant([(x - a) / z, (y - b) / z]).powi(3)),
             LightPart::Sky { .. } | LightPart::Whole => 1.0,
         }
+    }
+}
+
+/// Returns the density of the directions of a system's environment, for a surface with this normal.
+pub(super) fn sky_density(system: &PathSystem, normal: DVec3) -> Option<Arc<SkyDensity<'_>>> {
+    match &system.light {
+        Light::Environment { environment } => SkyDensity::new(environment, normal).map(Arc::new),
+        _ => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Predicts the slices of scattered light by sums over scrambled nets of rays.
 
-use super::draw::{LightStrategy, Lights, PlaneRaySampler};
+use super::draw::{LightStrategy, Lights, PlaneRaySampler, sky_density};
 use super::exact::Leaving;
 use super::incoming::LightPart;
 use super::linear::Linear;
@@ -112,8 +112,10 @@ fn cost(system: &PathSystem) -> f64 {
 fn best(system: &PathSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
     let mut least = cost(best);
-    for choice in 0..best.neighbours().len() {
-        let next = best.neighbours()[choice].in_effect(system);
+    for change in LightStrategy::CHOICES {
+        let mut next = best;
+        change(&mut next);
+        let next = next.in_effect(system);
         if next == best {
             continue;
         }
@@ -148,7 +150,7 @@ impl<'a> ScatteredField<'a> {
             window,
             path: PreparedPath::new(system),
             rays: PlaneRaySampler::new(system, window, chain, strategy),
-            lights: Lights::new(system, normal, strategy),
+            lights: Lights::new(system, sky_density(system, normal), strategy),
         }
     }
 
@@ -209,10 +211,6 @@ fn past_obstacles(plane: &Plane, path: &PreparedPath<'_>, leaving: &Leaving) -> 
 }
 
 impl Integrand for ScatteredField<'_> {
-    fn fields(&self) -> usize {
-        1
-    }
-
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         let Some((z, factor, leaving)) = self.draw(at) else {
             return;

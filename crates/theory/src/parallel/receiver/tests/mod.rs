@@ -3,10 +3,27 @@
 mod points;
 mod spectra;
 
-use super::Receiver;
+use super::{Receiver, SlopeProjection};
 use crate::parallel::chain::{MaskLayer, ParallelEmitter};
 use crate::testing::{aperture, disc, opaque, square};
 use etendue_field::{Grating, HalfPlane, Light, Mask, Rectangle, Shape};
+
+impl Receiver<'_> {
+    /// Returns the irradiance at a point of the receiver, W m⁻².
+    fn irradiance(&self, x: f64, y: f64) -> f64 {
+        if self.light.shape.is_some() {
+            return self.cell([x, y], [0.0; 2]);
+        }
+        let [u, v] = [x, y].map(|c| c / self.distance);
+        let bundle = SlopeProjection::From(self.distance);
+        let through = self.barriers.iter().map(|barrier| {
+            let scale = bundle.scale(barrier.distance);
+            barrier.transmittance(scale * u, scale * v)
+        });
+        let lobe = self.density(&bundle, &[]).value(u, v);
+        through.product::<f64>() * self.light.brightness * lobe / self.distance.powi(2)
+    }
+}
 
 fn area(shape: Shape, exponent: f64) -> Light {
     Light::Area {

@@ -458,7 +458,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let path = PreparedPath::new(&system);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
-            let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());
+            let sky = draw::sky_density(&system, leaving.normal);
+            let lights = draw::Lights::new(&system, sky, draw::LightStrategy::default());
             let mut net = crate::nets::NetPoints::new(1, 6);
             let count = 1 << 18;
             let points = (0..count).filter_map(|_| {
