@@ -1,9 +1,9 @@
 //! Converts the scene of Fig. 6 from 3D to flatland.
 
+use crate::flatland::{DiffuseStep, Flatland};
 use etendue_field::{Light, Shape, VirtualPlane};
 use etendue_scene::{BlockersFile, Scene};
 use etendue_store::Failure;
-use etendue_theory::shading::{DiffuseStep, Flatland};
 use ndarray::Array2;
 
 /// A light, a row of blockers without jitter and a receiver.

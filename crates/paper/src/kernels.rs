@@ -1,13 +1,17 @@
 //! Curves of kernels in the paper: cosines and Fresnel factors, and their transforms.
 
+use crate::energy::energy_below;
 use crate::rows::letter_panels;
 use crate::subject::FigureData;
+use etendue_field::Fresnel;
 use etendue_figures::{
     Axis, AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow,
     Scale, stacked,
 };
 use etendue_store::Failure;
-use etendue_theory::shading::{FresnelFactor, cosine_hat, energy_below, g_hat, g_hat_3d};
+use etendue_theory::shading::{
+    cosine_hat, fresnel_cosine_hat, fresnel_reflectance, g_hat, g_hat_3d,
+};
 use etendue_transform::gauss_legendre;
 use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
@@ -124,18 +128,18 @@ const MAX_FREQUENCY: f64 = 6.0;
 /// The cosine, or the cosine times a Fresnel factor.
 struct KernelFactor {
     name: &'static str,
-    fresnel: Option<FresnelFactor>,
+    fresnel: Option<Fresnel>,
 }
 
 impl KernelFactor {
     fn value(&self, theta: f64) -> f64 {
-        let factor = self.fresnel.map_or(1.0, |f| f.reflectance(theta));
+        let factor = self.fresnel.map_or(1.0, |f| fresnel_reflectance(f, theta));
         factor * libm::cos(theta)
     }
 
     fn transform(&self, omega: f64) -> f64 {
         self.fresnel
-            .map_or_else(|| cosine_hat(omega), |f| f.cosine_hat(omega))
+            .map_or_else(|| cosine_hat(omega), |f| fresnel_cosine_hat(f, omega))
     }
 
     /// Returns the frequencies, in cycles per radian, below which the factor has [`SHARES`] of its
@@ -153,12 +157,9 @@ impl KernelFactor {
 /// table, their rows have the panel `energy`, the share as x and the frequency Ω as the value.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| KernelFactor { name, fresnel };
-    let dielectric = |index| Some(FresnelFactor::Dielectric { index });
+    let dielectric = |index| Some(Fresnel::Dielectric { index });
     // Aluminium at 650 nm, as in the figures of microfacet papers.
-    let metal = FresnelFactor::Conductor {
-        index: 1.488,
-        extinction: 7.821,
-    };
+    let metal = Fresnel::Conductor { n: 1.488, k: 7.821 };
     let materials = [
         material("cos_{+}", None),
         material("× glass", dielectric(1.5)),

@@ -4,14 +4,14 @@
 use super::light::{PrimalSurface, frequencies, light, light_hat};
 use super::operators::OperatorComparison;
 use super::planar::{
-    Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm, TextureWave,
+    Factor, Lattice, PlanarReflection, ReflectionStep, Schlick, SeparableTerm, TextureWave,
     semi_convolution, texture,
 };
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::{AngleTable, Complex};
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat, cosine_squared_hat};
+use etendue_theory::shading::{PlanarLobe, cosine_hat, cosine_squared_hat};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const THETA0: f64 = 0.5;
@@ -20,9 +20,7 @@ pub(super) const K: f64 = 0.5;
 
 const GLOSS: PlanarLobe = PlanarLobe::Gaussian { deviation: 0.12 };
 const PHONG: PlanarLobe = PlanarLobe::Phong { exponent: 30.0 };
-const SCHLICK: FresnelFactor = FresnelFactor::Schlick {
-    normal_reflectance: 0.04,
-};
+const SCHLICK: Schlick = Schlick(0.04);
 
 /// Returns the theory's operators for reflection by a BRDF that is a sum of separable terms.
 pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
@@ -155,7 +153,7 @@ fn separable() -> Vec<OperatorComparison> {
                 before: &schlick,
                 ..surface(Some(&gaussian))
             },
-            glossy(Factor::Fresnel(SCHLICK)),
+            glossy(Factor::Schlick(SCHLICK)),
             "f left out",
             glossy(Factor::Cosine),
         ),
@@ -316,7 +314,7 @@ fn sum() -> OperatorComparison {
         .collect();
     let mut terms = vec![
         term(Factor::Cosine, Some(GLOSS)),
-        term(Factor::Fresnel(SCHLICK), Some(PHONG)),
+        term(Factor::Schlick(SCHLICK), Some(PHONG)),
         term(Factor::Other(&lopsided_hat), None),
     ];
     let right = chain(&reflection(terms.clone()));

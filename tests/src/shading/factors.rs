@@ -3,13 +3,15 @@
 
 use super::operators::OperatorComparison;
 use super::planar::environment::{Glow, mirrored_differential_irradiance};
-use super::planar::{Lattice, angular_product};
+use super::planar::{Lattice, Schlick, angular_product};
 use super::primal::{about, between, transform, wave};
 use crate::rows::Line;
 use crate::table1::apart;
-use etendue_field::Complex;
+use etendue_field::{Complex, Fresnel};
 use etendue_theory::shading::environment::irradiance;
-use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat, cosine_squared_hat, g_hat};
+use etendue_theory::shading::{
+    PlanarLobe, cosine_hat, cosine_squared_hat, fresnel_cosine_hat, fresnel_reflectance, g_hat,
+};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Returns the 24 frequencies at which transforms are compared, in cycles per radian.
@@ -106,16 +108,11 @@ fn cosine_series(n: i32) -> f64 {
 }
 
 fn fresnel() -> Vec<OperatorComparison> {
-    let glass = FresnelFactor::Dielectric { index: 1.5 };
-    let metal = FresnelFactor::Conductor {
-        index: 0.96,
-        extinction: 6.69,
-    };
-    let schlick = FresnelFactor::Schlick {
-        normal_reflectance: 0.04,
-    };
+    let glass = Fresnel::Dielectric { index: 1.5 };
+    let metal = Fresnel::Conductor { n: 0.96, k: 6.69 };
+    let schlick = Schlick(0.04);
     let row = |operator,
-               fresnel: FresnelFactor,
+               hat: &dyn Fn(f64) -> f64,
                share: &dyn Fn(f64) -> f64,
                name,
                wrong: &dyn Fn(f64) -> f64| {
@@ -124,7 +121,7 @@ fn fresnel() -> Vec<OperatorComparison> {
             operator,
             line: Some(Line::Separable),
             compared: "transform of F cos⁺".to_owned(),
-            off: apart(&curve(|omega| fresnel.cosine_hat(omega)), &primal),
+            off: apart(&curve(hat), &primal),
             fault: (name, apart(&curve(wrong), &primal)),
         }
     };
@@ -154,29 +151,24 @@ fn fresnel() -> Vec<OperatorComparison> {
     vec![
         row(
             "Fresnel · cosine, n = 1.5",
-            glass,
+            &|w| fresnel_cosine_hat(glass, w),
             &snell,
             "Schlick's formula instead",
             &|w| schlick.cosine_hat(w),
         ),
         row(
             "Fresnel · cosine, aluminium",
-            metal,
+            &|w| fresnel_cosine_hat(metal, w),
             &conductor,
             "constant F",
-            &|w| metal.reflectance(0.0) * cosine_hat(w),
+            &|w| fresnel_reflectance(metal, 0.0) * cosine_hat(w),
         ),
         row(
             "Fresnel · cosine, Schlick F₀ = 0.04",
-            schlick,
+            &|w| schlick.cosine_hat(w),
             &approximation,
             "F₀ 5 % off",
-            &|w| {
-                let off = FresnelFactor::Schlick {
-                    normal_reflectance: 0.042,
-                };
-                off.cosine_hat(w)
-            },
+            &|w| Schlick(0.042).cosine_hat(w),
         ),
     ]
 }

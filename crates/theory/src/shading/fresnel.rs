@@ -1,8 +1,7 @@
 //! The reflectance of a smooth interface, and the transform of its product with the cosine.
 
-use super::cosine::{cosine_hat, cosine_power_hat};
 use super::panels::even_transform;
-use etendue_field::{Complex, square_root};
+use etendue_field::{Complex, Fresnel, square_root};
 use std::f64::consts::FRAC_PI_2;
 
 /// Number of times that panels are halved towards grazing angles. There the reflectance for an
@@ -12,91 +11,55 @@ const GRAZING: i32 = 12;
 /// as a square root.
 const CRITICAL: i32 = 40;
 
-/// The reflectance of an interface for unpolarised light, as a function of the angle of incidence.
-/// It is the factor f(θ) of a separable BRDF.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FresnelFactor {
-    /// A transparent medium. An index below 1 describes light that arrives inside a denser medium.
-    /// All of this light is reflected if the angle of incidence exceeds asin(index).
-    Dielectric {
-        /// Refractive index of the medium beyond the interface, divided by the index of the medium
-        /// before the interface.
-        index: f64,
-    },
-    /// A metal, with the complex index n + ik.
-    Conductor {
-        /// Real part n of the index, relative to the index of the medium before the interface.
-        index: f64,
-        /// Imaginary part k of the index, relative to the same index.
-        extinction: f64,
-    },
-    /// Schlick's approximation (Schlick 1994, Eq. 24), which is F₀ + (1 − F₀)(1 − cos θ)⁵.
-    Schlick {
-        /// F₀, the reflectance at normal incidence.
-        normal_reflectance: f64,
-    },
+/// Returns the share of unpolarised radiance that an interface reflects. It is the factor f(θ) of a
+/// separable BRDF. The angle θ is measured from the normal, in radians, with |θ| ≤ π/2. An index
+/// below 1 describes light that arrives inside a denser medium. All of this light is reflected if
+/// the angle of incidence exceeds asin(index).
+#[must_use]
+pub fn fresnel_reflectance(fresnel: Fresnel, theta: f64) -> f64 {
+    let (sine, cosine) = libm::sincos(theta);
+    unpolarised_reflectance(fresnel, cosine, sine * sine)
 }
 
-impl FresnelFactor {
-    /// Returns the share of unpolarised radiance that is reflected. The angle θ is measured from
-    /// the normal, in radians, with |θ| ≤ π/2.
-    #[must_use]
-    pub fn reflectance(&self, theta: f64) -> f64 {
-        let (sine, cosine) = libm::sincos(theta);
-        let index = match *self {
-            Self::Dielectric { index } => Complex::from(index),
-            Self::Conductor { index, extinction } => Complex::new(index, extinction),
-            Self::Schlick { normal_reflectance } => {
-                return normal_reflectance + (1.0 - normal_reflectance) * (1.0 - cosine).powi(5);
-            }
-        };
-        unpolarised_reflectance(index, cosine, sine * sine)
-    }
-
-    /// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian. It is the combined
-    /// kernel of Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005
-    /// plot it in Fig. 12-b, but give no formula.
-    ///
-    /// The transform is computed by quadrature to 10⁻¹². For Schlick's approximation it has the
-    /// closed form F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁, with the transforms Cₙ of cosⁿ.
-    #[must_use]
-    pub fn cosine_hat(&self, omega: f64) -> f64 {
-        if let Self::Schlick { normal_reflectance } = *self {
-            let binomial = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0].into_iter();
-            let powers = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|n| cosine_power_hat(n, omega));
-            let rest: f64 = binomial.zip(powers).map(|(b, c)| b * c).sum();
-            return normal_reflectance * cosine_hat(omega) + (1.0 - normal_reflectance) * rest;
-        }
-        even_transform(&self.ends(), omega, |theta| {
-            self.reflectance(theta) * libm::cos(theta)
-        })
-    }
-
-    /// Returns the ends of panels that become shorter towards grazing angles, and towards the
-    /// critical angle, where the reflectance behaves as a square root.
-    fn ends(&self) -> Vec<f64> {
-        let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
-        let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();
-        ends.extend([0.0, FRAC_PI_2]);
-        if let Self::Dielectric { index } = *self
-            && index < 1.0
-        {
-            let critical = libm::asin(index);
-            ends.push(critical);
-            ends.extend(
-                halved(CRITICAL)
-                    .flat_map(|h| [critical * (1.0 - h), critical + h * (FRAC_PI_2 - critical)]),
-            );
-        }
-        ends.sort_by(f64::total_cmp);
-        ends
-    }
+/// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian. It is the combined kernel of
+/// Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005 plot it in
+/// Fig. 12-b, but give no formula. It is computed by quadrature to 10⁻¹².
+#[must_use]
+pub fn fresnel_cosine_hat(fresnel: Fresnel, omega: f64) -> f64 {
+    even_transform(&ends(fresnel), omega, |theta| {
+        fresnel_reflectance(fresnel, theta) * libm::cos(theta)
+    })
 }
 
-/// Returns the share of unpolarised radiance that an interface of complex index reflects, at an
-/// angle with the given cosine and squared sine. The share is the mean over both polarisations
-/// (Born and Wolf 1999, section 1.5).
-pub(crate) fn unpolarised_reflectance(index: Complex, cosine: f64, squared_sine: f64) -> f64 {
+/// Returns the ends of panels that become shorter towards grazing angles, and towards the critical
+/// angle, where the reflectance behaves as a square root.
+fn ends(fresnel: Fresnel) -> Vec<f64> {
+    let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
+    let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();
+    ends.extend([0.0, FRAC_PI_2]);
+    if let Fresnel::Dielectric { index } = fresnel
+        && index < 1.0
+    {
+        let critical = libm::asin(index);
+        ends.push(critical);
+        ends.extend(
+            halved(CRITICAL)
+                .flat_map(|h| [critical * (1.0 - h), critical + h * (FRAC_PI_2 - critical)]),
+        );
+    }
+    ends.sort_by(f64::total_cmp);
+    ends
+}
+
+/// Returns the share of unpolarised radiance that an interface reflects, at an angle with the given
+/// cosine and squared sine. The share is the mean over both polarisations (Born and Wolf 1999,
+/// section 1.5).
+pub(crate) fn unpolarised_reflectance(fresnel: Fresnel, cosine: f64, squared_sine: f64) -> f64 {
+    let index = match fresnel {
+        Fresnel::White => return 1.0,
+        Fresnel::Dielectric { index } => Complex::from(index),
+        Fresnel::Conductor { n, k } => Complex::new(n, k),
+    };
     let square = index * index;
     // The refractive index times the cosine of the refracted angle.
     let beyond = square_root(square - squared_sine);
@@ -111,38 +74,45 @@ mod tests {
 
     #[test]
     fn brewster_and_total_reflection() {
-        let glass = FresnelFactor::Dielectric { index: 1.5 };
+        let glass = Fresnel::Dielectric { index: 1.5 };
         let at = libm::atan(1.5_f64);
         // At Brewster's angle one polarisation is not reflected, and the mean reflectance is half
         // of (n² − 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
-        assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
-        let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
-        assert!((inside.reflectance(0.8) - 1.0).abs() < 1e-15); // all is reflected beyond 0.7297
-        assert!((inside.reflectance(0.0) - 0.04).abs() < 1e-15); // rounding
+        assert!((fresnel_reflectance(glass, at) - expected).abs() < 1e-15); // rounding
+        let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
+        assert!((fresnel_reflectance(inside, 0.8) - 1.0).abs() < 1e-15); // all is reflected beyond 0.7297
+        assert!((fresnel_reflectance(inside, 0.0) - 0.04).abs() < 1e-15); // rounding
     }
 
     #[test]
     fn from_inside_the_transform_at_zero_is_the_integral() {
-        let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
+        let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
         let critical = libm::asin(1.0_f64 / 1.5);
         // A quadratic substitution on both sides of the critical angle removes the square root.
         let below = crate::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
             let theta = critical - t * t;
-            2.0 * t * inside.reflectance(theta) * libm::cos(theta)
+            2.0 * t * fresnel_reflectance(inside, theta) * libm::cos(theta)
         });
         let expected = 2.0 * (below + 1.0 - 1.0 / 1.5);
-        assert!((inside.cosine_hat(0.0) - expected).abs() < 1e-12); // the stated error
+        assert!((fresnel_cosine_hat(inside, 0.0) - expected).abs() < 1e-12); // the stated error
     }
 
     #[test]
     fn metals_of_any_index_have_panels_enough() {
         for (index, extinction) in [(0.05, 4.0), (3.0, 3.0), (500.0, 1000.0)] {
-            let metal = FresnelFactor::Conductor { index, extinction };
+            let metal = Fresnel::Conductor {
+                n: index,
+                k: extinction,
+            };
             let halved = (1..=40).map(|n| FRAC_PI_2 * (1.0 - 0.5_f64.powi(n)));
             let ends: Vec<f64> = [0.0].into_iter().chain(halved).chain([FRAC_PI_2]).collect();
-            let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * libm::cos(t));
-            assert!((metal.cosine_hat(0.7) - finer).abs() < 1e-12, "{index}"); // the stated error
+            let finer =
+                even_transform(&ends, 0.7, |t| fresnel_reflectance(metal, t) * libm::cos(t));
+            assert!(
+                (fresnel_cosine_hat(metal, 0.7) - finer).abs() < 1e-12,
+                "{index}"
+            ); // the stated error
         }
     }
 }

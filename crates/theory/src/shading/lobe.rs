@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Beckmann and GGX are models of narrow lobes. They are ρ' ∝ D(δ/2), where D is the distribution
 /// of microfacet normals, because the tilt of a microfacet is half of δ. The factor 1/(4 cos θ_i'
 /// cos θ_o') and the shadowing of a microfacet BRDF are omitted, because they are not functions of
-/// δ alone. The Fresnel factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same
+/// δ alone. The Fresnel factor ([`fresnel_reflectance`](super::fresnel_reflectance)) is omitted for the same
 /// reason. The distributions D are slices of the 3D distributions through the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarLobe {

@@ -9,12 +9,11 @@
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|
 //! | cosine | [`cosine_hat`] | Eq. 12, 13 |
-//! | Fresnel factor | [`FresnelFactor`] | section 4.3 |
+//! | Fresnel factor | [`fresnel_reflectance`], [`fresnel_cosine_hat`] | section 4.3 |
 //! | BRDF lobe about the mirror direction | [`PlanarLobe`] | Eq. 15, 16 |
 //! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
 //! | number of samples that a glossy reflection requires | [`Criterion`] | Eq. 20, 21 |
 //! | diffuse receivers, in slopes | [`g_hat`], [`g_hat_3d`] | Eq. 7 and section 5.1 |
-//! | all six steps of diffuse shading, in slopes | [`Flatland`] | section 3, Fig. 6 |
 //!
 //! ```
 //! use etendue_theory::shading::{PlanarLobe, cosine_hat};
@@ -28,20 +27,15 @@
 mod bandwidth;
 mod cosine;
 mod diffuse;
-mod energy;
 pub mod environment;
-mod flatland;
 mod fresnel;
-mod gamma;
 mod lobe;
 mod panels;
 
 pub use bandwidth::{COSINE_CUTOFF, Criterion};
 pub use cosine::{cosine_hat, cosine_power_hat, cosine_squared_hat};
 pub use diffuse::{g_hat, g_hat_3d};
-pub use energy::energy_below;
-pub use flatland::{DiffuseStep, Flatland};
-pub use fresnel::FresnelFactor;
 pub(crate) use fresnel::unpolarised_reflectance;
+pub use fresnel::{fresnel_cosine_hat, fresnel_reflectance};
 pub use lobe::PlanarLobe;
 pub use panels::even_transform;

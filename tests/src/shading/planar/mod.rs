@@ -17,7 +17,9 @@ mod product;
 #[cfg(test)]
 mod reference;
 mod reflection;
+mod schlick;
 mod table;
 
 pub(super) use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
 pub(super) use reflection::{Factor, PlanarReflection, ReflectionStep, SeparableTerm};
+pub(super) use schlick::Schlick;

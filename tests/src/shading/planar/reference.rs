@@ -7,7 +7,7 @@
 )]
 
 use super::environment::{Glow, mirrored_differential_irradiance};
-use super::{Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm};
+use super::{Factor, Lattice, PlanarReflection, ReflectionStep, Schlick, SeparableTerm};
 use etendue_field::Complex;
 use etendue_theory::shading::environment::irradiance;
 use etendue_theory::shading::{PlanarLobe, cosine_squared_hat};
@@ -304,4 +304,26 @@ fn environment_maps() {
     let diffuse = diffuse.filter(|sample| number(&sample["oth"]) == 0.0);
     let pairs = diffuse.map(|sample| (irradiance(k, number(&sample["ox"]), &hat), complex(sample)));
     assert_near("irradiance", deviation(4, pairs));
+}
+
+/// Returns the largest deviation of a real function of Ω from the samples of a block.
+fn curve(block: &Value, count: usize, f: impl Fn(f64) -> f64) -> f64 {
+    let pairs = samples(&block["samples"]).iter().map(|sample| {
+        let got = f(number(&sample["omega"]));
+        (got.into(), number(&sample["value"]).into())
+    });
+    deviation(count, pairs)
+}
+
+#[test]
+fn schlick_and_cosine() {
+    let block = block("fresnel_cos_hat");
+    let schlick = &block["schlick"];
+    let hat = |f0| move |omega| Schlick(f0).cosine_hat(omega);
+    let f0 = number(&schlick["F0"]);
+    assert_near("Schlick · cos⁺", curve(schlick, 15, hat(f0)));
+    assert_seen(
+        "F₀ with an error of 5 %",
+        curve(schlick, 15, hat(1.05 * f0)),
+    );
 }

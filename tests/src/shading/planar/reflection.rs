@@ -1,10 +1,11 @@
 //! The seven steps of a reflection.
 
 use super::product::{Lattice, TextureWave, angular_product, texture};
+use super::schlick::Schlick;
 use super::table::table_hat;
 use etendue_field::{AngleTable, Complex};
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::{FresnelFactor, PlanarLobe, cosine_hat};
+use etendue_theory::shading::{PlanarLobe, cosine_hat};
 use std::fmt;
 
 /// The spectrum of a light field, L(Ωx, Ωθ).
@@ -51,8 +52,8 @@ pub(crate) enum Factor<'a> {
     One,
     /// The clamped cosine cos⁺.
     Cosine,
-    /// Fresnel reflectance times cos⁺.
-    Fresnel(FresnelFactor),
+    /// Schlick's reflectance times cos⁺.
+    Schlick(Schlick),
     /// The values of a table over |θ|.
     Table(&'a AngleTable),
     /// The values of a table times cos⁺.
@@ -67,7 +68,7 @@ impl fmt::Debug for Factor<'_> {
         match self {
             Self::One => write!(f, "One"),
             Self::Cosine => write!(f, "Cosine"),
-            Self::Fresnel(fresnel) => f.debug_tuple("Fresnel").field(fresnel).finish(),
+            Self::Schlick(schlick) => f.debug_tuple("Schlick").field(schlick).finish(),
             Self::Table(table) => f.debug_tuple("Table").field(table).finish(),
             Self::TableCosine(table) => f.debug_tuple("TableCosine").field(table).finish(),
             Self::Other(_) => write!(f, "Other"),
@@ -81,7 +82,7 @@ impl Factor<'_> {
         match self {
             Self::One => before(omega),
             Self::Cosine => product(lattice, omega, &|q| cosine_hat(q).into(), before),
-            Self::Fresnel(f) => product(lattice, omega, &|q| f.cosine_hat(q).into(), before),
+            Self::Schlick(f) => product(lattice, omega, &|q| f.cosine_hat(q).into(), before),
             Self::Table(table) => {
                 let hat = |q| table_hat(table, |_| 1.0, q).into();
                 product(lattice, omega, &hat, before)

@@ -1,7 +1,7 @@
 //! The BRDFs of `etendue_field::Brdf`, implemented independently for theory.
 
 use crate::shading::unpolarised_reflectance;
-use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture};
+use etendue_field::{AngleTable, Brdf, Fresnel, Lobe, Mixture};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -143,12 +143,7 @@ fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
 /// Returns the fraction of unpolarised light that is reflected at the angle of incidence with the
 /// given cosine.
 pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
-    let index = match fresnel {
-        Fresnel::White => return 1.0,
-        Fresnel::Dielectric { index } => Complex::from(index),
-        Fresnel::Conductor { n, k } => Complex::new(n, k),
-    };
-    unpolarised_reflectance(index, cos, 1.0 - cos * cos)
+    unpolarised_reflectance(fresnel, cos, 1.0 - cos * cos)
 }
 
 #[cfg(test)]

@@ -8,20 +8,20 @@ use std::f64::consts::TAU;
 /// A light of radiance 1, opaque strips and a white diffuse receiver on parallel lines in 2D.
 /// Lengths are in metres.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Flatland {
+pub(crate) struct Flatland {
     /// Half the width of the light, which is centred at 0.
-    pub half_light: f64,
+    pub(crate) half_light: f64,
     /// Distance from the light to the strips.
-    pub to_strips: f64,
+    pub(crate) to_strips: f64,
     /// The strips, [from, to], in ascending order and without overlap.
-    pub strips: Vec<[f64; 2]>,
+    pub(crate) strips: Vec<[f64; 2]>,
     /// Distance from the light to the receiver, which is beyond the strips.
-    pub to_receiver: f64,
+    pub(crate) to_receiver: f64,
 }
 
 /// Steps of diffuse shading (Durand et al. 2005, Fig. 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DiffuseStep {
+pub(crate) enum DiffuseStep {
     /// Step 1: the light field at the light.
     Emission,
     /// Step 2: the light field after travel, before the strips.
@@ -46,8 +46,7 @@ impl Flatland {
     ///
     /// The integral over positions is in closed form, and the integral over slopes is a midpoint
     /// rule that is accurate to 10⁻⁵ of the value at zero frequency.
-    #[must_use]
-    pub fn spectrum(
+    pub(crate) fn spectrum(
         &self,
         step: DiffuseStep,
         [along_x, along_v]: [&Profile; 2],
@@ -192,9 +191,8 @@ fn product(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{chain_of, lambertian, rectangles, window};
-    use crate::{at, g_hat};
-    use etendue_field::Rectangle;
+    use etendue_field::{Light, Mask, Rectangle, Shape, Window};
+    use etendue_theory::{Chain, Operator, Source, at, g_hat};
 
     const STRIPS: [[f64; 2]; 3] = [[-0.31, -0.19], [-0.06, 0.06], [0.19, 0.27]];
     /// A length greater than the width of any window.
@@ -219,21 +217,47 @@ mod tests {
             center: [0.5 * (from + to), 0.0],
             size: [to - from, ENDLESS],
         };
-        let mask = || rectangles(&STRIPS.map(endless));
+        let mask = || Operator::Visibility {
+            name: "strips".into(),
+            mask: Mask::Opaque {
+                shapes: STRIPS
+                    .map(|strip| Shape::Rectangle(endless(strip)))
+                    .to_vec(),
+                half_planes: vec![],
+            },
+        };
+        let travel = |distance: f64| Operator::Travel {
+            from: "here".into(),
+            to: "there".into(),
+            distance,
+        };
+        let light = Light::Area {
+            shape: Shape::Rectangle(endless([-0.1, 0.1])),
+            radiance: 1.0,
+            exponent: 0.0,
+        };
+        let source = Source {
+            name: "light".into(),
+            light,
+        };
         let [x, u] = [Profile::Hann(0.5), Profile::Hann(0.4)];
         let (rho, nu) = (axis(4, 2.3), axis(4, 3.1));
         let cases = [
-            (DiffuseStep::Travel, vec![(1.0, None)]),
-            (DiffuseStep::Visibility, vec![(1.0, Some(mask()))]),
+            (DiffuseStep::Travel, vec![travel(1.0)]),
+            (DiffuseStep::Visibility, vec![travel(1.0), mask()]),
             (
                 DiffuseStep::SecondTravel,
-                vec![(1.0, Some(mask())), (0.8, None)],
+                vec![travel(1.0), mask(), travel(0.8)],
             ),
         ];
-        for (step, path) in cases {
+        let window = Window { x, y: x, u, v: u };
+        for (step, operators) in cases {
             let found = flatland().spectrum(step, [&x, &u], [&rho, &nu]);
-            let solid = chain_of(lambertian(endless([-0.1, 0.1])), path);
-            let solid = |[rho, nu]: [f64; 2]| at(&solid, &window(x, u), [rho, 0.0, nu, 0.0]);
+            let solid = Chain {
+                source: source.clone(),
+                operators,
+            };
+            let solid = |[rho, nu]: [f64; 2]| at(&solid, &window, [rho, 0.0, nu, 0.0]);
             let scale = found[[4, 4]] / solid([0.0; 2]);
             for ((i, j), value) in found.indexed_iter() {
                 let expected = scale * solid([rho.value(i), nu.value(j)]);

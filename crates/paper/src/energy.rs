@@ -9,8 +9,7 @@ const STEPS: usize = 3000;
 /// `hat` is the transform of an even function, and `energy` is the integral of this function's
 /// square, which is ∫|f̂|² over all frequencies (Parseval). The energy below a frequency is a sum
 /// over midpoints of steps of `largest`/3000.
-#[must_use]
-pub fn energy_below<const N: usize>(
+pub(crate) fn energy_below<const N: usize>(
     hat: impl Fn(f64) -> f64,
     energy: f64,
     shares: [f64; N],
@@ -37,7 +36,7 @@ pub fn energy_below<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shading::{cosine_hat, g_hat};
+    use etendue_theory::shading::{cosine_hat, g_hat};
     use std::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
