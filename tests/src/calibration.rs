@@ -230,40 +230,32 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         "".into(),
     ];
     rows.push(Row::new(cells, vec![check]));
-    ReportSection {
-        title: format!(
+    ReportSection::new(
+        format!(
             "Calibration of {} over {seeds} seeds at {:.0e} photons, {}",
             scene.name,
             scene.run.photons as f64,
             words(scene.run.sampling)
         ),
-        text: format!(
+        format!(
             "A scene is measured with many seeds, to test whether p-values and stated errors are \
-            correct: the p of the slices, and the p of power, which is that of the radial \
-            spectrum. *KS p of uniformity* is the p-value of a Kolmogorov–Smirnov test \
-            of whether p is uniform. *p < 10 %* is the share of seeds with such a p. A pull is \
-            the deviation of a parameter from the scene, in units of its stated error. Required: \
-            p is uniform by the Kolmogorov–Smirnov test at 1 % over all planes together. The \
-            share of p below 10 % is between {:.1} and {:.1} % over all planes: these are two \
-            binomial deviations of a single plane, because planes share photons. It is between \
-            {:.1} and {:.1} % for each plane, which is three deviations. The mean χ²/dof is 1 \
-            within four standard errors and 0.003, because a few residuals are real numbers. The \
-            mean squared pull is 63/61 within four standard errors.",
+             correct: the p of the slices, and the p of power, which is that of the radial \
+             spectrum. *KS p of uniformity* is the p-value of a Kolmogorov–Smirnov test of whether \
+             p is uniform. *p < 10 %* is the share of seeds with such a p. A pull is the deviation \
+             of a parameter from the scene, in units of its stated error. Required: p is uniform \
+             by the Kolmogorov–Smirnov test at 1 % over all planes together. The share of p below \
+             10 % is between {:.1} and {:.1} % over all planes: these are two binomial deviations \
+             of a single plane, because planes share photons. It is between {:.1} and {:.1} % for \
+             each plane, which is three deviations. The mean χ²/dof is 1 within four standard \
+             errors and 0.003, because a few residuals are real numbers. The mean squared pull is \
+             63/61 within four standard errors.",
             100.0 * (0.1 - allowed),
             100.0 * (0.1 + allowed),
             100.0 * (0.1 - allowed_each),
             100.0 * (0.1 + allowed_each)
         ),
-        header: vec![
-            "plane",
-            "KS p of uniformity",
-            "p < 10 %",
-            "KS p of power",
-            "p of power < 10 %",
-            "mean χ²/dof",
-            "mean squared pull",
-        ],
+        "plane | KS p of uniformity | p < 10 % | KS p of power | p of power < 10 % | mean χ²/dof | \
+         mean squared pull",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }

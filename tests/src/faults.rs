@@ -52,19 +52,16 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     ));
     rows.push(row(&scene, &losing, "1 % of photons lost", &unchanged));
 
-    ReportSection {
-        title: format!("Planted faults at {:.0e} photons", photons as f64),
-        text: "Each fault is planted in the prediction or in the photons, and every plane is \
-              compared again. The second column has the p-values of the planes in order, and the \
-              third column those of their radial spectra. A dash \
-              stands for a plane that the fault does not change, and the smallest possible p is \
-              0.00005. Required: the run is rejected with every fault, and accepted without a \
-              fault."
-            .to_owned(),
-        header: vec!["fault", "p of each plane", "p of its power", "run is"],
+    ReportSection::new(
+        format!("Planted faults at {:.0e} photons", photons as f64),
+        "Each fault is planted in the prediction or in the photons, and every plane is compared \
+         again. The second column has the p-values of the planes in order, and the third column \
+         those of their radial spectra. A dash stands for a plane that the fault does not change, \
+         and the smallest possible p is 0.00005. Required: the run is rejected with every fault, \
+         and accepted without a fault.",
+        "fault | p of each plane | p of its power | run is",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the section on faults that the main scene cannot reveal, each planted in a scene that
@@ -108,26 +105,18 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
         holes::SCENE,
         holes::rows(&named(holes::SCENE, Some(photons), Some(seed))),
     ));
-    ReportSection {
-        title: format!(
+    ReportSection::new(
+        format!(
             "Faults planted in other scenes at {:.0e} photons",
             photons as f64
         ),
-        text: "Each of these faults is planted in a scene that can reveal it. The third column \
-              has the p-values of the planes in order, and a dash stands for a plane that the \
-              fault does not change. Required: the run is rejected with every fault, and accepted \
-              without a fault."
-            .to_owned(),
-        header: vec![
-            "scene",
-            "fault",
-            "p of each plane",
-            "p of its power",
-            "run is",
-        ],
+        "Each of these faults is planted in a scene that can reveal it. The third column has the \
+         p-values of the planes in order, and a dash stands for a plane that the fault does not \
+         change. Required: the run is rejected with every fault, and accepted without a fault.",
+        "scene | fault | p of each plane | p of its power | run is",
         rows,
-        checks,
-    }
+    )
+    .with_checks(checks)
 }
 
 /// Puts the name of a scene before its rows.

@@ -222,13 +222,7 @@ fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     Row::new(cells, checks)
 }
 
-const HEADER: [&str; 5] = [
-    "plane",
-    "bins",
-    "KS p of uniformity",
-    "p < 10 %",
-    "mean χ²/bin",
-];
+const HEADER: &str = "plane | bins | KS p of uniformity | p < 10 % | mean χ²/bin";
 
 fn calibrated(
     found: &[(String, Vec<FullRadialReport>)],
@@ -237,19 +231,18 @@ fn calibrated(
 ) -> ReportSection {
     let level = 1.0 - 0.99_f64.powf(1.0 / found.len() as f64);
     let rows = found.iter().map(|(name, found)| row(name, found, level));
-    ReportSection {
-        title: format!("p of the full radial spectrum over {seeds} seeds"),
-        text: format!(
+    ReportSection::new(
+        format!("p of the full radial spectrum over {seeds} seeds"),
+        format!(
             "For each seed, {photons} photons are compared with the same prediction. *KS p of \
-            uniformity* is the p-value of a Kolmogorov–Smirnov test of whether p is uniform. \
-            Required: p is uniform by this test at 1 % over all rows together. The share of seeds \
-            with p < 10 % is 10 % within three binomial deviations. The mean χ²/bin is 1 within \
-            four standard errors."
+             uniformity* is the p-value of a Kolmogorov–Smirnov test of whether p is uniform. \
+             Required: p is uniform by this test at 1 % over all rows together. The share of seeds \
+             with p < 10 % is 10 % within three binomial deviations. The mean χ²/bin is 1 within \
+             four standard errors."
         ),
-        header: HEADER.to_vec(),
-        rows: rows.collect(),
-        checks: Vec::new(),
-    }
+        HEADER,
+        rows,
+    )
 }
 
 /// Compares predictions that have a planted fault with photons that have no fault.
@@ -279,17 +272,16 @@ fn faults(photons: u64) -> ReportSection {
         rows.push(found(name, &predicted(&other), true));
     }
     rows.push(found("aliasing left out", &alias_free(&scene), true));
-    ReportSection {
-        title: "Faults planted in predictions of full radial spectra".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Faults planted in predictions of full radial spectra",
+        format!(
             "Each fault is planted in the prediction for {} {}, which is compared with {photons} \
-            photons. Required: p ≥ {LEVEL} without a fault, and p < {LEVEL} with each fault.",
+             photons. Required: p ≥ {LEVEL} without a fault, and p < {LEVEL} with each fault.",
             case.scene, case.plane
         ),
-        header: vec!["fault", "p", "χ²/bin", "verdict"],
+        "fault | p | χ²/bin | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Predicts the continuous spectrum, without the aliasing of a grid. This prediction is a planted
@@ -331,13 +323,7 @@ fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
         field.groups[half..].clone_from_slice(&copies);
         compared(&scene, &field, &prediction)
     });
-    let section = ReportSection {
-        title: String::new(),
-        text: String::new(),
-        header: HEADER.to_vec(),
-        rows: vec![row(case.plane, &found, 0.01)],
-        checks: Vec::new(),
-    };
+    let section = ReportSection::new("", "", HEADER, [row(case.plane, &found, 0.01)]);
     section.planted(
         "The same with half of the groups sharing the photons of the others".to_owned(),
         "The planted fault makes groups of batches depend on each other. Required: the \

@@ -14,18 +14,15 @@ use ndarray::Array3;
 pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let row = |report: &PlaneReport| row(&scene, report);
-    ReportSection {
-        title: format!("Every plane at {:.0e} photons", photons as f64),
-        text: "The measured spectrum of every plane is compared with its prediction. *Relative \
-              error* is the difference of the two relative to the prediction, and *noise limit* \
-              is its value from noise alone. *Noise floor* is the mean variance relative to the \
-              largest power. Required: p is at least the level that α = 1 % gives for all planes \
-              together (after Šidák)."
-            .to_owned(),
-        header: HEADER.to_vec(),
-        rows: reports(&scene).iter().map(row).collect(),
-        checks: Vec::new(),
-    }
+    ReportSection::new(
+        format!("Every plane at {:.0e} photons", photons as f64),
+        "The measured spectrum of every plane is compared with its prediction. *Relative error* is \
+         the difference of the two relative to the prediction, and *noise limit* is its value from \
+         noise alone. *Noise floor* is the mean variance relative to the largest power. Required: \
+         p is at least the level that α = 1 % gives for all planes together (after Šidák).",
+        HEADER,
+        reports(&scene).iter().map(row),
+    )
 }
 
 /// Returns the section on the score tests of every plane at one number of photons.
@@ -52,29 +49,21 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    ReportSection {
-        title: format!("Parameters recovered at {:.0e} photons", photons as f64),
-        text: format!(
+    ReportSection::new(
+        format!("Parameters recovered at {:.0e} photons", photons as f64),
+        format!(
             "Parameters of the scene are estimated from the photons of each plane. *Error* is the \
-            standard error of the measured value, and *off by* is the difference from the scene \
-            in units of this error. *Smallest detectable change* is the change that is detected \
-            at level 1 % nine times in ten. Required: every parameter is within {bound} errors of \
-            the value in the scene (the largest of {} is beyond this by chance in about 1 % of \
-            all runs).",
+             standard error of the measured value, and *off by* is the difference from the scene \
+             in units of this error. *Smallest detectable change* is the change that is detected \
+             at level 1 % nine times in ten. Required: every parameter is within {bound} errors of \
+             the value in the scene (the largest of {} is beyond this by chance in about 1 % of \
+             all runs).",
             rows.len()
         ),
-        header: vec![
-            "plane",
-            "parameter",
-            "scene",
-            "measured",
-            "error",
-            "off by (errors)",
-            "smallest detectable change",
-        ],
+        "plane | parameter | scene | measured | error | off by (errors) | smallest detectable \
+         change",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the noise of photons from nets or lattices divided by the noise of photons from random
@@ -122,31 +111,22 @@ pub(crate) fn gain(sampling: Sampling, photons: u64, batches: u32) -> ReportSect
         );
         Row::new(row, vec![check])
     };
-    ReportSection {
-        title: format!("Noise of {kind}, {photons} photons in {batches} batches"),
-        text: format!(
+    ReportSection::new(
+        format!("Noise of {kind}, {photons} photons in {batches} batches"),
+        format!(
             "The variance σ² of the slices with photons from {kind} is compared with the variance \
-            with photons from random numbers. All numbers except the last are ratios of the two \
-            in dB, and a negative ratio means that {kind} have less noise. *Total* compares the \
-            sums over all frequencies of a plane. The next four columns describe the ratios at \
-            the single frequencies, and the last column is the share of frequencies with a ratio \
-            above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so the \
-            largest ratio says little with few batches. Required: the total with {kind} is smaller \
-            by more than 0.1 dB.",
+             with photons from random numbers. All numbers except the last are ratios of the two \
+             in dB, and a negative ratio means that {kind} have less noise. *Total* compares the \
+             sums over all frequencies of a plane. The next four columns describe the ratios at \
+             the single frequencies, and the last column is the share of frequencies with a ratio \
+             above 0.5 dB. The ratio at one frequency has a standard error of {:.2} dB, so the \
+             largest ratio says little with few batches. Required: the total with {kind} is \
+             smaller by more than 0.1 dB.",
             10.0 / 10f64.ln() * (2.0 / f64::from(batches - 1)).sqrt()
         ),
-        header: vec![
-            "plane",
-            "total",
-            "median",
-            "smallest",
-            "99 % are below",
-            "largest",
-            "share above 0.5 dB",
-        ],
-        rows: found.iter().zip(&random).map(row).collect(),
-        checks: Vec::new(),
-    }
+        "plane | total | median | smallest | 99 % are below | largest | share above 0.5 dB",
+        found.iter().zip(&random).map(row),
+    )
 }
 
 /// Returns the section on the noise at the receiver plane for increasing numbers of photons.
@@ -179,30 +159,19 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
             rows[last - 1].checks.push(check);
         }
     }
-    ReportSection {
-        title: "Noise floor of the receiver plane".to_owned(),
-        text: "Photons at the receiver plane are drawn from random numbers or from nets, in \
-            increasing numbers, and their spectrum is compared with the prediction. Required: p \
-            is at least α = 1 %. The noise floor of random numbers falls by 10 dB per decade of \
-            photons, within 0.1 dB. The noise floor of lattices is at most 0.1 dB above the floor of \
-            random numbers."
-            .to_owned(),
-        header: HEADER.to_vec(),
+    ReportSection::new(
+        "Noise floor of the receiver plane",
+        "Photons at the receiver plane are drawn from random numbers or from nets, in increasing \
+         numbers, and their spectrum is compared with the prediction. Required: p is at least α = \
+         1 %. The noise floor of random numbers falls by 10 dB per decade of photons, within 0.1 \
+         dB. The noise floor of lattices is at most 0.1 dB above the floor of random numbers.",
+        HEADER,
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
-const HEADER: [&str; 8] = [
-    "photons",
-    "plane or kind of numbers",
-    "photons in window",
-    "χ²/dof",
-    "p",
-    "relative error",
-    "noise limit",
-    "noise floor (dB below peak)",
-];
+const HEADER: &str = "photons | plane or kind of numbers | photons in window | χ²/dof | p | relative \
+    error | noise limit | noise floor (dB below peak)";
 
 fn row(scene: &Scene, report: &PlaneReport) -> Row {
     let show = |value: Option<f64>, digits: usize| {

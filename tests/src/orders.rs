@@ -132,39 +132,30 @@ pub(crate) fn orders() -> ReportSection {
             row([name, plane], found.as_ref(), &known, check)
         }));
     }
-    ReportSection {
-        title: "Orders of convergence".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Orders of convergence",
+        format!(
             "The errors of first-order chains are those that `etendue converge \
-            scenes/table1/SCENE.ron` prints: all widths are multiplied by e, and all frequencies \
-            are divided by e. No photons are traced. *Floor* is what the error may be if the chain \
-            is exact: the error of the quadrature, or what noise may leave. *Order* is fitted to \
-            the last three errors above five floors. *Known* is the order known in advance: 1 \
-            where the central ray meets a surface at an angle, and 2 where it meets all surfaces \
-            along their normals; *exact* where the path has only travel and plane mirrors, so \
-            that no step is linearised; *remains* where the chain of the scene is misprinted; \
-            *none* where there is no order, with the reason. \
-            Visibility, textures and weights multiply, and lobes convolve; none of these is \
-            linearised, so they leave the order as it is. In the last rows, the curvature in the \
-            chain is 5 % larger than that of the surface. Required: the order is within {ORDER} \
-            of the known order. Exact chains have errors below {QUADRATURE}. The error of a \
-            misprinted chain at e = 1/16 is at least {REMAINS} of its error at e = 1. Where there \
-            is no order, the command shows none, or this ratio is at most {FALLS}. The planted \
-            fault is rejected: the order is not the known order."
+             scenes/table1/SCENE.ron` prints: all widths are multiplied by e, and all frequencies \
+             are divided by e. No photons are traced. *Floor* is what the error may be if the \
+             chain is exact: the error of the quadrature, or what noise may leave. *Order* is \
+             fitted to the last three errors above five floors. *Known* is the order known in \
+             advance: 1 where the central ray meets a surface at an angle, and 2 where it meets \
+             all surfaces along their normals; *exact* where the path has only travel and plane \
+             mirrors, so that no step is linearised; *remains* where the chain of the scene is \
+             misprinted; *none* where there is no order, with the reason. Visibility, textures and \
+             weights multiply, and lobes convolve; none of these is linearised, so they leave the \
+             order as it is. In the last rows, the curvature in the chain is 5 % larger than that \
+             of the surface. Required: the order is within {ORDER} of the known order. Exact \
+             chains have errors below {QUADRATURE}. The error of a misprinted chain at e = 1/16 is \
+             at least {REMAINS} of its error at e = 1. Where there is no order, the command shows \
+             none, or this ratio is at most {FALLS}. The planted fault is rejected: the order is \
+             not the known order."
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "error, e = 1",
-            "error, e = 1/16",
-            "floor",
-            "order",
-            "known",
-            "verdict",
-        ],
+        "scene | plane | error, e = 1 | error, e = 1/16 | floor | order | known | verdict",
         rows,
-        checks: vec![Check::none("scenes without rows", left_out())],
-    }
+    )
+    .with_checks(vec![Check::none("scenes without rows", left_out())])
 }
 
 fn stored(name: &str, fields: &[(&str, String)]) -> Scene {

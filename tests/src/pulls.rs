@@ -271,31 +271,20 @@ fn grouped(
     } else {
         "This table has no requirements of its own.".into()
     };
-    ReportSection {
-        title: title.to_owned(),
-        text: format!(
+    ReportSection::new(
+        title,
+        format!(
             "A pull is a measured number minus its prediction, in units of the stated error. The \
-            scenes have the seed {}, and each is traced with {} photons. Of a normal \
-            distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and 4. {required}",
+             scenes have the seed {}, and each is traced with {} photons. Of a normal \
+             distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and 4. {required}",
             options.seed, options.photons
         ),
-        header: vec![
-            "group",
-            "scenes",
-            "pulls",
-            "mean",
-            "standard deviation",
-            "beyond 2",
-            "beyond 3",
-            "beyond 4",
-            "verdict",
-        ],
-        rows: groups
+        "group | scenes | pulls | mean | standard deviation | beyond 2 | beyond 3 | beyond 4 | \
+         verdict",
+        groups
             .iter()
-            .map(|(name, pulls)| row(name, pulls, is_judged))
-            .collect(),
-        checks: Vec::new(),
-    }
+            .map(|(name, pulls)| row(name, pulls, is_judged)),
+    )
 }
 
 fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
@@ -359,13 +348,12 @@ fn largest(pulls: &[Pull]) -> ReportSection {
         ];
         Row::new(cells, Vec::new())
     };
-    ReportSection {
-        title: "The largest pulls".into(),
-        text: "This table has no requirements of its own.".into(),
-        header: vec!["scene", "plane", "kind", "parameter", "pull"],
-        rows: sorted.iter().take(LISTED).map(row).collect(),
-        checks: Vec::new(),
-    }
+    ReportSection::new(
+        "The largest pulls",
+        "This table has no requirements of its own.",
+        "scene | plane | kind | parameter | pull",
+        sorted.iter().take(LISTED).map(row),
+    )
 }
 
 /// Returns the section that compares the cost of predictions with the cost of tracing photons.
@@ -394,22 +382,15 @@ fn cost(costs: &[Cost]) -> ReportSection {
     let slow = |cost: &&Cost| cost.predicted > MAX_SECONDS.max(cost.traced);
     let count = costs.iter().filter(slow).count();
     let [mean, _] = mean(&costs.iter().map(ratio).collect::<Vec<_>>());
-    ReportSection {
-        title: "The cost of predictions".into(),
-        text: format!(
+    ReportSection::new(
+        "The cost of predictions",
+        format!(
             "The CPU seconds of all predictions of a scene are compared with the CPU seconds of \
-            its photons; the mean ratio is {mean:.2}. Required: no scene has predictions that \
-            take more than {MAX_SECONDS} s and longer than its photons."
+             its photons; the mean ratio is {mean:.2}. Required: no scene has predictions that \
+             take more than {MAX_SECONDS} s and longer than its photons."
         ),
-        header: vec![
-            "",
-            "scene",
-            "photons",
-            "predictions",
-            "ratio",
-            "slowest plane",
-        ],
+        "| scene | photons | predictions | ratio | slowest plane",
         rows,
-        checks: vec![Check::none("slow", count)],
-    }
+    )
+    .with_checks(vec![Check::none("slow", count)])
 }

@@ -141,18 +141,41 @@ impl Row {
 /// whole.
 #[derive(Debug)]
 pub(crate) struct ReportSection {
-    pub(crate) title: String,
-    /// A description of the procedure and of the requirements that the rows must meet.
-    pub(crate) text: String,
-    /// The column headings. If each row has one cell less than the table has headings, the last
-    /// column shows the verdict on the row.
-    pub(crate) header: Vec<&'static str>,
+    title: String,
+    text: String,
+    header: &'static str,
     pub(crate) rows: Vec<Row>,
-    /// Checks of the table, in addition to the checks of its rows.
-    pub(crate) checks: Vec<Check>,
+    checks: Vec<Check>,
 }
 
 impl ReportSection {
+    /// Creates a section. The text describes the procedure and the requirements that the rows must
+    /// meet. The header has the column headings, separated by ` | `. If each row has one cell less
+    /// than the table has headings, the last column shows the verdict on the row.
+    pub(crate) fn new(
+        title: impl Into<String>,
+        text: impl Into<String>,
+        header: &'static str,
+        rows: impl IntoIterator<Item = Row>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            text: text.into(),
+            header,
+            rows: rows.into_iter().collect(),
+            checks: Vec::new(),
+        }
+    }
+
+    pub(crate) fn with_text(self, text: String) -> Self {
+        Self { text, ..self }
+    }
+
+    /// Adds checks of the table as a whole, in addition to the checks of its rows.
+    pub(crate) fn with_checks(self, checks: Vec<Check>) -> Self {
+        Self { checks, ..self }
+    }
+
     pub(crate) fn passes(&self) -> bool {
         self.failures().is_empty()
     }
@@ -188,7 +211,7 @@ impl ReportSection {
             let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
             format!("| {} |\n", cells.join(" | "))
         };
-        let header: Vec<String> = self.header.iter().map(ToString::to_string).collect();
+        let header: Vec<String> = self.header.split(" | ").map(str::to_owned).collect();
         let rule = vec!["---".to_owned(); header.len()];
         let row = |row: &Row| {
             let mut cells = row.cells.clone();

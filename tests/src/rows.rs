@@ -74,30 +74,20 @@ impl Line {
 /// Returns the results for every row of Table 1, collected from the sections of all parts of the
 /// validation.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
-    ReportSection {
-        title: "Every row".to_owned(),
-        text: "Each row is one operator of Table 1, and the table counts the checks of this \
-              operator in the sections below. *Without photons* counts checks by quadrature and \
-              by traced rays. *Planes with photons* counts the planes right after the operator \
-              that are measured with photons. *Smallest p* is the smallest p-value of these \
-              planes against the exact prediction. Required: a row has both kinds of checks, and \
-              all of them pass. On some planes, the noise of photons from nets is below the error \
-              of the prediction, which comes from its transform and its quadrature. Such a plane \
-              passes with a small p if the stated error of the prediction may explain the whole \
-              difference."
-            .to_owned(),
-        header: vec![
-            "row",
-            "in ray space",
-            "in Fourier space",
-            "without photons",
-            "planes with photons",
-            "smallest p",
-            "verdict",
-        ],
-        rows: Line::ALL.map(|line| row(line, sections)).into(),
-        checks: Vec::new(),
-    }
+    ReportSection::new(
+        "Every row",
+        "Each row is one operator of Table 1, and the table counts the checks of this operator in \
+         the sections below. *Without photons* counts checks by quadrature and by traced rays. \
+         *Planes with photons* counts the planes right after the operator that are measured with \
+         photons. *Smallest p* is the smallest p-value of these planes against the exact \
+         prediction. Required: a row has both kinds of checks, and all of them pass. On some \
+         planes, the noise of photons from nets is below the error of the prediction, which comes \
+         from its transform and its quadrature. Such a plane passes with a small p if the stated \
+         error of the prediction may explain the whole difference.",
+        "row | in ray space | in Fourier space | without photons | planes with photons | smallest \
+         p | verdict",
+        Line::ALL.map(|line| row(line, sections)),
+    )
 }
 
 fn row(line: Line, sections: &[ReportSection]) -> Row {
@@ -137,13 +127,12 @@ mod tests {
 
     fn section(cells: &[&str], checks: Vec<Check>) -> ReportSection {
         let cells = cells.iter().map(ToString::to_string).collect();
-        ReportSection {
-            title: "Some".to_owned(),
-            text: String::new(),
-            header: vec!["operator", "said", "verdict"],
-            rows: vec![Row::new(cells, checks).of([Line::Texture])],
-            checks: Vec::new(),
-        }
+        ReportSection::new(
+            "Some",
+            "",
+            "operator | said | verdict",
+            [Row::new(cells, checks).of([Line::Texture])],
+        )
     }
 
     fn texture(sections: &[ReportSection]) -> String {

@@ -61,32 +61,19 @@ fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> ReportSection {
         let planes = outcome.planes.iter().zip(&outcome.backward);
         planes.map(|(plane, p)| row(&outcome.scene, &plane.report, *p, level))
     });
-    ReportSection {
-        title: format!("The suite: {} scenes, {planes} planes", outcomes.len()),
-        text: format!(
-            "Every plane of every scene is measured with the photons and the seed of its file, \
-            and compared with its prediction. *Class* is the kind of prediction, and *p backward* \
-            is the p-value of the comparison of photons with backward rays. Required: every plane \
-            passes in its class, and photons agree with backward rays wherever both exist. Both \
-            are tested at α = {ALPHA} over all planes: p ≥ {level:.6}."
+    ReportSection::new(
+        format!("The suite: {} scenes, {planes} planes", outcomes.len()),
+        format!(
+            "Every plane of every scene is measured with the photons and the seed of its file, and \
+             compared with its prediction. *Class* is the kind of prediction, and *p backward* is \
+             the p-value of the comparison of photons with backward rays. Required: every plane \
+             passes in its class, and photons agree with backward rays wherever both exist. Both \
+             are tested at α = {ALPHA} over all planes: p ≥ {level:.6}."
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "class",
-            "photons",
-            "in window",
-            "rel. error",
-            "noise",
-            "quadrature",
-            "χ²/dof",
-            "p",
-            "p backward",
-            "verdict",
-        ],
-        rows: rows.collect(),
-        checks: Vec::new(),
-    }
+        "scene | plane | class | photons | in window | rel. error | noise | quadrature | χ²/dof | \
+         p | p backward | verdict",
+        rows,
+    )
 }
 
 fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -> Row {
@@ -211,18 +198,15 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             "without phases, the spectra do not cancel",
         )],
     ));
-    ReportSection {
-        title: "Two occluders (Fig. 7)".to_owned(),
-        text: "Each of two occluders lets light pass, but both together block all of it. F is the \
-              spectrum of the open light, and F₁ and F₂ are the spectra behind one occluder \
-              alone. Required: at least a million photons pass each occluder, and no photon \
-              passes both. The sum of spectra F₁ + F₂ − F is below 10⁻¹² of F, and the same sum \
-              of their moduli is not."
-            .to_owned(),
-        header: vec!["quantity", "number"],
+    ReportSection::new(
+        "Two occluders (Fig. 7)",
+        "Each of two occluders lets light pass, but both together block all of it. F is the \
+         spectrum of the open light, and F₁ and F₂ are the spectra behind one occluder alone. \
+         Required: at least a million photons pass each occluder, and no photon passes both. The \
+         sum of spectra F₁ + F₂ − F is below 10⁻¹² of F, and the same sum of their moduli is not.",
+        "quantity | number",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn travels(operator: &etendue_theory::Operator) -> bool {
@@ -265,25 +249,17 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
         rows.push(Row::new(row, checks.concat()));
     }
     let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two cuts");
-    ReportSection {
-        title: "High frequencies of a shadow (Fig. 9)".to_owned(),
-        text: "H is the share of the energy above a cut in the spectrum of the windowed \
-              irradiance, for the light that leaves the receiver. Each cell has the measured H ± \
-              its error, and after the semicolon the predicted H. The window's main lobe ends at \
-              1/half-width; the first cut is twice that, and the second cut is 1.5 times the \
-              first. Required: at both cuts, H of fig9b is at least 5 times H of fig9a and at \
-              least 10 times H of fig9c."
-            .to_owned(),
-        header: vec![
-            "cut [cycles/m]",
-            "H of fig9a",
-            "H of fig9b",
-            "H of fig9c",
-            "measured ratios b/a, b/c",
-        ],
+    ReportSection::new(
+        "High frequencies of a shadow (Fig. 9)",
+        "H is the share of the energy above a cut in the spectrum of the windowed irradiance, for \
+         the light that leaves the receiver. Each cell has the measured H ± its error, and after \
+         the semicolon the predicted H. The window's main lobe ends at 1/half-width; the first cut \
+         is twice that, and the second cut is 1.5 times the first. Required: at both cuts, H of \
+         fig9b is at least 5 times H of fig9a and at least 10 times H of fig9c.",
+        "cut [cycles/m] | H of fig9a | H of fig9b | H of fig9c | measured ratios b/a, b/c",
         rows,
-        checks: vec![cuts],
-    }
+    )
+    .with_checks(vec![cuts])
 }
 
 /// Checks the white furnace against its closed form: radiance times the configuration factor of
@@ -331,18 +307,17 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         rows.push(Row::new(cells, checks));
     }
     let lit = Check::fact("furnace", !rows.is_empty(), "the suite has this scene");
-    ReportSection {
-        title: "White furnace".to_owned(),
-        text: "The integral ∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m is known: \
-              it is the radiance times a configuration factor, by the closed form for a rectangle \
-              and a parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration \
-              Factors*, B-3). Required: the measured value is within four standard errors of the \
-              known one, and the predicted value is within 10⁻⁴ of it."
-            .to_owned(),
-        header: vec!["known", "measured", "predicted"],
+    ReportSection::new(
+        "White furnace",
+        "The integral ∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m is known: it is \
+         the radiance times a configuration factor, by the closed form for a rectangle and a \
+         parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, \
+         B-3). Required: the measured value is within four standard errors of the known one, and \
+         the predicted value is within 10⁻⁴ of it.",
+        "known | measured | predicted",
         rows,
-        checks: vec![lit],
-    }
+    )
+    .with_checks(vec![lit])
 }
 
 /// Returns the configuration factor of a rectangle for a parallel element below a corner of the

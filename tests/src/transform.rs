@@ -98,30 +98,21 @@ pub(crate) fn transform(options: &TransformOptions) -> io::Result<ReportSection>
         Check::new("noise", largest_used, Below(0.1), "a tenth of the noise"),
     ];
     rows.push(Row::new(cells("largest", "", &largest), checks));
-    Ok(ReportSection {
-        title: "Errors of the slice transform".to_owned(),
-        text: format!(
+    Ok(ReportSection::new(
+        "Errors of the slice transform",
+        format!(
             "Slices of {} random scenes (seed {}) are compared with plain sums at {FREQUENCIES} \
              frequencies of each plane. *One ray* is the largest error of {SINGLE} single rays \
              inside the window, divided by the weight of the ray. *All* is the error for the rays \
              of {} photons, divided by the sum of their weights, and *noise* is this error in \
-             standard errors of as many photons from random numbers. *Taps used* is the number with \
-             which a run of the scene spreads its photons: eight in f64, or six in whole numbers.",
+             standard errors of as many photons from random numbers. *Taps used* is the number \
+             with which a run of the scene spreads its photons: eight in f64, or six in whole \
+             numbers.",
             options.scenes, options.seed, options.photons
         ),
-        header: vec![
-            "scene",
-            "taps used",
-            "8 taps: one ray",
-            "all",
-            "noise",
-            "6 taps: one ray",
-            "all",
-            "noise",
-        ],
+        "scene | taps used | 8 taps: one ray | all | noise | 6 taps: one ray | all | noise",
         rows,
-        checks: Vec::new(),
-    })
+    ))
 }
 
 fn cells(name: &str, used: &str, errors: &[Errors; 2]) -> Vec<String> {

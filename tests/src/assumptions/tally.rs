@@ -125,29 +125,22 @@ pub(super) fn section(
         rows.push(report::Row::new(cells, checks));
     }
     let drawn = random.iter().filter(|(_, trials)| trials.is_some()).count();
-    ReportSection {
-        title: format!("Assumptions, seed {}", options.seed),
-        text: format!(
+    ReportSection::new(
+        format!("Assumptions, seed {}", options.seed),
+        format!(
             "Planes that break an assumption of theory are predicted all the same and compared \
-            with photons. There are {drawn} random scenes and {} scenes of the repository, with \
-            {} photons for each plane. {skipped} planes were left out, because their predictions \
-            take more than a minute, and {panics} panicked. Required: photons reject at least one \
-            prediction for each assumption that is tried, no prediction panics, and no photon \
-            arrives where theory says that it is dark.",
+             with photons. There are {drawn} random scenes and {} scenes of the repository, with \
+             {} photons for each plane. {skipped} planes were left out, because their predictions \
+             take more than a minute, and {panics} panicked. Required: photons reject at least one \
+             prediction for each assumption that is tried, no prediction panics, and no photon \
+             arrives where theory says that it is dark.",
             kept.len(),
             options.photons
         ),
-        header: vec![
-            "assumption",
-            "planes that break it",
-            "planes that break only it",
-            "no theory to try",
-            "rejected, in scenes",
-            "undecided",
-            "passed all the same",
-            "rejected, scenes of the repository",
-        ],
+        "assumption | planes that break it | planes that break only it | no theory to try | \
+         rejected, in scenes | undecided | passed all the same | rejected, scenes of the \
+         repository",
         rows,
-        checks: vec![Check::none("panics", panics)],
-    }
+    )
+    .with_checks(vec![Check::none("panics", panics)])
 }

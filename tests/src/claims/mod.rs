@@ -40,27 +40,20 @@ pub(crate) fn claims(run: ClaimRun) -> ReportSection {
     let rows = parts
         .iter()
         .flat_map(|claims| claims(run).into_iter().map(row));
-    ReportSection {
-        title: "What the paper says in words, with photons".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "What the paper says in words, with photons",
+        format!(
             "The scenes are in `scenes/words/`, and the rows of a statement vary some of their \
-            fields. The seed is {}. Numbers are read from measured spectra, with their jackknife \
-            errors over 64 batches. The numbers in brackets come from the prediction of the same scene, by the same estimator. The \
-            bounds were fixed before the run. Required: each number is within {PULL} errors of \
-            its prediction, and the numbers are as the statement says, or as the column *holds* \
-            says if the statement does not hold.",
+             fields. The seed is {}. Numbers are read from measured spectra, with their jackknife \
+             errors over 64 batches. The numbers in brackets come from the prediction of the same \
+             scene, by the same estimator. The bounds were fixed before the run. Required: each \
+             number is within {PULL} errors of its prediction, and the numbers are as the \
+             statement says, or as the column *holds* says if the statement does not hold.",
             run.seed
         ),
-        header: vec![
-            "statement",
-            "numbers",
-            "measured (predicted)",
-            "holds",
-            "verdict",
-        ],
-        rows: rows.collect(),
-        checks: Vec::new(),
-    }
+        "statement | numbers | measured (predicted) | holds | verdict",
+        rows,
+    )
 }
 
 fn row(claim: Claim) -> Row {

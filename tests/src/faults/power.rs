@@ -111,19 +111,18 @@ pub(crate) fn power(photons: u64, seed: u64) -> ReportSection {
         ];
         Row::new(cells.to_vec(), checks)
     });
-    ReportSection {
-        title: format!(
+    ReportSection::new(
+        format!(
             "Faults in power alone and in phases alone, {:.0e} photons",
             photons as f64
         ),
-        text: format!(
+        format!(
             "Amplitudes or phases of the prediction for {} of the main scene are changed. \
              Required: the power (|F|², averaged over azimuths) is rejected if amplitudes change, \
              and accepted if phases alone change; the slices are rejected if phases change.",
             plane.name
         ),
-        header: vec!["fault", "p of slices", "p of power", "verdict"],
-        rows: rows.to_vec(),
-        checks: Vec::new(),
-    }
+        "fault | p of slices | p of power | verdict",
+        rows.to_vec(),
+    )
 }

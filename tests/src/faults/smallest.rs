@@ -111,18 +111,17 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
         rows.push(Row::new(cells, checks.collect()));
     }
     bar.end();
-    ReportSection {
-        title: format!("The smallest faults at {:.0e} photons", photons as f64),
-        text: format!(
+    ReportSection::new(
+        format!("The smallest faults at {:.0e} photons", photons as f64),
+        format!(
             "Each fault is planted with a size of 1 %, and then {HALVES} times with half of the \
-            size before. The table shows the smallest size that is rejected together with all \
-            larger sizes, for photons from lattices, from nets and from random numbers. Required: this size is \
-            smaller than 1 %."
+             size before. The table shows the smallest size that is rejected together with all \
+             larger sizes, for photons from lattices, from nets and from random numbers. Required: \
+             this size is smaller than 1 %."
         ),
-        header: vec!["fault", "lattices", "nets", "random numbers"],
+        "fault | lattices | nets | random numbers",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the smallest size of a fault that the comparison rejects.

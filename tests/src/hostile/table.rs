@@ -45,38 +45,24 @@ impl Tallies {
     /// Returns the table, which passes if no case has a fault.
     pub(crate) fn section(&self, seed: u64) -> ReportSection {
         let pairs = InputKind::ALL.iter().zip(&self.kinds);
-        let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
+        let rows = pairs.map(|(kind, tally)| row(*kind, tally));
         let bad: Vec<&str> = self.bad.values().map(String::as_str).collect();
         let told = bad[..bad.len().min(MOST_TOLD)].join("\n");
-        ReportSection {
-            title: "Hostile input".into(),
-            text: format!(
+        ReportSection::new(
+            "Hostile input",
+            format!(
                 "The program reads files that were mutated at random, seed {seed}. Required: each \
-                case gives a result or one clear message, and takes at most 30 s and 1 GB. \
-                Nothing is written that is not a result, and a damaged folder never gives a \
-                different result.{}{told}",
+                 case gives a result or one clear message, and takes at most 30 s and 1 GB. \
+                 Nothing is written that is not a result, and a damaged folder never gives a \
+                 different result.{}{told}",
                 if bad.is_empty() { "" } else { "\n\n" }
             ),
-            header: vec![
-                "input",
-                "cases",
-                "refused: syntax",
-                "refused: values",
-                "accepted",
-                "accepted and run",
-                "panics",
-                "aborts",
-                "> 30 s",
-                "> 1 GB",
-                "wrote other files",
-                "bad message",
-                "different result",
-                "longest time in s",
-                "most memory in MB",
-            ],
+            "input | cases | refused: syntax | refused: values | accepted | accepted and run | \
+             panics | aborts | > 30 s | > 1 GB | wrote other files | bad message | different \
+             result | longest time in s | most memory in MB",
             rows,
-            checks: vec![Check::none("bad cases", bad.len())],
-        }
+        )
+        .with_checks(vec![Check::none("bad cases", bad.len())])
     }
 }
 

@@ -98,28 +98,14 @@ fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> ReportSec
         text += "\n\n";
         text += &told[..told.len().min(MOST_TOLD)].join("\n");
     }
-    ReportSection {
-        title: "Kills".into(),
+    ReportSection::new(
+        "Kills",
         text,
-        header: vec![
-            "command",
-            "trials",
-            "two writers",
-            "full disk",
-            "ended before the index",
-            "index gone",
-            "ended after the index",
-            "whole results",
-            "second writer refused",
-            "broken results",
-            "index without its hash",
-            "user files lost",
-            "unexpected exits",
-            "next run failed",
-            "leftovers after next run",
-            "edited file overwritten",
-        ],
-        rows: rows.collect(),
-        checks: vec![Check::none("bad endings", told.len())],
-    }
+        "command | trials | two writers | full disk | ended before the index | index gone | ended \
+         after the index | whole results | second writer refused | broken results | index without \
+         its hash | user files lost | unexpected exits | next run failed | leftovers after next \
+         run | edited file overwritten",
+        rows,
+    )
+    .with_checks(vec![Check::none("bad endings", told.len())])
 }

@@ -67,37 +67,26 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     }
     let [one, two, three] = [1.0, 2.0, 3.0].map(|d| 100.0 * beyond(d));
     let [a, b, c] = STUDENT.map(|share| 100.0 * share);
-    ReportSection {
-        title: format!("{} scenes", outcomes.len()),
-        text: format!(
+    ReportSection::new(
+        format!("{} scenes", outcomes.len()),
+        format!(
             "Each scene gives four complex numbers, and the real number at zero frequency. The \
-            columns have the shares of these numbers that are more than 1, 2 and 3 standard \
-            errors from the truth; ± is the standard error over the scenes, because the four \
-            numbers of a scene may depend on each other. The shares expected beyond 1, 2 and 3 \
-            are {one:.1}, {two:.2} and {three:.2} %; at zero frequency they are {a:.1}, {b:.1} \
-            and {c:.2} %. Required: every share is within {BORNE} of its errors of the expected \
-            share. The p-value of the first of the four numbers is uniform by Kolmogorov–Smirnov \
-            at 1 % over the three groups. The mean square of the L2 ratios is within {BORNE} of \
-            its errors of the range from 1 to {OF_ONE:.3}. No L2 ratio is above {LARGEST}. All \
-            scenes have the same nets, and therefore their errors are correlated. The error of \
-            the mean square includes this: it is the scatter of the mean square from 16 pairs of \
-            nets. The errors of the shares do not include it."
+             columns have the shares of these numbers that are more than 1, 2 and 3 standard \
+             errors from the truth; ± is the standard error over the scenes, because the four \
+             numbers of a scene may depend on each other. The shares expected beyond 1, 2 and 3 \
+             are {one:.1}, {two:.2} and {three:.2} %; at zero frequency they are {a:.1}, {b:.1} \
+             and {c:.2} %. Required: every share is within {BORNE} of its errors of the expected \
+             share. The p-value of the first of the four numbers is uniform by Kolmogorov–Smirnov \
+             at 1 % over the three groups. The mean square of the L2 ratios is within {BORNE} of \
+             its errors of the range from 1 to {OF_ONE:.3}. No L2 ratio is above {LARGEST}. All \
+             scenes have the same nets, and therefore their errors are correlated. The error of \
+             the mean square includes this: it is the scatter of the mean square from 16 pairs of \
+             nets. The errors of the shares do not include it."
         ),
-        header: vec![
-            "group",
-            "scenes",
-            "d > 1",
-            "d > 2",
-            "d > 3",
-            "at zero > 1",
-            "at zero > 2",
-            "at zero > 3",
-            "KS p of uniformity",
-            "mean square of L2 ratios",
-        ],
+        "group | scenes | d > 1 | d > 2 | d > 3 | at zero > 1 | at zero > 2 | at zero > 3 | KS p \
+         of uniformity | mean square of L2 ratios",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the table row with the fractions for one group of scenes.
@@ -204,27 +193,17 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
         ];
         Row::new(cells, Vec::new())
     };
-    ReportSection {
-        title: "By kind of scene".to_owned(),
-        text: format!(
-            "The scenes are grouped by kind. {left_out} scenes were left out, because the error \
-            of their truth is above a tenth of the stated error. This table has no requirements \
-            of its own."
+    ReportSection::new(
+        "By kind of scene",
+        format!(
+            "The scenes are grouped by kind. {left_out} scenes were left out, because the error of \
+             their truth is above a tenth of the stated error. This table has no requirements of \
+             its own."
         ),
-        header: vec![
-            "kind",
-            "scenes",
-            "d > 1",
-            "d > 2",
-            "d > 3",
-            "L2 ratio: smallest, median, largest",
-            "mean square of L2 ratios",
-            "stated errors",
-            "largest error of the truth, in stated errors",
-        ],
-        rows: BlockerKind::ALL.into_iter().map(row).collect(),
-        checks: Vec::new(),
-    }
+        "kind | scenes | d > 1 | d > 2 | d > 3 | L2 ratio: smallest, median, largest | mean square \
+         of L2 ratios | stated errors | largest error of the truth, in stated errors",
+        BlockerKind::ALL.into_iter().map(row),
+    )
 }
 
 /// Returns the section that lists the scenes with the largest ratios.
@@ -243,21 +222,12 @@ fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
         ];
         Row::new(cells, Vec::new())
     };
-    ReportSection {
-        title: "The scenes with the largest errors".to_owned(),
-        text:
-            "These are the scenes with the largest L2 ratios. The generator makes the same scene \
-            again from its number. This table has no requirements of its own."
-                .to_owned(),
-        header: vec![
-            "number",
-            "kind",
-            "L2 ratio",
-            "stated error",
-            "deviation at zero, in errors",
-            "d of the four numbers",
-        ],
-        rows: all.iter().take(WORST).map(row).collect(),
-        checks: Vec::new(),
-    }
+    ReportSection::new(
+        "The scenes with the largest errors",
+        "These are the scenes with the largest L2 ratios. The generator makes the same scene again \
+         from its number. This table has no requirements of its own.",
+        "number | kind | L2 ratio | stated error | deviation at zero, in errors | d of the four \
+         numbers",
+        all.iter().take(WORST).map(row),
+    )
 }

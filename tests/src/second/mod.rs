@@ -44,30 +44,23 @@ const SEED: u64 = 1;
 pub(crate) fn second() -> io::Result<ReportSection> {
     let checks = checks()?;
     let named = checks.iter().all(|check| !check.faults.is_empty());
-    Ok(ReportSection {
-        title: "Second implementation".to_owned(),
-        text: format!(
-            "Theory and the tracers share some functions, and each has its own BRDFs. All of \
-            these are compared with a second implementation from their definitions, at random \
-            points (seed {SEED}). Required: the largest difference is within the tolerance, and \
-            it is beyond the tolerance with each planted fault."
+    Ok(ReportSection::new(
+        "Second implementation",
+        format!(
+            "Theory and the tracers share some functions, and each has its own BRDFs. All of these \
+             are compared with a second implementation from their definitions, at random points \
+             (seed {SEED}). Required: the largest difference is within the tolerance, and it is \
+             beyond the tolerance with each planted fault."
         ),
-        header: vec![
-            "function",
-            "points",
-            "largest difference",
-            "tolerance",
-            "planted fault",
-            "difference with this fault",
-            "verdict",
-        ],
-        rows: checks.iter().flat_map(rows).collect(),
-        checks: vec![report::Check::fact(
-            "faults",
-            named,
-            "every row needs a fault",
-        )],
-    })
+        "function | points | largest difference | tolerance | planted fault | difference with this \
+         fault | verdict",
+        checks.iter().flat_map(rows),
+    )
+    .with_checks(vec![report::Check::fact(
+        "faults",
+        named,
+        "every row needs a fault",
+    )]))
 }
 
 fn checks() -> io::Result<Vec<SecondCheck>> {

@@ -139,43 +139,25 @@ pub(super) fn bandwidths() -> ReportSection {
         ];
         rows.push(Row::new(cells, checks));
     }
-    ReportSection {
-        title: "Sampling criteria against traced rays (section 6.2)".to_owned(),
-        text: format!(
-            "No photons are traced here. B, B' and B'' are bandwidths in slope at an eye that \
-            sees a glossy circle from the distance d in the mirror direction (beside it in the \
-            rows `aside`). B is for an environment, B' is for a blocker at d', and B'' is for \
-            both, with an environment cut off at Ω_e = 1.5 (9 in the last row). For the columns \
-            *traced*, rays of the eye are followed back off the circle. The phase of a wave in \
-            the environment, at the blocker, or of both at once is differentiated along these \
-            rays, and along the lobe at one point, where it may change by Ω_ρ. *Images* has two \
-            ratios for a lobe of 10⁻⁴ rad: the 99 % cutoff of the traced image of a distant point \
-            over B, and the cutoff of the derivative of the image of an edge over B'. Required: B \
-            and B' agree with the traced values to {DIGITS:.0e}. B'' is never below the traced \
-            value, and equals it where 1 + 2kd/cos θ₁ > 0. The images are within {IMAGE} of 1. \
-            The printed formulas, Eq. 20 and Eq. 21, are only shown here; the errata above \
-            compare them with rays."
+    ReportSection::new(
+        "Sampling criteria against traced rays (section 6.2)",
+        format!(
+            "No photons are traced here. B, B' and B'' are bandwidths in slope at an eye that sees \
+             a glossy circle from the distance d in the mirror direction (beside it in the rows \
+             `aside`). B is for an environment, B' is for a blocker at d', and B'' is for both, \
+             with an environment cut off at Ω_e = 1.5 (9 in the last row). For the columns \
+             *traced*, rays of the eye are followed back off the circle. The phase of a wave in \
+             the environment, at the blocker, or of both at once is differentiated along these \
+             rays, and along the lobe at one point, where it may change by Ω_ρ. *Images* has two \
+             ratios for a lobe of 10⁻⁴ rad: the 99 % cutoff of the traced image of a distant point \
+             over B, and the cutoff of the derivative of the image of an edge over B'. Required: B \
+             and B' agree with the traced values to {DIGITS:.0e}. B'' is never below the traced \
+             value, and equals it where 1 + 2kd/cos θ₁ > 0. The images are within {IMAGE} of 1. \
+             The printed formulas, Eq. 20 and Eq. 21, are only shown here; the errata above \
+             compare them with rays."
         ),
-        header: vec![
-            "sweep",
-            "k",
-            "θ₀",
-            "θ₁",
-            "d",
-            "d'",
-            "Ω_ρ",
-            "B",
-            "traced",
-            "Eq. 20",
-            "B'",
-            "traced",
-            "Eq. 21",
-            "B'' bound",
-            "traced",
-            "images",
-            "verdict",
-        ],
+        "sweep | k | θ₀ | θ₁ | d | d' | Ω_ρ | B | traced | Eq. 20 | B' | traced | Eq. 21 | B'' \
+         bound | traced | images | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }

@@ -112,30 +112,21 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    ReportSection {
-        title: "Faults planted in the first-order chain of shading".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Faults planted in the first-order chain of shading",
+        format!(
             "The affine maps onto the glossy sphere and off it are each changed alone, at {:.0e} \
-            photons. The chain is judged as in a run: it is rejected when a part of its error \
-            above 10⁻⁵ remains as the neighbourhood of the central ray shrinks. *Excess* is the \
-            disagreement with the photons beyond noise, and *bound* is the upper 95 % bound of \
-            the excess. Required: the chain is rejected with every fault, and accepted without a \
-            fault.",
+             photons. The chain is judged as in a run: it is rejected when a part of its error \
+             above 10⁻⁵ remains as the neighbourhood of the central ray shrinks. *Excess* is the \
+             disagreement with the photons beyond noise, and *bound* is the upper 95 % bound of \
+             the excess. Required: the chain is rejected with every fault, and accepted without a \
+             fault.",
             photons as f64
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "fault",
-            "excess",
-            "bound",
-            "error of the sound chain",
-            "error that remains",
-            "verdict",
-        ],
+        "scene | plane | fault | excess | bound | error of the sound chain | error that remains | \
+         verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the comparison report on the slices that a modified chain predicts.

@@ -69,32 +69,19 @@ pub(super) fn errata() -> ReportSection {
         ];
         Row::new(cells, checks)
     });
-    let rows = rows.collect();
-    ReportSection {
-        title: "Errata of shading".to_owned(),
-        text: "No photons are traced here. Each formula is evaluated as the paper prints it and \
-              as it should be, and both are compared with a reference. Up to Eq. 17, the \
-              reference is a quadrature in ray space of two wide Gaussians reflected at k = 0.5 \
-              /m, θ₀ = 0.5. In section 6.1, it is a quadrature of two Gaussians in an \
-              environment, k = 0.6 /m. In section 6.2 (Eqs. 20, 21), it is rays traced off a \
-              circle. Required: the printed formula is off by at least the number beside it, and \
-              the corrected formula is off by at most the number beside it."
-            .to_owned(),
-        header: vec![
-            "place",
-            "printed",
-            "corrected",
-            "printed is off by",
-            "required: at least",
-            "printed is",
-            "corrected is off by",
-            "required: at most",
-            "corrected is",
-            "verdict",
-        ],
+    ReportSection::new(
+        "Errata of shading",
+        "No photons are traced here. Each formula is evaluated as the paper prints it and as it \
+         should be, and both are compared with a reference. Up to Eq. 17, the reference is a \
+         quadrature in ray space of two wide Gaussians reflected at k = 0.5 /m, θ₀ = 0.5. In \
+         section 6.1, it is a quadrature of two Gaussians in an environment, k = 0.6 /m. In \
+         section 6.2 (Eqs. 20, 21), it is rays traced off a circle. Required: the printed formula \
+         is off by at least the number beside it, and the corrected formula is off by at most the \
+         number beside it.",
+        "place | printed | corrected | printed is off by | required: at least | printed is | \
+         corrected is off by | required: at most | corrected is | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn irradiance() -> Vec<Erratum> {

@@ -228,56 +228,43 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     // The probability of the deviation is two-sided, for normally distributed errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
-    let section = ReportSection {
-        title: "Sampling criteria against photons (section 6.2)".to_owned(),
-        text: format!(
+    let section = ReportSection::new(
+        "Sampling criteria against photons (section 6.2)",
+        format!(
             "For each of {count} points, {photons} photons are traced, with the seeds 1 to \
-            {count}. The bandwidth in slope is measured at a fixed point of a plane across the \
-            ray to the eye: it is the frequency, in cycles per unit slope, below which 95 % of \
-            the energy lies. A sphere with a glossy BRDF is lit by a beam (an environment with \
-            content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; \
-            an edge by itself has all frequencies). Unless a row states other values, k = 0.5/m, \
-            θ₀ = −θ₁ = 0.5, d = 0.5 m, and Phong n = 2500; n = 400 beside the mirror direction \
-            and behind the slit. *Said* is the corrected criterion, Ω_ρ |1 + 2kd/cos θ₁| or Ω_ρ \
-            |1 + d (cos θ₀/d' + 2k)/cos θ₁|, where Ω_ρ is the 95 % cutoff of the lobe. *Exact* is \
-            a quadrature through the real geometry, by the same estimator with the same windows. \
-            *Measured* comes from the photons, with its jackknife error over 64 batches. The \
-            bounds were fixed before the run. Required: the measured bandwidth is within {MOST} \
-            errors of the exact one (the largest deviation of {count} is {worst:.2} errors; the \
-            largest is this or more by chance with p = {all:.2}, Šidák). The exact bandwidth is \
-            within the error of the corrected criterion, and the measured bandwidth is within \
-            this error and {MOST} errors of its own. The printed criterion is rejected by the \
-            same measure wherever it differs from the corrected one by more than these errors. It \
-            is rejected at {told} of {count} points. The corrected criterion is off by {:.1} % at \
-            most where the window holds the lobe. Its error is taken as {:.0} %, for four \
-            reasons. It is of first order in the neighbourhood, which the lobe extends to ±0.05 \
-            and more in angle, and which extends to ±{ACROSS} m in x. A sum over frequencies \
-            reaches half a step, 0.6 %, beyond the last. The slit has a thirtieth of the lobe's \
-            variance. The beam is wide, but a Gaussian. Where a concave mirror undoes travel, for \
-            example, the lobe is seen wider in slope than the window may be (±{WIDEST}). There \
-            the window widens the spectrum, and the measured bandwidth may be greater by up to \
-            the window's own bandwidth of {:.2}, added in squares. These rows say `window`.",
+             {count}. The bandwidth in slope is measured at a fixed point of a plane across the \
+             ray to the eye: it is the frequency, in cycles per unit slope, below which 95 % of \
+             the energy lies. A sphere with a glossy BRDF is lit by a beam (an environment with \
+             content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; \
+             an edge by itself has all frequencies). Unless a row states other values, k = 0.5/m, \
+             θ₀ = −θ₁ = 0.5, d = 0.5 m, and Phong n = 2500; n = 400 beside the mirror direction \
+             and behind the slit. *Said* is the corrected criterion, Ω_ρ |1 + 2kd/cos θ₁| or Ω_ρ \
+             |1 + d (cos θ₀/d' + 2k)/cos θ₁|, where Ω_ρ is the 95 % cutoff of the lobe. *Exact* is \
+             a quadrature through the real geometry, by the same estimator with the same windows. \
+             *Measured* comes from the photons, with its jackknife error over 64 batches. The \
+             bounds were fixed before the run. Required: the measured bandwidth is within {MOST} \
+             errors of the exact one (the largest deviation of {count} is {worst:.2} errors; the \
+             largest is this or more by chance with p = {all:.2}, Šidák). The exact bandwidth is \
+             within the error of the corrected criterion, and the measured bandwidth is within \
+             this error and {MOST} errors of its own. The printed criterion is rejected by the \
+             same measure wherever it differs from the corrected one by more than these errors. It \
+             is rejected at {told} of {count} points. The corrected criterion is off by {:.1} % at \
+             most where the window holds the lobe. Its error is taken as {:.0} %, for four \
+             reasons. It is of first order in the neighbourhood, which the lobe extends to ±0.05 \
+             and more in angle, and which extends to ±{ACROSS} m in x. A sum over frequencies \
+             reaches half a step, 0.6 %, beyond the last. The slit has a thirtieth of the lobe's \
+             variance. The beam is wide, but a Gaussian. Where a concave mirror undoes travel, for \
+             example, the lobe is seen wider in slope than the window may be (±{WIDEST}). There \
+             the window widens the spectrum, and the measured bandwidth may be greater by up to \
+             the window's own bandwidth of {:.2}, added in squares. These rows say `window`.",
             100.0 * farthest,
             100.0 * ERROR,
             BOX / WIDEST,
         ),
-        header: vec![
-            "sweep",
-            "value",
-            "said",
-            "printed",
-            "exact",
-            "measured",
-            "measured − exact",
-            "exact/said",
-            "printed/measured",
-            "said, with its error",
-            "printed is",
-            "verdict",
-        ],
+        "sweep | value | said | printed | exact | measured | measured − exact | exact/said | \
+         printed/measured | said, with its error | printed is | verdict",
         rows,
-        checks: Vec::new(),
-    };
+    );
     let picture = Curves {
         title: "How fast a glossy reflection changes with angle".to_owned(),
         note: format!("Durand et al. 2005, section 6.2; {photons} photons for each point"),

@@ -57,38 +57,26 @@ pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
             rows.push(Row::new(cells, checks));
         }
     }
-    ReportSection {
-        title: "Errata of shading, with photons".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Errata of shading, with photons",
+        format!(
             "This table repeats in 4D, at {:.0e} photons, those misprints of the table in 2D that \
-            a spectrum of photons can show. Eq. 6 is tested on a diffuse sphere. The mirror is \
-            tested as a BRDF without 1/cos θ: this leaves the light times cos⁺ θ cos² φ, the \
-            cosine of the plane-sphere parameterisation. Section 6.1 is tested on the light that \
-            arrives at the sphere in the environment, times the cosine and turned about the \
-            normals; the corrected formula is evaluated by a midpoint rule over the window. Eqs. \
-            15, 17, 20 and 21 concern single steps, and only quadrature in 2D tests them. *Apart* \
-            is the difference between the printed and the corrected spectrum, relative to the \
-            corrected one. Required: the p-value of the printed formula is below {level:.5}, \
-            which is α = {ALPHA} over {count} planes, and the p-value of the corrected formula is \
-            not below it.",
+             a spectrum of photons can show. Eq. 6 is tested on a diffuse sphere. The mirror is \
+             tested as a BRDF without 1/cos θ: this leaves the light times cos⁺ θ cos² φ, the \
+             cosine of the plane-sphere parameterisation. Section 6.1 is tested on the light that \
+             arrives at the sphere in the environment, times the cosine and turned about the \
+             normals; the corrected formula is evaluated by a midpoint rule over the window. Eqs. \
+             15, 17, 20 and 21 concern single steps, and only quadrature in 2D tests them. *Apart* \
+             is the difference between the printed and the corrected spectrum, relative to the \
+             corrected one. Required: the p-value of the printed formula is below {level:.5}, \
+             which is α = {ALPHA} over {count} planes, and the p-value of the corrected formula is \
+             not below it.",
             photons.unwrap_or_default() as f64
         ),
-        header: vec![
-            "place",
-            "printed",
-            "corrected",
-            "scene",
-            "plane",
-            "apart",
-            "p printed",
-            "printed is",
-            "p corrected",
-            "corrected is",
-            "verdict",
-        ],
+        "place | printed | corrected | scene | plane | apart | p printed | printed is | p \
+         corrected | corrected is | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn scaled(slices: &Slices, factor: f64) -> Slices {

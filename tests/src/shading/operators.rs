@@ -51,30 +51,22 @@ pub(super) fn operators() -> ReportSection {
         Row::new(cells, checks).of(found.line)
     };
     let factors = visibility::all().into_iter().chain(factors::all());
-    ReportSection {
-        title: "Operators of shading in 2D: theory against quadrature".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Operators of shading in 2D: theory against quadrature",
+        format!(
             "No photons are traced here. The spectrum that theory states is compared with a plain \
-            quadrature in ray space. Masks are compared by what passes them, at 12 frequencies. \
-            Factors and lobes are compared alone, over 24 frequencies up to 6 cycles per radian. \
-            Reflections are compared for two Gaussians, about 0.25 m and 0.28 rad wide, at k = \
-            0.5 /m, θ₀ = 0.5, θ₁ = −0.4, after all seven steps to first order, over 18 \
-            frequencies. The horizon cuts this light, except for the ideal mirror, whose spectrum \
-            has no horizon. The bounds in this part were fixed before the run. Required: the \
-            relative difference is below {REQUIRED:.0e}, since both sides are accurate to 1e-12. \
-            With the fault that is named beside each operator, planted in the theory's formula, \
-            the difference is above {SEEN:.0e}."
+             quadrature in ray space. Masks are compared by what passes them, at 12 frequencies. \
+             Factors and lobes are compared alone, over 24 frequencies up to 6 cycles per radian. \
+             Reflections are compared for two Gaussians, about 0.25 m and 0.28 rad wide, at k = \
+             0.5 /m, θ₀ = 0.5, θ₁ = −0.4, after all seven steps to first order, over 18 \
+             frequencies. The horizon cuts this light, except for the ideal mirror, whose spectrum \
+             has no horizon. The bounds in this part were fixed before the run. Required: the \
+             relative difference is below {REQUIRED:.0e}, since both sides are accurate to 1e-12. \
+             With the fault that is named beside each operator, planted in the theory's formula, \
+             the difference is above {SEEN:.0e}."
         ),
-        header: vec![
-            "operator",
-            "compared",
-            "relative difference",
-            "required: below",
-            "planted fault",
-            "difference with this fault",
-            "verdict",
-        ],
-        rows: factors.chain(brdfs::all()).map(row).collect(),
-        checks: Vec::new(),
-    }
+        "operator | compared | relative difference | required: below | planted fault | difference \
+         with this fault | verdict",
+        factors.chain(brdfs::all()).map(row),
+    )
 }

@@ -48,44 +48,29 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
             );
         }
     }
-    ReportSection {
-        title:
-            "Shading in 4D: photons against the exact prediction and against the first-order chain"
-                .to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Shading in 4D: photons against the exact prediction and against the first-order chain",
+        format!(
             "Photons and seeds are those of the files. Photons are compared with an exact \
-            prediction and with a first-order chain. The exact prediction is a quadrature of rays \
-            through the real geometry. The chain consists of the affine maps onto the surface and \
-            off it, the clamped cosine, and the lobe that the central ray meets. *Error* is the \
-            error of the chain, computed from the exact prediction. *Excess* is the disagreement \
-            of the chain with the photons beyond noise, and *bound* is the upper 95 % bound of \
-            the excess. *Resolvable* is the smallest excess that can be detected above the noise. \
-            *p backward* compares photons with rays followed from the plane to the light, where \
-            the light has an area or is an environment. *Ledger* is the relative difference \
-            between the flux that the scene emits and the flux that it absorbs, stops and lets \
-            go. Required of every plane: light arrives. *p exact* is at least {level:.6}, unless \
-            the stated error of the prediction may explain the whole difference; this level is α \
-            = {ALPHA} over all {planes} planes. The bound is at most 1.1 errors or 1 %. *p \
-            backward* is at least the same level. The ledger is balanced to {LEDGER:.0e}. {whole}"
+             prediction and with a first-order chain. The exact prediction is a quadrature of rays \
+             through the real geometry. The chain consists of the affine maps onto the surface and \
+             off it, the clamped cosine, and the lobe that the central ray meets. *Error* is the \
+             error of the chain, computed from the exact prediction. *Excess* is the disagreement \
+             of the chain with the photons beyond noise, and *bound* is the upper 95 % bound of \
+             the excess. *Resolvable* is the smallest excess that can be detected above the noise. \
+             *p backward* compares photons with rays followed from the plane to the light, where \
+             the light has an area or is an environment. *Ledger* is the relative difference \
+             between the flux that the scene emits and the flux that it absorbs, stops and lets \
+             go. Required of every plane: light arrives. *p exact* is at least {level:.6}, unless \
+             the stated error of the prediction may explain the whole difference; this level is α \
+             = {ALPHA} over all {planes} planes. The bound is at most 1.1 errors or 1 %. *p \
+             backward* is at least the same level. The ledger is balanced to {LEDGER:.0e}. \
+             {whole}"
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "operator",
-            "in window",
-            "noise",
-            "p exact",
-            "error",
-            "excess",
-            "bound",
-            "resolvable",
-            "p backward",
-            "ledger",
-            "verdict",
-        ],
+        "scene | plane | operator | in window | noise | p exact | error | excess | bound | \
+         resolvable | p backward | ledger | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn run(scene: Scene, level: f64) -> ShadedRun {

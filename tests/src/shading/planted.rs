@@ -66,33 +66,23 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
         let judged = (p, bench.apart(&said, &bench.sound));
         rows.push(row([name, "prediction"], &bench, sound, judged, level));
     }
-    ReportSection {
-        title: "Planted faults of shading".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Planted faults of shading",
+        format!(
             "Each fault is planted alone, in the prediction or in the photons of one plane of a \
-            scene, at {:.0e} photons. *p sound* is the p-value of this plane without the fault. \
-            *Change* is the change of the spectrum relative to the spectrum. In the row of the \
-            lobe around the normal, light meets the tiles at 5°: at 37°, no light of this lobe \
-            would be in the window. The environment is turned in the light that arrives at the \
-            sphere. The light that the diffuse sphere reflects would change by only 0.3 %, which \
-            these photons do not resolve. Required: *p planted* is below {level:.5} for every \
-            fault, which is α = {ALPHA} over {count} planes, and *p sound* is not below it. The \
-            smallest possible p is 0.00005.",
+             scene, at {:.0e} photons. *p sound* is the p-value of this plane without the fault. \
+             *Change* is the change of the spectrum relative to the spectrum. In the row of the \
+             lobe around the normal, light meets the tiles at 5°: at 37°, no light of this lobe \
+             would be in the window. The environment is turned in the light that arrives at the \
+             sphere. The light that the diffuse sphere reflects would change by only 0.3 %, which \
+             these photons do not resolve. Required: *p planted* is below {level:.5} for every \
+             fault, which is α = {ALPHA} over {count} planes, and *p sound* is not below it. The \
+             smallest possible p is 0.00005.",
             photons.unwrap_or(PHOTONS) as f64
         ),
-        header: vec![
-            "fault",
-            "planted in",
-            "scene",
-            "plane",
-            "p sound",
-            "p planted",
-            "change",
-            "verdict",
-        ],
+        "fault | planted in | scene | plane | p sound | p planted | change | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 impl Plant {

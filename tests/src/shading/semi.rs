@@ -178,32 +178,24 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
             row
         }
     });
-    ReportSection {
-        title: "The semi-convolution in 4D".to_owned(),
-        text: format!(
-            "The operator of Durand et al. 2005, section 4.5, is compared with the spectrum \
-            behind a sphere with two lobes; the weight of one lobe is a cosine along x, and the \
-            other lobe has the rest of the weight. The operator multiplies the spectrum before \
-            the sphere by the transform of each lobe, and convolves the product along Ωx alone \
-            with the transform of the lobe's weight. The comparison is on the slice along x, once \
-            with both spectra from photons, and once with both from rays through the real \
-            geometry; the windows hold all angles. *Off* is ‖operator − behind‖ over ‖behind‖, \
-            beyond noise. The operator is of first order, because its lobe depends on differences \
-            of angles alone. Required: *off* is less than {:.1} % plus the noise, and with each \
-            fault it is more.",
+    ReportSection::new(
+        "The semi-convolution in 4D",
+        format!(
+            "The operator of Durand et al. 2005, section 4.5, is compared with the spectrum behind \
+             a sphere with two lobes; the weight of one lobe is a cosine along x, and the other \
+             lobe has the rest of the weight. The operator multiplies the spectrum before the \
+             sphere by the transform of each lobe, and convolves the product along Ωx alone with \
+             the transform of the lobe's weight. The comparison is on the slice along x, once with \
+             both spectra from photons, and once with both from rays through the real geometry; \
+             the windows hold all angles. *Off* is ‖operator − behind‖ over ‖behind‖, beyond \
+             noise. The operator is of first order, because its lobe depends on differences of \
+             angles alone. Required: *off* is less than {:.1} % plus the noise, and with each \
+             fault it is more.",
             100.0 * LARGEST
         ),
-        header: vec![
-            "fault",
-            "off, rays",
-            "noise",
-            "off, photons",
-            "noise",
-            "verdict",
-        ],
-        rows: rows.collect(),
-        checks: Vec::new(),
-    }
+        "fault | off, rays | noise | off, photons | noise | verdict",
+        rows,
+    )
 }
 
 /// Maximum relative error of a correct operator.

@@ -119,35 +119,25 @@ pub(super) fn traced() -> ReportSection {
         ];
         rows.push(Row::new(cells, vec![check]));
     }
-    ReportSection {
-        title: "A glossy circle, all steps, against traced rays".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "A glossy circle, all steps, against traced rays",
+        format!(
             "No photons are traced here. A Gaussian light field of width e is reflected by a \
-            circle with a Gaussian lobe of width 0.6 e, and the cosine is included. At 24 \
-            frequencies where the spectrum is not negligible, the spectrum after every step is \
-            compared with a quadrature of rays. These rays are traced onto the circle, weighted \
-            by the cosine to its normal at that point, spread by the lobe, and followed off the \
-            circle. *Error* is the difference at e = 0.02 and 0.0025, and *order* is the exponent \
-            with which it falls. Required: the order is within {ORDER} of 1 where light comes at \
-            an angle, and of 2 where it comes along the normal. Along the normal, the first step \
-            leaves nothing out, and its error is below {ROUNDING:.0e}. With a fault planted in \
-            the chain, the error at e = 0.0025 is more than {SEEN} times the error of the correct \
-            chain."
+             circle with a Gaussian lobe of width 0.6 e, and the cosine is included. At 24 \
+             frequencies where the spectrum is not negligible, the spectrum after every step is \
+             compared with a quadrature of rays. These rays are traced onto the circle, weighted \
+             by the cosine to its normal at that point, spread by the lobe, and followed off the \
+             circle. *Error* is the difference at e = 0.02 and 0.0025, and *order* is the exponent \
+             with which it falls. Required: the order is within {ORDER} of 1 where light comes at \
+             an angle, and of 2 where it comes along the normal. Along the normal, the first step \
+             leaves nothing out, and its error is below {ROUNDING:.0e}. With a fault planted in \
+             the chain, the error at e = 0.0025 is more than {SEEN} times the error of the correct \
+             chain."
         ),
-        header: vec![
-            "up to",
-            "surface",
-            "θ₀",
-            "k",
-            "error, e = 0.02",
-            "error, e = 0.0025",
-            "order",
-            "known order",
-            "verdict",
-        ],
+        "up to | surface | θ₀ | k | error, e = 0.02 | error, e = 0.0025 | order | known order | \
+         verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 const fn line(step: ReflectionStep) -> Line {

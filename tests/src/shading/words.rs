@@ -41,25 +41,14 @@ pub(super) fn words() -> ReportSection {
         ];
         Row::new(cells, checks.into())
     });
-    let rows = rows.collect();
-    ReportSection {
-        title: "What the paper says in words".to_owned(),
-        text: "No photons are traced here: the numbers come from quadratures in ray space and \
-              from closed forms of strips. Where a statement holds only in part, the rows after \
-              it show where it does not hold. Required: the number is within the bounds beside \
-              it."
-        .to_owned(),
-        header: vec![
-            "statement",
-            "measured",
-            "number",
-            "required",
-            "holds",
-            "verdict",
-        ],
+    ReportSection::new(
+        "What the paper says in words",
+        "No photons are traced here: the numbers come from quadratures in ray space and from \
+         closed forms of strips. Where a statement holds only in part, the rows after it show \
+         where it does not hold. Required: the number is within the bounds beside it.",
+        "statement | measured | number | required | holds | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn bound(x: f64) -> String {

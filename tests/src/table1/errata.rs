@@ -169,32 +169,19 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
 
 /// Returns the section on the errata.
 fn section(outcomes: &[&TableRun]) -> ReportSection {
-    ReportSection {
-        title: "Errata: each misprint alone".to_owned(),
-        text: "In each row, one step of the chain is as the paper prints it, and all other steps \
-              are correct. This printed chain and the corrected chain are compared with the \
-              photons of the file, by the rule for first-order chains. *Excess* is the \
-              disagreement with the photons beyond noise, relative to the prediction. Where a \
-              missing 2π moves all light out of the window, no light is predicted. Required: the \
-              printed chain is rejected, except for all of Table 1 on a plane mirror, where its \
-              errors cancel. The corrected chain is accepted, and it equals the chain that theory \
-              derives from the scene."
-            .to_owned(),
-        header: vec![
-            "scene",
-            "plane",
-            "misprint",
-            "printed: excess",
-            "printed: p",
-            "the printed chain is",
-            "corrected: excess",
-            "corrected: bound",
-            "corrected: error",
-            "the corrected chain is",
-        ],
-        rows: outcomes.iter().flat_map(|outcome| rows(outcome)).collect(),
-        checks: Vec::new(),
-    }
+    ReportSection::new(
+        "Errata: each misprint alone",
+        "In each row, one step of the chain is as the paper prints it, and all other steps are \
+         correct. This printed chain and the corrected chain are compared with the photons of the \
+         file, by the rule for first-order chains. *Excess* is the disagreement with the photons \
+         beyond noise, relative to the prediction. Where a missing 2π moves all light out of the \
+         window, no light is predicted. Required: the printed chain is rejected, except for all of \
+         Table 1 on a plane mirror, where its errors cancel. The corrected chain is accepted, and \
+         it equals the chain that theory derives from the scene.",
+        "scene | plane | misprint | printed: excess | printed: p | the printed chain is | \
+         corrected: excess | corrected: bound | corrected: error | the corrected chain is",
+        outcomes.iter().flat_map(|outcome| rows(outcome)),
+    )
 }
 
 /// Returns the section on the misprints, tested on the hollow mirror and on the plane mirror.
@@ -228,25 +215,18 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
         let reason = "some plane of each scene shows the misprint";
         checks.push(Check::new("rejected", rejected, AtLeast(1.0), reason));
     }
-    ReportSection {
-        title: "Scenes predicted as printed".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Scenes predicted as printed",
+        format!(
             "The files of these scenes ask for the printed formulas, and `etendue run --expect \
-            disagreement` makes these comparisons. Required: the first-order chain is rejected on \
-            some plane of each scene. The exact prediction is rejected on no plane (p ≥ \
-            {level:.6}, unless its stated error may explain the whole difference)."
+             disagreement` makes these comparisons. Required: the first-order chain is rejected on \
+             some plane of each scene. The exact prediction is rejected on no plane (p ≥ \
+             {level:.6}, unless its stated error may explain the whole difference)."
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "p exact",
-            "printed: excess",
-            "printed: p",
-            "the printed chain is",
-        ],
+        "scene | plane | p exact | printed: excess | printed: p | the printed chain is",
         rows,
-        checks,
-    }
+    )
+    .with_checks(checks)
 }
 
 pub(super) fn word(verdict: Verdict) -> &'static str {

@@ -61,32 +61,22 @@ pub(super) fn foci(outcome: &TableRun) -> ReportSection {
             rows.push(Row::new(cells, checks));
         }
     }
-    ReportSection {
-        title: "Foci of a hollow mirror at θ₀ = 0.7 (Fig. 11)".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Foci of a hollow mirror at θ₀ = 0.7 (Fig. 11)",
+        format!(
             "The mirror has the radius R = 2 m. The photons of `solar_oven` are not aimed at \
-            windows, and they are recorded on all planes of the scene. The variance of their \
-            positions is a parabola over the distance from the mirror, which is fitted by least \
-            squares. The measured focus is the distance at which this parabola is smallest, with \
-            its jackknife error over batches. *Predicted* is the same distance for rays that are \
-            followed through the geometry. *Coddington* is R cos θ₀/2 or R/(2 cos θ₀), which hold \
-            for an infinitely narrow beam. Required: the measured focus is within {MOST} errors \
-            of the predicted focus, and for the narrow beam also of Coddington's."
+             windows, and they are recorded on all planes of the scene. The variance of their \
+             positions is a parabola over the distance from the mirror, which is fitted by least \
+             squares. The measured focus is the distance at which this parabola is smallest, with \
+             its jackknife error over batches. *Predicted* is the same distance for rays that are \
+             followed through the geometry. *Coddington* is R cos θ₀/2 or R/(2 cos θ₀), which hold \
+             for an infinitely narrow beam. Required: the measured focus is within {MOST} errors \
+             of the predicted focus, and for the narrow beam also of Coddington's."
         ),
-        header: vec![
-            "beam [m]",
-            "focus",
-            "measured [m]",
-            "predicted [m]",
-            "measured − predicted",
-            "Coddington [m]",
-            "measured − Coddington [m]",
-            "the same in errors",
-            "verdict",
-        ],
+        "beam [m] | focus | measured [m] | predicted [m] | measured − predicted | Coddington [m] | \
+         measured − Coddington [m] | the same in errors | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// # Panics

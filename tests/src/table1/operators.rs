@@ -19,45 +19,30 @@ pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Re
         let planes = 0..outcome.planes.len();
         rows.extend(planes.map(|index| row(outcome, index, level)));
     }
-    ReportSection {
-        title: format!(
+    ReportSection::new(
+        format!(
             "Operators in 4D: {} scenes, {} planes",
             outcomes.len(),
             rows.len()
         ),
-        text: format!(
+        format!(
             "Photons are compared with the exact prediction in ray space and with the first-order \
-            chain of affine maps. *Error* is the error of the chain, computed from the exact \
-            prediction. *Excess* is the disagreement of the chain with the photons beyond noise, \
-            and *bound* is the upper 95 % bound of the excess. *Resolvable* is the smallest \
-            excess that can be detected above the noise. The columns *2D* repeat the table above for \
-            the section in the plane of incidence, for one surface whose principal axes lie in \
-            this plane. Required of every plane: light arrives. *p exact* is at least {level:.6}, \
-            unless the stated error of the prediction may explain the whole difference; this \
-            level is α = 0.01 over all {planes} planes (scenes with the same light are lit by the \
-            same photons, so that their p-values are alike, and the level is on the safe side). \
-            The bound is at most 1.1 errors or 1 %. *p first order* is below {level:.6} \
-            wherever the error is above twice the resolvable excess."
+             chain of affine maps. *Error* is the error of the chain, computed from the exact \
+             prediction. *Excess* is the disagreement of the chain with the photons beyond noise, \
+             and *bound* is the upper 95 % bound of the excess. *Resolvable* is the smallest \
+             excess that can be detected above the noise. The columns *2D* repeat the table above \
+             for the section in the plane of incidence, for one surface whose principal axes lie \
+             in this plane. Required of every plane: light arrives. *p exact* is at least \
+             {level:.6}, unless the stated error of the prediction may explain the whole \
+             difference; this level is α = 0.01 over all {planes} planes (scenes with the same \
+             light are lit by the same photons, so that their p-values are alike, and the level is \
+             on the safe side). The bound is at most 1.1 errors or 1 %. *p first order* is below \
+             {level:.6} wherever the error is above twice the resolvable excess."
         ),
-        header: vec![
-            "scene",
-            "plane",
-            "operator",
-            "2D map",
-            "2D order",
-            "in window",
-            "noise",
-            "p exact",
-            "error",
-            "excess",
-            "bound",
-            "resolvable",
-            "p first order",
-            "verdict",
-        ],
+        "scene | plane | operator | 2D map | 2D order | in window | noise | p exact | error | \
+         excess | bound | resolvable | p first order | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 fn row(outcome: &TableRun, index: usize, level: f64) -> Row {

@@ -79,35 +79,24 @@ pub(super) fn planar() -> ReportSection {
             rows.push(Row::new(cells, found.checks()).of([line(stage)]));
         }
     }
-    ReportSection {
-        title: "Operators in 2D: theory against quadrature".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Operators in 2D: theory against quadrature",
+        format!(
             "A Gaussian light field of width e travels over 1 m, meets a circle of curvature k at \
-            the angle θ₀, and travels over 0.7 m. The spectrum that the operators give is \
-            compared with two quadratures at 24 frequencies. *Up to* names the last operator that \
-            is applied. *Map* is the difference from a plain quadrature of the field that the \
-            operators map. *Traced* is the difference from a quadrature of the field that is \
-            traced off the circle, at e = 0.02 and at 0.0025, and *order* is the exponent with \
-            which this difference falls. Required: *map* is below {ROUNDING:.0e}. The order is \
-            within {ORDER} of the known one, which is 1 where light comes at an angle and 2 where \
-            it comes along the normal. It is also 2 where the only approximation is that angles \
-            replace tangents: for travel, and off a plane mirror."
+             the angle θ₀, and travels over 0.7 m. The spectrum that the operators give is \
+             compared with two quadratures at 24 frequencies. *Up to* names the last operator that \
+             is applied. *Map* is the difference from a plain quadrature of the field that the \
+             operators map. *Traced* is the difference from a quadrature of the field that is \
+             traced off the circle, at e = 0.02 and at 0.0025, and *order* is the exponent with \
+             which this difference falls. Required: *map* is below {ROUNDING:.0e}. The order is \
+             within {ORDER} of the known one, which is 1 where light comes at an angle and 2 where \
+             it comes along the normal. It is also 2 where the only approximation is that angles \
+             replace tangents: for travel, and off a plane mirror."
         ),
-        header: vec![
-            "up to",
-            "surface",
-            "θ₀",
-            "k",
-            "map",
-            "traced, e = 0.02",
-            "traced, e = 0.0025",
-            "order",
-            "known order",
-            "verdict",
-        ],
+        "up to | surface | θ₀ | k | map | traced, e = 0.02 | traced, e = 0.0025 | order | known \
+         order | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 const fn line(stage: PathStage) -> Line {

@@ -148,27 +148,17 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    ReportSection {
-        title: "Faults planted in the affine maps".to_owned(),
-        text: "Each fault changes the affine maps of the chain. The chain is judged as in a run: \
-              it is rejected when a part of its error above 10⁻⁵ remains as the neighbourhood of \
-              the central ray shrinks. Each row names the plane on which the largest part \
-              remains, the excess of this plane over the photons of the file, the part that \
-              remains, and how many of the planes that the fault touches reject it. Required: the \
-              chain is rejected with every fault, and accepted without a fault."
-            .to_owned(),
-        header: vec![
-            "scene",
-            "fault",
-            "plane",
-            "excess",
-            "error that remains",
-            "planes that reject it",
-            "run is",
-        ],
+    ReportSection::new(
+        "Faults planted in the affine maps",
+        "Each fault changes the affine maps of the chain. The chain is judged as in a run: it is \
+         rejected when a part of its error above 10⁻⁵ remains as the neighbourhood of the central \
+         ray shrinks. Each row names the plane on which the largest part remains, the excess of \
+         this plane over the photons of the file, the part that remains, and how many of the \
+         planes that the fault touches reject it. Required: the chain is rejected with every \
+         fault, and accepted without a fault.",
+        "scene | fault | plane | excess | error that remains | planes that reject it | run is",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 type Tamper = fn(&Observed) -> Option<Observed>;
@@ -244,24 +234,16 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    ReportSection {
-        title: "Wrong numbers in the exact prediction".to_owned(),
-        text: format!(
-            "Each fault is a wrong number in the exact prediction. The prediction is judged by \
-            the smallest p of the planes after the surface, with the photons of the file: it is \
-            rejected if this p is below {level:.6}. Here p counts only what is beyond the stated \
-            error of the prediction, and the smallest possible p is 0.00005. Required: the \
-            prediction is rejected with every wrong number, and accepted without one."
+    ReportSection::new(
+        "Wrong numbers in the exact prediction",
+        format!(
+            "Each fault is a wrong number in the exact prediction. The prediction is judged by the \
+             smallest p of the planes after the surface, with the photons of the file: it is \
+             rejected if this p is below {level:.6}. Here p counts only what is beyond the stated \
+             error of the prediction, and the smallest possible p is 0.00005. Required: the \
+             prediction is rejected with every wrong number, and accepted without one."
         ),
-        header: vec![
-            "scene",
-            "fault",
-            "plane",
-            "smallest p",
-            "planes that reject it",
-            "run is",
-        ],
+        "scene | fault | plane | smallest p | planes that reject it | run is",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }

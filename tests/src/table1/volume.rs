@@ -70,32 +70,23 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
         });
         rows.push(Row::new(cells, checks.into()));
     }
-    ReportSection {
-        title: "Étendue and reversed rays".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Étendue and reversed rays",
+        format!(
             "Around the central ray, 16 rays are followed through the real surfaces, from the \
-            light's plane to the last plane across the path. Their coordinates are positions, and \
-            the index of refraction times direction cosines. *Volume* is |det J| − 1, where J is \
-            their Jacobian by finite differences. *Invariant* is the largest entry of Jᵀ Ω J − Ω, \
-            the change of the Lagrange invariant of any two neighbours. *Chain* tests both for \
-            the chain of affine maps, with slopes as coordinates. Behind a thin lens, rays also \
-            have positions and slopes as coordinates: the ideal lens, u' = u − x/f, preserves the \
-            volume of these, and étendue only to second order. *Back* is the distance, in \
-            positions and direction cosines, between the start of a ray and the end of the same \
-            ray after it is sent back. Required: all numbers are below {ROUNDING:.0e}."
+             light's plane to the last plane across the path. Their coordinates are positions, and \
+             the index of refraction times direction cosines. *Volume* is |det J| − 1, where J is \
+             their Jacobian by finite differences. *Invariant* is the largest entry of Jᵀ Ω J − Ω, \
+             the change of the Lagrange invariant of any two neighbours. *Chain* tests both for \
+             the chain of affine maps, with slopes as coordinates. Behind a thin lens, rays also \
+             have positions and slopes as coordinates: the ideal lens, u' = u − x/f, preserves the \
+             volume of these, and étendue only to second order. *Back* is the distance, in \
+             positions and direction cosines, between the start of a ray and the end of the same \
+             ray after it is sent back. Required: all numbers are below {ROUNDING:.0e}."
         ),
-        header: vec![
-            "scene",
-            "to plane",
-            "chain",
-            "volume",
-            "invariant",
-            "back",
-            "verdict",
-        ],
+        "scene | to plane | chain | volume | invariant | back | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the index of refraction at the light divided by the index at the plane.

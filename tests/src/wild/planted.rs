@@ -96,17 +96,16 @@ pub(super) fn planted() -> ReportSection {
             vec![Check::new("p", p, Below(SEEN), "the fault is planted")],
         )
     }));
-    ReportSection {
-        title: "Faults planted behind two glossy surfaces".to_owned(),
-        text: format!(
+    ReportSection::new(
+        "Faults planted behind two glossy surfaces",
+        format!(
             "Each fault is planted alone in the prediction of plane `{PLANE}` of `{SCENE}`, which \
-            is compared with {PHOTONS} photons. Required: p < {SEEN} for every fault, and p is \
-            not below this without a fault. The smallest possible p is 0.00005."
+             is compared with {PHOTONS} photons. Required: p < {SEEN} for every fault, and p is \
+             not below this without a fault. The smallest possible p is 0.00005."
         ),
-        header: vec!["fault", "p", "verdict"],
+        "fault | p | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
 
 /// Returns the p-value for the slices predicted for `view`. All other fields of the prediction are

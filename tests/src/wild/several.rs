@@ -155,31 +155,18 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
         ];
         Row::new(cells, vec![Check::none("rejected", rejected.len())])
     };
-    ReportSection {
-        title: format!("Several surfaces in a row, seed {}", options.seed),
-        text: format!(
+    ReportSection::new(
+        format!("Several surfaces in a row, seed {}", options.seed),
+        format!(
             "There are {} random scenes of two or three surfaces, with masks on any leg and a \
-            plane behind two surfaces or more. Each is traced with {} photons and compared with \
-            its prediction. Required: photons reject no prediction twice; the second time has \
-            another seed and {MORE_PHOTONS} times as many photons.",
+             plane behind two surfaces or more. Each is traced with {} photons and compared with \
+             its prediction. Required: photons reject no prediction twice; the second time has \
+             another seed and {MORE_PHOTONS} times as many photons.",
             tried.len(),
             options.photons
         ),
-        header: vec![
-            "scattering surfaces",
-            "planes",
-            "exact",
-            "first-order",
-            "by paths",
-            "reference",
-            "skipped",
-            "passed",
-            "undecided",
-            "numbers of rejected scenes",
-            "median seconds",
-            "verdict",
-        ],
-        rows: (0..=MAX_SCATTERERS).map(row).collect(),
-        checks: Vec::new(),
-    }
+        "scattering surfaces | planes | exact | first-order | by paths | reference | skipped | \
+         passed | undecided | numbers of rejected scenes | median seconds | verdict",
+        (0..=MAX_SCATTERERS).map(row),
+    )
 }

@@ -341,30 +341,19 @@ fn section(options: &SmallOptions, tried: &[Option<TriedSmall>]) -> ReportSectio
         ];
         Row::new(cells, vec![Check::none("rejected", rejected.len())])
     };
-    ReportSection {
-        title: format!("Small objects, seed {}", options.seed),
-        text: format!(
+    ReportSection::new(
+        format!("Small objects, seed {}", options.seed),
+        format!(
             "There are {} random scenes with one small object in the light of one plane. Each is \
-            traced with {} photons and compared with its prediction. Required: photons reject no \
-            prediction twice; the second time has another seed and {MORE_PHOTONS} times as many \
-            photons.",
+             traced with {} photons and compared with its prediction. Required: photons reject no \
+             prediction twice; the second time has another seed and {MORE_PHOTONS} times as many \
+             photons.",
             tried.len(),
             options.photons
         ),
-        header: vec![
-            "object",
-            "planes",
-            "no theory because of the object",
-            "no theory for another reason",
-            "skipped",
-            "exact",
-            "first-order",
-            "passed",
-            "undecided",
-            "numbers of rejected scenes",
-            "verdict",
-        ],
-        rows: KINDS.iter().enumerate().map(row).collect(),
-        checks: Vec::new(),
-    }
+        "object | planes | no theory because of the object | no theory for another reason | \
+         skipped | exact | first-order | passed | undecided | numbers of rejected scenes | \
+         verdict",
+        KINDS.iter().enumerate().map(row),
+    )
 }

@@ -101,15 +101,14 @@ impl Tally {
             let what = format!("**wrong**, failures that repeat: {}", culprit.says());
             row(what, which.len(), which);
         }
-        ReportSection {
-            title: format!("Wild scenes, seed {seed}"),
-            text: "Scenes are drawn from the whole vocabulary of scene files. A scene that fails \
-                  is run with two other seeds. Required: no scene panics or hangs, and no plane \
-                  fails again with the other seeds."
-                .into(),
-            header: vec!["what", "count", "scenes"],
+        ReportSection::new(
+            format!("Wild scenes, seed {seed}"),
+            "Scenes are drawn from the whole vocabulary of scene files. A scene that fails is run \
+             with two other seeds. Required: no scene panics or hangs, and no plane fails again \
+             with the other seeds.",
+            "what | count | scenes",
             rows,
-            checks,
-        }
+        )
+        .with_checks(checks)
     }
 }

@@ -209,15 +209,17 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
             .into_iter()
             .map(|(what, which)| row(what, which.len(), &which)),
     );
-    ReportSection {
-        title: format!("Random worlds, seed {seed}"),
-        text: "Random worlds have all shapes, materials, textures and lights of Mitsuba scenes \
-              that Étendue reads. Each world is probed at a random pixel, with planes at the \
-              camera and at two surfaces. A probe that fails is repeated with two other seeds. \
-              Required: no probe fails each time, and none ends without a verdict."
-            .into(),
-        header: vec!["what", "count", "worlds"],
+    ReportSection::new(
+        format!("Random worlds, seed {seed}"),
+        "Random worlds have all shapes, materials, textures and lights of Mitsuba scenes that \
+         Étendue reads. Each world is probed at a random pixel, with planes at the camera and at \
+         two surfaces. A probe that fails is repeated with two other seeds. Required: no probe \
+         fails each time, and none ends without a verdict.",
+        "what | count | worlds",
         rows,
-        checks: vec![Check::none("wrong", wrong), Check::none("broken", broken)],
-    }
+    )
+    .with_checks(vec![
+        Check::none("wrong", wrong),
+        Check::none("broken", broken),
+    ])
 }

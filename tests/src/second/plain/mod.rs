@@ -207,10 +207,8 @@ fn one(options: &PlainOptions, path: &Path) -> io::Result<ReportSection> {
     })?;
     let pair = judged(&world, &scene, options.photons);
     let Pair { plain, photons } = pair;
-    Ok(ReportSection {
-        text: format!("Paths find {plain}, photons {photons} W m⁻² sr⁻¹ m²."),
-        ..section(options, vec![row(None, 1, &[(0, pair)])])
-    })
+    let text = format!("Paths find {plain}, photons {photons} W m⁻² sr⁻¹ m².");
+    Ok(section(options, vec![row(None, 1, &[(0, pair)])]).with_text(text))
 }
 
 /// Draws a scene and compares it. A fault is planted in the resolved scene. Returns `None` if the
@@ -419,31 +417,21 @@ fn row(fault: Option<usize>, drawn: u64, pairs: &[(u64, Pair)]) -> Row {
 }
 
 fn section(options: &PlainOptions, rows: Vec<Row>) -> ReportSection {
-    ReportSection {
-        title: format!("A tracer of scene files, seed {}", options.seed),
-        text: format!(
-            "The light in the window of a random plane, ∫ L W, by at most {} photons or backward rays \
-            through the resolved scene, and by paths through the objects of the scene file. Scenes \
-            with meshes, pictures or ray files are not compared. *Resolved* scenes would show a \
-            difference of {} %. Required: no scene differs by more than {MAX_DEVIATION} standard \
-            errors twice (the second time with other points, other photons and at least \
-            {MORE_PHOTONS} times the first number of both), and each fault that is planted in the \
-            resolved scene is found.",
+    ReportSection::new(
+        format!("A tracer of scene files, seed {}", options.seed),
+        format!(
+            "The light in the window of a random plane, ∫ L W, by at most {} photons or backward \
+             rays through the resolved scene, and by paths through the objects of the scene file. \
+             Scenes with meshes, pictures or ray files are not compared. *Resolved* scenes would \
+             show a difference of {} %. Required: no scene differs by more than {MAX_DEVIATION} \
+             standard errors twice (the second time with other points, other photons and at least \
+             {MORE_PHOTONS} times the first number of both), and each fault that is planted in the \
+             resolved scene is found.",
             options.photons,
             100.0 * RESOLVED,
         ),
-        header: vec![
-            "planted fault",
-            "drawn",
-            "compared",
-            "resolved",
-            "rms deviation, σ",
-            "largest, σ",
-            "apart",
-            "numbers of scenes apart",
-            "verdict",
-        ],
+        "planted fault | drawn | compared | resolved | rms deviation, σ | largest, σ | apart | \
+         numbers of scenes apart | verdict",
         rows,
-        checks: Vec::new(),
-    }
+    )
 }
