@@ -189,22 +189,13 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         let few = "four standard errors, and the few frequencies whose residual is real";
         let (apart, off) = ((chi2 - 1.0).abs(), (pull - expected_pull).abs());
         let checks = vec![
-            Check::new("uniform p", uniform, AtLeast(level), "1 % over the planes"),
-            Check::new(
-                "p of power",
-                of_power,
-                AtLeast(level),
-                "1 % over the planes",
-            ),
-            Check::new(
-                "p of power < 10 %",
-                share_of_power,
-                Below(allowed_each),
-                "three deviations",
-            ),
-            Check::new("p < 10 %", share, Below(allowed_each), "three deviations"),
-            Check::new("χ²/dof", apart, Below(4.0 * error + 0.003), few),
-            Check::new("pull", off, Below(4.0 * pull_error), "four standard errors"),
+            Check::new("uniform p", uniform, AtLeast(level)).because("1 % over the planes"),
+            Check::new("p of power", of_power, AtLeast(level)).because("1 % over the planes"),
+            Check::new("p of power < 10 %", share_of_power, Below(allowed_each))
+                .because("three deviations"),
+            Check::new("p < 10 %", share, Below(allowed_each)).because("three deviations"),
+            Check::new("χ²/dof", apart, Below(4.0 * error + 0.003)).because(few),
+            Check::new("pull", off, Below(4.0 * pull_error)).because("four standard errors"),
         ];
         let cells = vec![
             plane.name.clone(),
@@ -219,7 +210,7 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
     }
     let share = below(&all);
     let off = (share - 0.1).abs();
-    let check = Check::new("p < 10 %", off, Below(allowed), "two deviations");
+    let check = Check::new("p < 10 %", off, Below(allowed)).because("two deviations");
     let cells = vec![
         "all".into(),
         "".into(),

@@ -6,16 +6,13 @@ mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{fig9b, measured, named, traced};
+use crate::scenes::{fig9b, named, tampered, traced};
 use etendue_compare::{Residuals, TESTS, radial, sidak};
-use etendue_field::{
-    Complex, Crossing, Ledger, Mask, PhotonSource, Rectangle, Shape, Slices, VirtualPlane,
-};
+use etendue_field::{Complex, Crossing, Mask, Rectangle, Shape, Slices, VirtualPlane};
 use etendue_predict::chain;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::{Chain, Model, Operator, Parameter};
-use etendue_trace::Tracer;
 pub(crate) use power::power;
 pub(crate) use smallest::smallest;
 
@@ -23,35 +20,23 @@ pub(crate) use smallest::smallest;
 /// without a fault.
 pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
-    let tracer = Tracer::new(&scene);
-    let sound = measured(&scene, &tracer);
-    let no_jacobian = measured(
-        &scene,
-        &TamperedBlock {
-            tracer: &tracer,
-            crossing: without_jacobian,
-        },
-    );
-    let losing = measured(
-        &scene,
-        &TamperedBlock {
-            tracer: &tracer,
-            crossing: losing_one_in_a_hundred,
-        },
-    );
-
+    let sound = traced(&scene);
     let mut rows = vec![row(&scene, &sound, NONE, &unchanged)];
     for (name, predict) in predictions() {
         rows.push(row(&scene, &sound, name, predict.as_ref()));
     }
-    rows.push(row(
-        &scene,
-        &no_jacobian,
-        "photons without (1 + u² + v²)²",
-        &unchanged,
-    ));
-    rows.push(row(&scene, &losing, "1 % of photons lost", &unchanged));
-
+    for (name, photons) in [
+        (
+            "photons without (1 + u² + v²)²",
+            tampered(&scene, without_jacobian),
+        ),
+        (
+            "1 % of photons lost",
+            tampered(&scene, losing_one_in_a_hundred),
+        ),
+    ] {
+        rows.push(row(&scene, &photons, name, &unchanged));
+    }
     ReportSection::new(
         format!("Planted faults at {:.0e} photons", photons as f64),
         "Each fault is planted in the prediction or in the photons, and every plane is compared \
@@ -77,28 +62,16 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
             found.push(row(&scene, &sound, fault, predict.as_ref()));
         }
         if name == "fig4_point" {
-            let tracer = Tracer::new(&scene);
-            let crossing = |_: usize, mut crossing: Crossing| {
+            let flat = tampered(&scene, |_, mut crossing| {
                 crossing.weight /= crossing.ray.secant_squared().sqrt();
                 Some(crossing)
-            };
-            let flat = measured(
-                &scene,
-                &TamperedBlock {
-                    tracer: &tracer,
-                    crossing,
-                },
-            );
-            found.push(row(
-                &scene,
-                &flat,
-                "point light without √(1 + u² + v²)",
-                &unchanged,
-            ));
+            });
+            let fault = "point light without √(1 + u² + v²)";
+            found.push(row(&scene, &flat, fault, &unchanged));
         }
         let faults = (found.len() - 1) as f64;
         let reason = "a scene without faults would show nothing";
-        checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
+        checks.push(Check::new("faults", faults, AtLeast(1.0)).because(reason));
         rows.extend(of_scene(name, found));
     }
     rows.extend(of_scene(
@@ -127,7 +100,8 @@ fn of_scene(name: &'static str, rows: Vec<Row>) -> impl Iterator<Item = Row> {
     })
 }
 
-type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
+/// The name of a fault, and the prediction with this fault.
+type PlantedFault = (&'static str, Box<Predict>);
 
 /// Returns a function that predicts slices by a modified chain. The function returns `None` if the
 /// modification has no effect.
@@ -139,94 +113,69 @@ fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     })
 }
 
-fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
-    let scaled = |which: fn(&Parameter) -> bool, factor: f64| {
-        chained(move |c: &mut Chain| {
-            if let Some(p) = c.parameters().into_iter().find(which) {
-                scale(c, p, factor);
+/// Returns a fault of the chain.
+fn fault(name: &'static str, change: impl Fn(&mut Chain) + 'static) -> PlantedFault {
+    (name, chained(change))
+}
+
+/// Returns a fault of a parameter, which is multiplied by a factor.
+fn scaled(name: &'static str, which: fn(&Parameter) -> bool, factor: f64) -> PlantedFault {
+    fault(name, move |c| {
+        if let Some(p) = c.parameters().into_iter().find(which) {
+            scale(c, p, factor);
+        }
+    })
+}
+
+fn elsewhere() -> Vec<(&'static str, Vec<PlantedFault>)> {
+    let is_frequency = |p: &Parameter| matches!(p, Parameter::GratingFrequency(_));
+    let is_exponent = |p: &Parameter| matches!(p, Parameter::SpotExponent);
+    let layers = vec![
+        fault("first layer 1 % too far away", |c| move_layer(c, 0, 0.006)),
+        fault("second layer 1 % too far away", |c| move_layer(c, 1, 0.014)),
+    ];
+    let grating = vec![
+        fault("phase of the grating + 0.05", |c| {
+            let phase = |p: &Parameter| matches!(p, Parameter::GratingPhase(_));
+            if let Some(p) = c.parameters().into_iter().find(phase) {
+                let value = c.value(p).expect("its own");
+                *c = c.with(p, value + 0.05).expect("its own");
             }
-        })
-    };
-    let without_cosine = || {
-        chained(|c: &mut Chain| {
+        }),
+        scaled("frequency of the grating + 1 %", is_frequency, 1.01),
+    ];
+    let half_plane = fault("missing half-plane", |c| {
+        for operator in &mut c.operators {
+            if let Operator::Visibility {
+                mask: Mask::Opaque { half_planes, .. },
+                ..
+            } = operator
+            {
+                half_planes.clear();
+            }
+        }
+    });
+    let diffuse = vec![
+        fault("missing G", |c| {
             c.operators
                 .retain(|o| !matches!(o, Operator::Cosine { .. }));
-        })
-    };
+        }),
+        fault("missing 1/π in the reflection", |c| {
+            for operator in &mut c.operators {
+                if let Operator::Diffuse { albedo, .. } = operator {
+                    *albedo *= std::f64::consts::PI;
+                }
+            }
+        }),
+    ];
+    let spot = scaled("exponent of the spot + 5 %", is_exponent, 1.05);
     vec![
-        (
-            "two_layers",
-            vec![
-                (
-                    "first layer 1 % too far away",
-                    chained(|c| move_layer(c, 0, 0.006)),
-                ),
-                (
-                    "second layer 1 % too far away",
-                    chained(|c| move_layer(c, 1, 0.014)),
-                ),
-            ],
-        ),
-        (
-            "grating",
-            vec![
-                (
-                    "phase of the grating + 0.05",
-                    chained(|c| {
-                        let phase = |p: &Parameter| matches!(p, Parameter::GratingPhase(_));
-                        if let Some(p) = c.parameters().into_iter().find(phase) {
-                            let value = c.value(p).expect("its own");
-                            *c = c.with(p, value + 0.05).expect("its own");
-                        }
-                    }),
-                ),
-                (
-                    "frequency of the grating + 1 %",
-                    scaled(|p| matches!(p, Parameter::GratingFrequency(_)), 1.01),
-                ),
-            ],
-        ),
-        (
-            "fig7_one",
-            vec![(
-                "missing half-plane",
-                chained(|c| {
-                    for operator in &mut c.operators {
-                        if let Operator::Visibility {
-                            mask: Mask::Opaque { half_planes, .. },
-                            ..
-                        } = operator
-                        {
-                            half_planes.clear();
-                        }
-                    }
-                }),
-            )],
-        ),
-        (
-            "diffuse",
-            vec![
-                ("missing G", without_cosine()),
-                (
-                    "missing 1/π in the reflection",
-                    chained(|c| {
-                        for operator in &mut c.operators {
-                            if let Operator::Diffuse { albedo, .. } = operator {
-                                *albedo *= std::f64::consts::PI;
-                            }
-                        }
-                    }),
-                ),
-            ],
-        ),
+        ("two_layers", layers),
+        ("grating", grating),
+        ("fig7_one", vec![half_plane]),
+        ("diffuse", diffuse),
         ("fig4_point", Vec::new()),
-        (
-            "fig4_spot",
-            vec![(
-                "exponent of the spot + 5 %",
-                scaled(|p| matches!(p, Parameter::SpotExponent), 1.05),
-            )],
-        ),
+        ("fig4_spot", vec![spot]),
     ]
 }
 
@@ -287,7 +236,7 @@ fn judged(scene: &Scene, name: &'static str, p_values: &[[Option<f64>; 2]]) -> R
         .fold(f64::INFINITY, f64::min);
     let check = match name {
         NONE => Check::p("accepted", Some(least), level),
-        _ => Check::new("rejected", least, Below(level), "a fault is planted"),
+        _ => Check::new("rejected", least, Below(level)).because("a fault is planted"),
     };
     let shown = [0, 1].map(|kind| joined(p_values.iter().map(|p| p[kind])));
     let outcome = if least < level {
@@ -314,26 +263,19 @@ fn slices(chain: &Chain, plane: &VirtualPlane) -> Slices {
 }
 
 /// Faults that are planted in the prediction.
-fn predictions() -> Vec<(&'static str, Box<Predict>)> {
+fn predictions() -> Vec<PlantedFault> {
     vec![
-        ("first travel + 1 %", chained(|c| scale_travel(c, 0, 1.01))),
-        ("first travel − 1 %", chained(|c| scale_travel(c, 0, 0.99))),
-        ("second travel + 1 %", chained(|c| scale_travel(c, 1, 1.01))),
-        ("second travel − 1 %", chained(|c| scale_travel(c, 1, 0.99))),
-        (
-            "wrong sign of the shear",
-            chained(|c| (0..2).for_each(|n| scale_travel(c, n, -1.0))),
-        ),
-        (
-            "second travel missing",
-            chained(|c| scale_travel(c, 1, 1e-9)),
-        ),
-        (
-            "x and y of the blockers swapped",
-            chained(|c| {
-                each_rectangle(c, |r| r.center.swap(0, 1));
-            }),
-        ),
+        fault("first travel + 1 %", |c| scale_travel(c, 0, 1.01)),
+        fault("first travel − 1 %", |c| scale_travel(c, 0, 0.99)),
+        fault("second travel + 1 %", |c| scale_travel(c, 1, 1.01)),
+        fault("second travel − 1 %", |c| scale_travel(c, 1, 0.99)),
+        fault("wrong sign of the shear", |c| {
+            (0..2).for_each(|n| scale_travel(c, n, -1.0));
+        }),
+        fault("second travel missing", |c| scale_travel(c, 1, 1e-9)),
+        fault("x and y of the blockers swapped", |c| {
+            each_rectangle(c, |r| r.center.swap(0, 1));
+        }),
         (
             "wrong sign of the Fourier transform",
             Box::new(|scene, plane| {
@@ -342,50 +284,48 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
                 Some(slices)
             }),
         ),
-        (
-            "all blockers missing",
-            chained(|c| each_layer(c, |shapes| shapes.clear())),
-        ),
-        (
-            "central blocker missing",
-            chained(|c| {
-                let radius = |s: &Shape| {
-                    let [x, y] = s.bounds().center;
-                    x.hypot(y)
-                };
-                let mut nearest = f64::INFINITY;
-                each_layer(c, |shapes| {
-                    nearest = shapes.iter().map(radius).fold(nearest, f64::min);
-                });
-                each_layer(c, |shapes| shapes.retain(|s| radius(s) > nearest));
-            }),
-        ),
-        (
-            "shift of half a bin of 64 along x",
-            Box::new(|scene, plane| {
-                let shift = plane.window.x.half_width() / 64.0;
-                Some(shifted(unchanged(scene, plane)?, shift))
-            }),
-        ),
-        (
-            "window 1 % too wide in x and y",
-            Box::new(|scene, plane| {
-                let mut wide = plane.clone();
-                wide.window.x = wide.window.x.scaled(1.01);
-                wide.window.y = wide.window.y.scaled(1.01);
-                unchanged(scene, &wide)
-            }),
-        ),
-        (
-            "window 1 % too wide in u and v",
-            Box::new(|scene, plane| {
-                let mut wide = plane.clone();
-                wide.window.u = wide.window.u.scaled(1.01);
-                wide.window.v = wide.window.v.scaled(1.01);
-                unchanged(scene, &wide)
-            }),
-        ),
+        fault("all blockers missing", |c| {
+            each_layer(c, |shapes| shapes.clear());
+        }),
+        fault("central blocker missing", |c| {
+            let radius = |s: &Shape| {
+                let [x, y] = s.bounds().center;
+                x.hypot(y)
+            };
+            let mut nearest = f64::INFINITY;
+            each_layer(c, |shapes| {
+                nearest = shapes.iter().map(radius).fold(nearest, f64::min);
+            });
+            each_layer(c, |shapes| shapes.retain(|s| radius(s) > nearest));
+        }),
+        ("shift of half a bin of 64 along x", moved(1.0 / 64.0)),
+        ("window 1 % too wide in x and y", widened(0.01, 0.0)),
+        ("window 1 % too wide in u and v", widened(0.0, 0.01)),
     ]
+}
+
+/// Returns a function that predicts slices of the field shifted along x by a share of the window's
+/// half-width.
+fn moved(share: f64) -> Box<Predict> {
+    Box::new(move |scene, plane| {
+        let shift = plane.window.x.half_width() * share;
+        Some(shifted(unchanged(scene, plane)?, shift))
+    })
+}
+
+/// Returns a function that predicts slices with windows that are wider than the windows of the
+/// scene by the given fractions.
+fn widened(space: f64, slope: f64) -> Box<Predict> {
+    Box::new(move |scene, plane| {
+        let mut wide = plane.clone();
+        for profile in [&mut wide.window.x, &mut wide.window.y] {
+            *profile = profile.scaled(1.0 + space);
+        }
+        for profile in [&mut wide.window.u, &mut wide.window.v] {
+            *profile = profile.scaled(1.0 + slope);
+        }
+        unchanged(scene, &wide)
+    })
 }
 
 /// Multiplies a parameter of a chain by a factor.
@@ -434,13 +374,6 @@ fn shifted(mut slices: Slices, shift: f64) -> Slices {
     slices
 }
 
-/// A tracer that modifies crossings before they are recorded. The function that modifies a crossing
-/// also receives the index of this crossing in its block.
-struct TamperedBlock<'a, F> {
-    tracer: &'a Tracer,
-    crossing: F,
-}
-
 fn without_jacobian(_: usize, mut crossing: Crossing) -> Option<Crossing> {
     crossing.weight /= crossing.ray.secant_squared().powi(2);
     Some(crossing)
@@ -448,26 +381,4 @@ fn without_jacobian(_: usize, mut crossing: Crossing) -> Option<Crossing> {
 
 fn losing_one_in_a_hundred(number: usize, crossing: Crossing) -> Option<Crossing> {
     (!number.is_multiple_of(100)).then_some(crossing)
-}
-
-impl<F: Fn(usize, Crossing) -> Option<Crossing> + Sync> PhotonSource for TamperedBlock<'_, F> {
-    fn emitted(&self, batch: u32) -> u64 {
-        self.tracer.emitted(batch)
-    }
-
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let mut tampered = |plane: usize, crossings: &[Crossing]| {
-            let numbered = crossings.iter().enumerate();
-            let kept: Vec<Crossing> = numbered
-                .filter_map(|(i, c)| (self.crossing)(i, *c))
-                .collect();
-            record(plane, &kept);
-        };
-        self.tracer.emit(batch, &mut tampered, progress)
-    }
 }

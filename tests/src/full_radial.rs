@@ -192,25 +192,12 @@ fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     let allowed = 3.0 * (0.1 * 0.9 / n).sqrt();
     let [chi2, error] = mean(&chi2);
     let checks = vec![
-        Check::new("uniform p", uniform, AtLeast(level), "1 % over the rows"),
-        Check::new(
-            "p < 10 %",
-            (low - 0.1).abs(),
-            Below(allowed),
-            "three binomial deviations",
-        ),
-        Check::new(
-            "χ²/bin",
-            (chi2 - 1.0).abs(),
-            Below(4.0 * error),
-            "four standard errors",
-        ),
-        Check::new(
-            "counted",
-            n - p.len() as f64,
-            Below(0.5),
-            "each seed must have a p",
-        ),
+        Check::new("uniform p", uniform, AtLeast(level)).because("1 % over the rows"),
+        Check::new("p < 10 %", (low - 0.1).abs(), Below(allowed))
+            .because("three binomial deviations"),
+        Check::new("χ²/bin", (chi2 - 1.0).abs(), Below(4.0 * error))
+            .because("four standard errors"),
+        Check::new("counted", n - p.len() as f64, Below(0.5)).because("each seed must have a p"),
     ];
     let cells = vec![
         name.to_owned(),
@@ -256,9 +243,9 @@ fn faults(photons: u64) -> ReportSection {
         let report = compared(&scene, &field, prediction);
         let p = report.power.p_value.unwrap_or(f64::NAN);
         let check = if rejected {
-            Check::new("rejected", p, Below(LEVEL), "a fault is planted")
+            Check::new("rejected", p, Below(LEVEL)).because("a fault is planted")
         } else {
-            Check::new("accepted", p, AtLeast(LEVEL), "no fault is planted")
+            Check::new("accepted", p, AtLeast(LEVEL)).because("no fault is planted")
         };
         let chi2 = report.power.chi2_per_bin.unwrap_or(f64::NAN);
         Row::new(

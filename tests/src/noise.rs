@@ -45,7 +45,7 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
                 format!("{:.4} %", 100.0 * p.detectable / p.scene),
             ];
             let reason = "1 % for the largest of ten normal numbers";
-            let check = Check::new("off by", off.abs(), Below(bound), reason);
+            let check = Check::new("off by", off.abs(), Below(bound)).because(reason);
             rows.push(Row::new(cells, vec![check]));
         }
     }
@@ -103,12 +103,8 @@ pub(crate) fn gain(sampling: Sampling, photons: u64, batches: u32) -> ReportSect
         row.push(format!("{:.2} %", 100.0 * worse));
         // With 1000 independent frequencies and 64 batches, the total noise is accurate to 0.03
         // dB.
-        let check = Check::new(
-            "total",
-            total,
-            Below(-0.1),
-            "three errors of this ratio, in dB",
-        );
+        let check =
+            Check::new("total", total, Below(-0.1)).because("three errors of this ratio, in dB");
         Row::new(row, vec![check])
     };
     ReportSection::new(
@@ -151,11 +147,11 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         let off = lattice - random;
         rows[last]
             .checks
-            .push(Check::new("lattice", off, Below(0.1), reason));
+            .push(Check::new("lattice", off, Below(0.1)).because(reason));
         if let Some((fewer, higher)) = before.replace((*n, random)) {
             let expected = 10.0 * (*n as f64 / fewer as f64).log10();
             let off = (higher - random - expected).abs();
-            let check = Check::new("fall", off, Below(0.1), reason);
+            let check = Check::new("fall", off, Below(0.1)).because(reason);
             rows[last - 1].checks.push(check);
         }
     }

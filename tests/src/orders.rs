@@ -22,7 +22,7 @@ const FALLS: f64 = 0.125;
 /// Checks that the order fitted to decreasing errors equals the known order.
 pub(crate) fn check(fitted: f64, known: f64) -> Check {
     let off = (fitted - known).abs();
-    Check::new("order", off, AtMost(ORDER), "error of a fit to few sizes")
+    Check::new("order", off, AtMost(ORDER)).because("error of a fit to few sizes")
 }
 
 /// Returns the slope of the least-squares line.
@@ -208,11 +208,11 @@ impl KnownOrder {
                 let none = if errors.is_empty() { f64::NAN } else { 0.0 };
                 let largest = errors.into_iter().fold(none, worse);
                 let reason = "difference of two quadratures";
-                Check::new("error", largest, Below(QUADRATURE), reason)
+                Check::new("error", largest, Below(QUADRATURE)).because(reason)
             }
             Misprint => {
                 let reason = "the error of a correct chain falls with the size";
-                Check::new("remains", ratio, AtLeast(REMAINS), reason)
+                Check::new("remains", ratio, AtLeast(REMAINS)).because(reason)
             }
             NoOrder(reason) => Check::fact("falls", order.is_nan() || ratio <= FALLS, reason),
         }

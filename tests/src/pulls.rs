@@ -319,7 +319,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
     let within = |id, off: f64, error: f64| {
         let bound = MAX_DEVIATION.max(MAX_ERRORS * error);
-        Check::new(id, off, Below(bound), "0.05, or three standard errors")
+        Check::new(id, off, Below(bound)).because("0.05, or three standard errors")
     };
     let checks = vec![
         within("mean", mean.abs(), mean_error),

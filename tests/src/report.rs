@@ -25,26 +25,44 @@ pub(crate) struct Check {
 /// The name of the check of p, where p compares photons with the exact prediction.
 pub(crate) const EXACT: &str = "exact";
 
-impl Check {
-    pub(crate) fn new(id: &'static str, figure: f64, bound: Bound, reason: &'static str) -> Self {
-        Self {
+/// A number and the requirement that it must meet, without a reason yet.
+#[must_use]
+pub(crate) struct Requirement {
+    id: &'static str,
+    figure: f64,
+    bound: Bound,
+}
+
+impl Requirement {
+    /// Adds the reason for the requirement.
+    pub(crate) fn because(self, reason: &'static str) -> Check {
+        let Self { id, figure, bound } = self;
+        Check {
             id,
             figure,
             bound,
             reason,
         }
     }
+}
+
+impl Check {
+    /// Creates a requirement, which becomes a check when its reason is given.
+    #[expect(clippy::new_ret_no_self, reason = "a check needs a reason")]
+    pub(crate) fn new(id: &'static str, figure: f64, bound: Bound) -> Requirement {
+        Requirement { id, figure, bound }
+    }
 
     /// Returns a check that a fact is true. The checked number is 1 if the fact is true, and 0
     /// otherwise.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
-        Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
+        Self::new(id, f64::from(holds), Bound::AtLeast(1.0)).because(reason)
     }
 
     /// Creates a check that a p-value is at least `level`; a missing p-value counts as 0.
     pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
         let bound = Bound::AtLeast(level);
-        Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
+        Self::new(id, p.unwrap_or(0.0), bound).because("α over all planes")
     }
 
     /// Returns a check of photons against the exact prediction, judged as in a run. The check
@@ -64,7 +82,7 @@ impl Check {
 
     /// Returns a check that a number of occurrences is zero.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
-        Self::new(id, count as f64, Bound::AtMost(0.0), "none may occur")
+        Self::new(id, count as f64, Bound::AtMost(0.0)).because("none may occur")
     }
 
     pub(crate) fn passes(&self) -> bool {
@@ -189,8 +207,7 @@ impl ReportSection {
             Check::fact(
                 "sound",
                 is_sound,
-                "without the fault all checks must pass, else a \
-                failure shows nothing",
+                "without the fault all checks must pass, else a failure shows nothing",
             ),
             Check::fact(
                 "seen",

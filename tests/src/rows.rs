@@ -101,13 +101,10 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
         let passed = rows.iter().filter(|row| row.passes()).count();
         cells.push(format!("{passed} of {}", rows.len()));
         let (passed, all) = (passed as f64, rows.len().max(1) as f64);
-        checks.push(Check::new(
-            id,
-            passed,
-            AtLeast(all),
-            "all must pass, and there must be at \
-            least one",
-        ));
+        checks.push(
+            Check::new(id, passed, AtLeast(all))
+                .because("all must pass, and there must be at least one"),
+        );
     }
     let p = planes.iter().filter_map(|row| exact(row));
     cells.push(p.fold(1.0, f64::min).to_string());
@@ -143,7 +140,7 @@ mod tests {
     }
 
     fn off(figure: f64) -> Vec<Check> {
-        vec![Check::new("off", figure, Below(1e-9), "rounding")]
+        vec![Check::new("off", figure, Below(1e-9)).because("rounding")]
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The scenes used for validation, and functions that measure and predict them.
 
 use etendue_compare::{Class, PlaneComparison, Prediction, Test, compare};
-use etendue_field::PhotonSource;
+use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_predict::{Applicability, predict, predict_reference, test_of};
 use etendue_scene::{RunFile, Sampling, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
@@ -129,6 +129,43 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
     } else {
         measured(scene, &AllLights::photons(scene))
     }
+}
+
+/// A tracer that modifies crossings before they are recorded.
+struct Tampered<F> {
+    tracer: Tracer,
+    crossing: F,
+}
+
+impl<F: Fn(usize, Crossing) -> Option<Crossing> + Sync> PhotonSource for Tampered<F> {
+    fn emitted(&self, batch: u32) -> u64 {
+        self.tracer.emitted(batch)
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut tampered = |plane: usize, crossings: &[Crossing]| {
+            let numbered = crossings.iter().enumerate();
+            let kept = numbered.filter_map(|(i, c)| (self.crossing)(i, *c));
+            record(plane, &kept.collect::<Vec<_>>());
+        };
+        self.tracer.emit(batch, &mut tampered, progress)
+    }
+}
+
+/// Measures a scene with photons whose crossings are modified before they are recorded. The
+/// function that modifies a crossing also receives the index of this crossing in its block; it
+/// returns `None` for a photon that is lost.
+pub(crate) fn tampered(
+    scene: &Scene,
+    crossing: impl Fn(usize, Crossing) -> Option<Crossing> + Sync,
+) -> Measurement {
+    let tracer = Tracer::new(scene);
+    measured(scene, &Tampered { tracer, crossing })
 }
 
 /// Measures a scene with photons that are not aimed.

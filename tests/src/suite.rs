@@ -132,7 +132,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             .min(least);
         let cells = vec![format!("{name}: photons through"), through.to_string()];
         let reason = "much light passes one occluder, and none passes both";
-        let check = |bound| Check::new("through", through as f64, bound, reason);
+        let check = |bound| Check::new("through", through as f64, bound).because(reason);
         let checks = vec![check(AtLeast(wanted as f64)), check(AtMost(most))];
         rows.push(Row::new(cells, checks));
     }
@@ -184,19 +184,17 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
             "F₁ + F₂ − F, predicted with phases, relative to F".to_owned(),
             format!("{sum:.1e}"),
         ],
-        vec![Check::new("sum", sum, Below(1e-12), "rounding")],
+        vec![Check::new("sum", sum, Below(1e-12)).because("rounding")],
     ));
     rows.push(Row::new(
         vec![
             "the same with moduli, without phases".to_owned(),
             format!("{blind:.3}"),
         ],
-        vec![Check::new(
-            "moduli",
-            blind,
-            Above(1e-2),
-            "without phases, the spectra do not cancel",
-        )],
+        vec![
+            Check::new("moduli", blind, Above(1e-2))
+                .because("without phases, the spectra do not cancel"),
+        ],
     ));
     ReportSection::new(
         "Two occluders (Fig. 7)",
@@ -239,8 +237,8 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
         let reason = "H is far larger than for blockers of the other sizes";
         let checks = [measured, predicted].map(|[to_a, to_c]| {
             [
-                Check::new("b/a", to_a, AtLeast(5.0), reason),
-                Check::new("b/c", to_c.abs(), AtLeast(10.0), reason),
+                Check::new("b/a", to_a, AtLeast(5.0)).because(reason),
+                Check::new("b/c", to_c.abs(), AtLeast(10.0)).because(reason),
             ]
         });
         let mut row = vec![format!("{:.2}", a.cut)];
@@ -296,8 +294,8 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
         let predicted = compared.predicted.half[zero].re;
         let (off, wrong) = ((measured - known).abs(), (predicted / known - 1.0).abs());
         let checks = vec![
-            Check::new("measured", off, Below(4.0 * error), "four standard errors"),
-            Check::new("theory", wrong, Below(1e-4), "error of the quadrature"),
+            Check::new("measured", off, Below(4.0 * error)).because("four standard errors"),
+            Check::new("theory", wrong, Below(1e-4)).because("error of the quadrature"),
         ];
         let cells = vec![
             format!("{known:.6}"),

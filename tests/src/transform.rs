@@ -88,14 +88,9 @@ pub(crate) fn transform(options: &TransformOptions) -> io::Result<ReportSection>
     bar.end();
     let [full, reduced] = largest;
     let checks = vec![
-        Check::new("full", full.single, Below(2e-7), "the documented error"),
-        Check::new(
-            "reduced",
-            reduced.single,
-            Below(2e-5),
-            "the documented error",
-        ),
-        Check::new("noise", largest_used, Below(0.1), "a tenth of the noise"),
+        Check::new("full", full.single, Below(2e-7)).because("the documented error"),
+        Check::new("reduced", reduced.single, Below(2e-5)).because("the documented error"),
+        Check::new("noise", largest_used, Below(0.1)).because("a tenth of the noise"),
     ];
     rows.push(Row::new(cells("largest", "", &largest), checks));
     Ok(ReportSection::new(

@@ -98,13 +98,8 @@ pub(super) fn section(
             continue;
         }
         let unnamed = Check::none("planes", planes);
-        let caught = Check::new(
-            "caught",
-            fails,
-            AtLeast(1.0),
-            "at least one judged plane must be \
-            rejected",
-        );
+        let caught = Check::new("caught", fails, AtLeast(1.0))
+            .because("at least one judged plane must be rejected");
         let dark = Check::none("lit", lit);
         let checks = [
             (says == UNKNOWN).then_some(unnamed),

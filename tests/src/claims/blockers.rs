@@ -54,18 +54,10 @@ fn finite(run: ClaimRun) -> Claim {
         numbers: widths.to_vec(),
         checks: vec![
             decreasing(&widths),
-            Check::new(
-                "4 columns: width × N p",
-                of_comb(0),
-                AtLeast(0.95),
-                "∫|D_N|²/N² = 1/(N p), tilted by the transform of the squares",
-            ),
-            Check::new(
-                "the same",
-                of_comb(0),
-                AtMost(1.1),
-                "the window of 6 m widens the replica",
-            ),
+            Check::new("4 columns: width × N p", of_comb(0), AtLeast(0.95))
+                .because("∫|D_N|²/N² = 1/(N p), tilted by the transform of the squares"),
+            Check::new("the same", of_comb(0), AtMost(1.1))
+                .because("the window of 6 m widens the replica"),
         ],
         holds: "holds: with N columns of pitch p, the width is 1/(N p), unless the window is \
             narrower than the array",
@@ -102,12 +94,10 @@ fn replicas(run: ClaimRun) -> Claim {
             "frequency of the first replica times the pitch, for squares {pitches:?} m apart"
         ),
         numbers: places.to_vec(),
-        checks: vec![Check::new(
-            "off 1",
-            off.fold(0.0, f64::max),
-            Below(2e-3),
-            "the window's spectrum has a slope over the replica",
-        )],
+        checks: vec![
+            Check::new("off 1", off.fold(0.0, f64::max), Below(2e-3))
+                .because("the window's spectrum has a slope over the replica"),
+        ],
         holds: "holds: the first replica is at 1/pitch",
     }
 }
@@ -133,20 +123,10 @@ fn jitter(run: ClaimRun) -> Claim {
             pitches"
             .to_owned(),
         checks: vec![
-            Check::new(
-                "jitter 0",
-                shares[0].value,
-                AtLeast(0.95),
-                "a comb has no power between \
-                its lines",
-            ),
-            Check::new(
-                "jitter 0.3",
-                most,
-                AtMost(0.8),
-                "between the lines the power is N (1 − \
-                sinc²(jΩ))",
-            ),
+            Check::new("jitter 0", shares[0].value, AtLeast(0.95))
+                .because("a comb has no power between its lines"),
+            Check::new("jitter 0.3", most, AtMost(0.8))
+                .because("between the lines the power is N (1 − sinc²(jΩ))"),
         ],
         numbers: shares.to_vec(),
         holds: "holds",
@@ -192,18 +172,10 @@ fn average(run: ClaimRun) -> Claim {
         ),
         numbers: numbers.to_vec(),
         checks: vec![
-            Check::new(
-                "exponent",
-                exponent,
-                AtLeast(1.7),
-                "the amplitude falls with the pitch, so the power falls with exponent 2",
-            ),
-            Check::new(
-                "the same",
-                exponent,
-                AtMost(2.6),
-                "the exponent is 2, but windows hold few periods",
-            ),
+            Check::new("exponent", exponent, AtLeast(1.7))
+                .because("the amplitude falls with the pitch, so the power falls with exponent 2"),
+            Check::new("the same", exponent, AtMost(2.6))
+                .because("the exponent is 2, but windows hold few periods"),
         ],
         holds: "holds: the difference in amplitude is of first order in the pitch",
     }
@@ -216,15 +188,17 @@ fn before_average(run: ClaimRun) -> Claim {
         shown: "the same before the floor: replicas move to angular frequencies and do not vanish"
             .to_owned(),
         numbers: numbers.to_vec(),
-        checks: vec![Check::new(
-            "smallest",
-            numbers
-                .iter()
-                .map(|n| n.value)
-                .fold(f64::INFINITY, f64::min),
-            AtLeast(0.1),
-            "only the first replicas, at 1/pitch in ρ, are left",
-        )],
+        checks: vec![
+            Check::new(
+                "smallest",
+                numbers
+                    .iter()
+                    .map(|n| n.value)
+                    .fold(f64::INFINITY, f64::min),
+                AtLeast(0.1),
+            )
+            .because("only the first replicas, at 1/pitch in ρ, are left"),
+        ],
         holds: "does not hold before diffuse reflection: the integration over angle causes the \
             average",
     }
@@ -321,12 +295,8 @@ fn combined(run: ClaimRun) -> Claim {
         ),
         checks: vec![
             Check::none("pairs under-estimated", under),
-            Check::new(
-                "largest ratio",
-                ratio,
-                AtMost(1.0),
-                "the magnitude of a sum is at most the sum of magnitudes",
-            ),
+            Check::new("largest ratio", ratio, AtMost(1.0))
+                .because("the magnitude of a sum is at most the sum of magnitudes"),
         ],
         numbers: excess,
         holds: "holds for all pairs",
@@ -373,7 +343,7 @@ fn soft_shadows(run: ClaimRun) -> Claim {
         numbers: numbers.to_vec(),
         checks: vec![
             decreasing(&numbers),
-            Check::new("off the convolution, in errors", off, AtMost(PULL), CHANCE),
+            Check::new("off the convolution, in errors", off, AtMost(PULL)).because(CHANCE),
         ],
         holds: "holds for a diffuse light and planar blockers parallel to the floor",
     }

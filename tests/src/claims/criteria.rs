@@ -39,18 +39,9 @@ fn criteria(run: ClaimRun) -> Claim {
             from a glossy sphere"
         ),
         checks: vec![
-            Check::new(
-                "largest",
-                most,
-                AtMost(1.05),
-                "the criterion has an error of 5 %",
-            ),
-            Check::new(
-                "widest light",
-                shares[3].value,
-                AtMost(0.7),
-                "this light has few frequencies",
-            ),
+            Check::new("largest", most, AtMost(1.05)).because("the criterion has an error of 5 %"),
+            Check::new("widest light", shares[3].value, AtMost(0.7))
+                .because("this light has few frequencies"),
             decreasing(&shares[1..]),
         ],
         numbers: shares.to_vec(),
@@ -104,24 +95,12 @@ fn larger_curvature(run: ClaimRun) -> Claim {
             sphere; across the plane of incidence, k counts with cos θ₁, which gives {wanted:.3}"
         ),
         checks: vec![
-            Check::new(
-                "inside",
-                (inside.value - 1.0).abs(),
-                AtMost(0.05),
-                "the criterion has an error of 5 %",
-            ),
-            Check::new(
-                "sphere",
-                (sphere.value - 1.0).abs(),
-                AtMost(0.05),
-                "the criterion has an error of 5 %",
-            ),
-            Check::new(
-                "across",
-                (across.value / wanted - 1.0).abs(),
-                AtMost(0.05),
-                "the criterion has an error of 5 %",
-            ),
+            Check::new("inside", (inside.value - 1.0).abs(), AtMost(0.05))
+                .because("the criterion has an error of 5 %"),
+            Check::new("sphere", (sphere.value - 1.0).abs(), AtMost(0.05))
+                .because("the criterion has an error of 5 %"),
+            Check::new("across", (across.value / wanted - 1.0).abs(), AtMost(0.05))
+                .because("the criterion has an error of 5 %"),
         ],
         numbers: shares.to_vec(),
         holds: "holds as a bound: it is reached in the plane of incidence, but not across it",

@@ -65,12 +65,8 @@ fn tails(run: ClaimRun) -> Claim {
             along its diagonal (n = 1), and along the diagonal 1 m behind it in the light of a \
             bar (n = 2)"
             .to_owned(),
-        checks: vec![Check::new(
-            "off n + 1",
-            off,
-            Below(0.2),
-            "the spectrum is noisy at the \
-            highest frequency, and exponents are whole numbers",
+        checks: vec![Check::new("off n + 1", off, Below(0.2)).because(
+            "the spectrum is noisy at the highest frequency, and exponents are whole numbers",
         )],
         numbers: numbers.to_vec(),
         holds: "holds",
@@ -117,24 +113,11 @@ fn narrowed(run: ClaimRun) -> [Claim; 2] {
                 .to_owned(),
             checks: vec![
                 decreasing(&valleys[1..]),
-                Check::new(
-                    "± 0.1 m",
-                    valleys[0].value,
-                    Above(1.0),
-                    "there is no valley",
-                ),
-                Check::new(
-                    "± 0.2 m",
-                    valleys[1].value,
-                    Above(1.0),
-                    "there is no valley either",
-                ),
-                Check::new(
-                    "± 0.8 m",
-                    valleys[3].value,
-                    Below(0.01),
-                    "the replica is resolved",
-                ),
+                Check::new("± 0.1 m", valleys[0].value, Above(1.0)).because("there is no valley"),
+                Check::new("± 0.2 m", valleys[1].value, Above(1.0))
+                    .because("there is no valley either"),
+                Check::new("± 0.8 m", valleys[3].value, Below(0.01))
+                    .because("the replica is resolved"),
             ],
             numbers: valleys.to_vec(),
             holds: "holds: the replica is resolved if the window holds four periods or more",
@@ -181,12 +164,8 @@ fn moved(run: ClaimRun) -> Claim {
         ),
         checks: vec![
             decreasing(&shares),
-            Check::new(
-                "beside it",
-                shares[3].value / shares[0].value,
-                Below(0.01),
-                "the window does not reach the array",
-            ),
+            Check::new("beside it", shares[3].value / shares[0].value, Below(0.01))
+                .because("the window does not reach the array"),
         ],
         numbers: shares.to_vec(),
         holds: "holds",
@@ -201,12 +180,8 @@ fn homogeneous(run: ClaimRun) -> Claim {
         shown: format!("the same, 0.4 m beside the array, in windows of ± {halves:?} m"),
         checks: vec![
             decreasing(&shares),
-            Check::new(
-                "± 0.3 m",
-                shares[2].value,
-                AtMost(1e-4),
-                "all light in the window passes beside the array",
-            ),
+            Check::new("± 0.3 m", shares[2].value, AtMost(1e-4))
+                .because("all light in the window passes beside the array"),
         ],
         numbers: shares.to_vec(),
         holds: "holds: in the narrowest window, all light passes beside the array",

@@ -66,7 +66,7 @@ fn row(claim: Claim) -> Row {
     ];
     let pulls = claim.numbers.iter().map(|number| number.pull().abs());
     let worst = pulls.fold(0.0, crate::report::worse);
-    let mut checks = vec![Check::new("pull", worst, AtMost(PULL), CHANCE)];
+    let mut checks = vec![Check::new("pull", worst, AtMost(PULL)).because(CHANCE)];
     checks.extend(claim.checks);
     Row::new(cells, checks)
 }

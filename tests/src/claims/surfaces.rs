@@ -6,8 +6,7 @@ use super::scene::{ClaimRun, SeenScene, number};
 use super::{CHANCE, Claim, PULL};
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::Check;
-use crate::scenes::measured;
-use crate::shading::Tampered;
+use crate::scenes::tampered;
 use etendue_field::{Crossing, PhotonSource, Slices, VirtualPlane};
 use etendue_spectrum::bandwidth::Along;
 use etendue_trace::Tracer;
@@ -56,12 +55,8 @@ fn reciprocity(run: ClaimRun) -> Claim {
     Claim {
         said: "a BRDF of the angle to the mirror direction is not reciprocal (4.1)",
         shown: "BRDF of a Phong lobe from 20° to 50° over the same BRDF from 50° to 20°".to_owned(),
-        checks: vec![Check::new(
-            "off 1",
-            (ratio.value - 1.0).abs(),
-            Below(0.01),
-            "the windows of 0.02 m and 0.02 rad cause an error of second order, and there is \
-            noise",
+        checks: vec![Check::new("off 1", (ratio.value - 1.0).abs(), Below(0.01)).because(
+            "the windows of 0.02 m and 0.02 rad cause an error of second order, and there is noise",
         )],
         numbers: vec![ratio],
         holds: "does not hold: it is reciprocal",
@@ -74,12 +69,7 @@ fn fresnel(run: ClaimRun) -> Claim {
         said: "the same, with a factor f(θ_i') (4.3)",
         shown: "the same ratio with the Fresnel factor of glass at the angle of incidence"
             .to_owned(),
-        checks: vec![Check::new(
-            "ratio",
-            ratio.value,
-            Below(0.8),
-            "F(20°)/F(50°) = 0.70",
-        )],
+        checks: vec![Check::new("ratio", ratio.value, Below(0.8)).because("F(20°)/F(50°) = 0.70")],
         numbers: vec![ratio],
         holds: "holds for such a BRDF",
     }
@@ -113,18 +103,10 @@ fn mirror_sphere(run: ClaimRun) -> Claim {
         ),
         numbers: Vec::new(),
         checks: vec![
-            Check::new(
-                "off twice",
-                off,
-                Below(1e-8),
-                "rounding is larger at the rim, where the root of 1 − k² r² is small",
-            ),
-            Check::new(
-                "widest",
-                widest,
-                AtLeast(176.0),
-                "normals reach 88°, because few photons land at the rim",
-            ),
+            Check::new("off twice", off, Below(1e-8))
+                .because("rounding is larger at the rim, where the root of 1 − k² r² is small"),
+            Check::new("widest", widest, AtLeast(176.0))
+                .because("normals reach 88°, because few photons land at the rim"),
         ],
         holds: "holds up to the rim",
     }
@@ -162,10 +144,7 @@ fn curvature(run: ClaimRun) -> [Claim; 2] {
                 "95 % bandwidth over ν [/rad] of the light that leaves a glossy surface with k = \
                 {curvatures:?} /m"
             ),
-            checks: vec![Check::new(
-                "spread",
-                spread(&angular),
-                Below(0.03),
+            checks: vec![Check::new("spread", spread(&angular), Below(0.03)).because(
                 "a window of 0.6 rad cuts the lobe, and off its middle where the surface turns",
             )],
             numbers: angular,
@@ -174,12 +153,10 @@ fn curvature(run: ClaimRun) -> [Claim; 2] {
         Claim {
             said: "curvature has a strong effect on spatial frequencies (4.2)",
             shown: "the same bandwidth over ρ [/m]".to_owned(),
-            checks: vec![Check::new(
-                "spread",
-                spread(&spatial),
-                Above(0.5),
-                "a shear by twice k maps ν to ρ",
-            )],
+            checks: vec![
+                Check::new("spread", spread(&spatial), Above(0.5))
+                    .because("a shear by twice k maps ν to ρ"),
+            ],
             numbers: spatial,
             holds: "holds",
         },
@@ -206,13 +183,12 @@ fn cosine(run: ClaimRun) -> Claim {
         let scene = run.scene("cosine", &[("window.u", format!("Hann({half})"))]);
         let whole = SeenScene::of(scene.clone());
         // Replaces the factor cos θ cos φ of a weight by cos θ.
-        let tampered = |mut crossing: Crossing| {
+        let without_cosine = |_: usize, mut crossing: Crossing| {
             crossing.weight /= crossing.ray.v.cos();
-            crossing
+            Some(crossing)
         };
-        let source = Tampered::new(&scene, tampered);
         let flat = SeenScene {
-            measurement: measured(&scene, &source),
+            measurement: tampered(&scene, without_cosine),
             predictions: whole.predictions.clone(),
         };
         number(&[(&flat, 0), (&whole, 0)], &|slices| {
@@ -238,8 +214,8 @@ fn cosine(run: ClaimRun) -> Claim {
             {exponent:.2}"
         ),
         checks: vec![
-            Check::new("exponent", exponent, AtLeast(1.9), "second order in φ"),
-            Check::new("the same", exponent, AtMost(2.1), "second order in φ"),
+            Check::new("exponent", exponent, AtLeast(1.9)).because("second order in φ"),
+            Check::new("the same", exponent, AtMost(2.1)).because("second order in φ"),
         ],
         numbers,
         holds: "holds: the error is of second order in φ",
@@ -267,18 +243,10 @@ fn lobe(run: ClaimRun) -> Claim {
             a direction that is {aside:?} rad off the mirror direction"
         ),
         checks: vec![
-            Check::new(
-                "at the peak",
-                (ratios[0].value - 1.0).abs(),
-                Below(0.1),
-                "only the distance to the peak counts",
-            ),
-            Check::new(
-                "off it",
-                ratios[1].value.min(ratios[2].value),
-                AtLeast(4.0),
-                "one change is of first order and the other of second order",
-            ),
+            Check::new("at the peak", (ratios[0].value - 1.0).abs(), Below(0.1))
+                .because("only the distance to the peak counts"),
+            Check::new("off it", ratios[1].value.min(ratios[2].value), AtLeast(4.0))
+                .because("one change is of first order and the other of second order"),
         ],
         numbers: ratios.to_vec(),
         holds: "holds",
@@ -320,24 +288,16 @@ fn environment(run: ClaimRun) -> [Claim; 2] {
             shown: "energy of the difference between the spectra of diffuse spheres of k = 1 /m \
                 and k = 3 /m at the same Ωx/k, relative to the energy of the former"
                 .to_owned(),
-            checks: vec![Check::new(
-                "apart",
-                far.value / far.error,
-                AtMost(PULL),
-                CHANCE,
-            )],
+            checks: vec![Check::new("apart", far.value / far.error, AtMost(PULL)).because(CHANCE)],
             numbers: vec![far],
             holds: "holds: the spectrum is a function of Ωx/k",
         },
         Claim {
             said: "the same, under a light that varies in space",
             shown: "the same for a square light of 0.5 m, 0.5 m away".to_owned(),
-            checks: vec![Check::new(
-                "apart",
-                near.value,
-                AtLeast(0.002),
-                "far beyond noise",
-            )],
+            checks: vec![
+                Check::new("apart", near.value, AtLeast(0.002)).because("far beyond noise"),
+            ],
             numbers: vec![near],
             holds: "does not hold: the spectrum of such light is not a line",
         },

@@ -97,8 +97,8 @@ pub(crate) fn power(photons: u64, seed: u64) -> ReportSection {
         let planted = fault(plane, sound.clone());
         let found = p_values(&scene, &measurement, (index, &planted, &[]));
         let [of_slices, of_power] = found.map(|p| p.unwrap_or(f64::NAN));
-        let seen = |p| Check::new("rejected", p, Below(level), "a fault is planted");
-        let unseen = |p| Check::new("accepted", p, AtLeast(level), "nothing changes here");
+        let seen = |p| Check::new("rejected", p, Below(level)).because("a fault is planted");
+        let unseen = |p| Check::new("accepted", p, AtLeast(level)).because("nothing changes here");
         let checks = match change {
             PlantedIn::Nothing => vec![unseen(of_slices), unseen(of_power)],
             PlantedIn::Power => vec![seen(of_power)],

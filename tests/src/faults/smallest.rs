@@ -1,15 +1,14 @@
 //! Finds the smallest faults of the main scene that are still rejected.
 
-use super::{Predict, TamperedBlock, chained, each_rectangle, scale_travel, shifted, unchanged};
+use super::{Predict, chained, each_rectangle, moved, scale_travel, unchanged, widened};
 use crate::progress::progress;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{fig9b, measured, sampled, traced};
+use crate::scenes::{fig9b, sampled, tampered, traced};
 use etendue_compare::{Residuals, TESTS, sidak};
 use etendue_field::{Crossing, VirtualPlane};
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
-use etendue_trace::Tracer;
 
 /// The largest size of a fault that is tried, and the number of times that this size is halved.
 const LARGEST: f64 = 0.01;
@@ -21,41 +20,38 @@ enum SizedFault {
     Photons(fn(f64, Crossing) -> Crossing),
 }
 
+use SizedFault::{Photons, Predicted};
+
 const FAULTS: [(&str, SizedFault); 7] = [
     (
         "first travel too long",
-        SizedFault::Predicted(|size| chained(move |c| scale_travel(c, 0, 1.0 + size))),
+        Predicted(|size| chained(move |c| scale_travel(c, 0, 1.0 + size))),
     ),
     (
         "second travel too long",
-        SizedFault::Predicted(|size| chained(move |c| scale_travel(c, 1, 1.0 + size))),
+        Predicted(|size| chained(move |c| scale_travel(c, 1, 1.0 + size))),
     ),
     (
         "blockers too wide",
-        SizedFault::Predicted(|size| {
+        Predicted(|size| {
             chained(move |c| each_rectangle(c, |r| r.size = r.size.map(|side| side * (1.0 + size))))
         }),
     ),
     (
         "window too wide in x and y",
-        SizedFault::Predicted(|size| widened(size, 0.0)),
+        Predicted(|size| widened(size, 0.0)),
     ),
     (
         "window too wide in u and v",
-        SizedFault::Predicted(|size| widened(0.0, size)),
+        Predicted(|size| widened(0.0, size)),
     ),
     (
         "field moved along x, relative to the half-width",
-        SizedFault::Predicted(|size| {
-            Box::new(move |scene, plane| {
-                let shift = plane.window.x.half_width() * size;
-                Some(shifted(unchanged(scene, plane)?, shift))
-            })
-        }),
+        Predicted(moved),
     ),
     (
         "flux of photons with x > 0 too large",
-        SizedFault::Photons(|size, mut crossing| {
+        Photons(|size, mut crossing| {
             if crossing.ray.x > 0.0 {
                 crossing.weight *= 1.0 + size;
             }
@@ -63,21 +59,6 @@ const FAULTS: [(&str, SizedFault); 7] = [
         }),
     ),
 ];
-
-/// Returns a function that predicts slices with windows that are wider than the windows of the
-/// scene by the given fractions.
-fn widened(space: f64, slope: f64) -> Box<Predict> {
-    Box::new(move |scene, plane| {
-        let mut wide = plane.clone();
-        for profile in [&mut wide.window.x, &mut wide.window.y] {
-            *profile = profile.scaled(1.0 + space);
-        }
-        for profile in [&mut wide.window.u, &mut wide.window.v] {
-            *profile = profile.scaled(1.0 + slope);
-        }
-        unchanged(scene, &wide)
-    })
-}
 
 /// Tries each fault with a size of 1 %, and then repeatedly with half the previous size. Returns
 /// the section on the smallest rejected size. At this size and at all larger tried sizes, the fault
@@ -97,12 +78,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
         let sizes: Vec<Option<f64>> = sizes.collect();
         let checks = sizes.iter().map(|size| {
             let size = size.unwrap_or(f64::INFINITY);
-            Check::new(
-                "size",
-                size,
-                Below(LARGEST),
-                "the largest planted size is rejected",
-            )
+            Check::new("size", size, Below(LARGEST)).because("the largest planted size is rejected")
         });
         let shown = sizes
             .iter()
@@ -129,13 +105,10 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes
         .take_while(|size| match fault {
-            SizedFault::Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
-            SizedFault::Photons(tamper) => {
-                let tampered = TamperedBlock {
-                    tracer: &Tracer::new(scene),
-                    crossing: |_, crossing| Some(tamper(*size, crossing)),
-                };
-                is_rejected(scene, &measured(scene, &tampered), &unchanged)
+            Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
+            Photons(tamper) => {
+                let photons = tampered(scene, |_, crossing| Some(tamper(*size, crossing)));
+                is_rejected(scene, &photons, &unchanged)
             }
         })
         .last()

@@ -118,15 +118,11 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let (slack, reason) = (BORNE * error, "expected from 1 to 31/29, within its errors");
     let largest = of_group.iter().map(|m| m.ratio / scale).fold(0.0, worse);
     row.checks.extend([
-        Check::new("p", uniform, AtLeast(0.01 / 3.0), "1 % over all groups"),
-        Check::new("square", square, AtLeast(1.0 - slack), reason),
-        Check::new("square", square, Below(OF_ONE + slack), reason),
-        Check::new(
-            "ratio",
-            largest,
-            Below(LARGEST),
-            "a share of 3e-5 is beyond this by chance",
-        ),
+        Check::new("p", uniform, AtLeast(0.01 / 3.0)).because("1 % over all groups"),
+        Check::new("square", square, AtLeast(1.0 - slack)).because(reason),
+        Check::new("square", square, Below(OF_ONE + slack)).because(reason),
+        Check::new("ratio", largest, Below(LARGEST))
+            .because("a share of 3e-5 is beyond this by chance"),
     ]);
     row.cells.push(format!("{uniform:.3}"));
     row.cells.push(format!("{square:.3} ± {error:.3}"));
@@ -156,7 +152,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     row.cells.push(cell);
     let off = (share - expected).abs() / error;
     row.checks
-        .push(Check::new("share", off, Below(BORNE), "standard errors"));
+        .push(Check::new("share", off, Below(BORNE)).because("standard errors"));
 }
 
 /// Returns the section with fractions and ratios for each kind of scene.

@@ -55,9 +55,9 @@ impl SecondCheck {
     pub(super) fn required(&self, difference: f64, planted: f64) -> Vec<report::Check> {
         let (most, reason) = self.tolerance;
         vec![
-            report::Check::new("agrees", difference, AtMost(most), reason),
-            report::Check::new("fault seen", planted, Above(most), reason),
-            report::Check::new("a number", planted, Below(f64::INFINITY), "no nonsense"),
+            report::Check::new("agrees", difference, AtMost(most)).because(reason),
+            report::Check::new("fault seen", planted, Above(most)).because(reason),
+            report::Check::new("a number", planted, Below(f64::INFINITY)).because("no nonsense"),
         ]
     }
 }

@@ -104,10 +104,10 @@ pub(super) fn bandwidths() -> ReportSection {
         // The sum of two terms equals the bound if both terms have the same sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
-        let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");
+        let digits = |id, figure| Check::new(id, figure, Below(DIGITS)).because("six digits");
         let image = |image: f64| {
             let reason = "images a thousand times narrower than the radius";
-            Check::new("image", (image - 1.0).abs(), Below(IMAGE), reason)
+            Check::new("image", (image - 1.0).abs(), Below(IMAGE)).because(reason)
         };
         let mut checks = vec![
             digits("B", off(said, b)),

@@ -1,15 +1,14 @@
 //! A plane of a valid scene, measured and predicted, for comparison with faults.
 
 use crate::predicted;
-use crate::scenes::traced;
+use crate::scenes::{tampered, traced};
 use etendue_compare::Residuals;
-use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Reflectance, Slices, VirtualPlane};
+use etendue_field::{Complex, Crossing, Reflectance, Slices, VirtualPlane};
 use etendue_predict::path;
 use etendue_scene::{Event, Scene};
-use etendue_spectrum::{Measurement, estimate, measure};
+use etendue_spectrum::{Measurement, estimate};
 use etendue_theory::Observed;
 use etendue_theory::path::{Interaction, chain};
-use etendue_trace::Tracer;
 use glam::DVec3;
 
 /// A scene with one plane, the photons at this plane, and their prediction.
@@ -55,8 +54,7 @@ impl Bench {
     ) -> Measurement {
         let mut scene = self.scene.clone();
         change(&mut scene);
-        let source = Tampered::new(&scene, |c| crossing(&self.scene, c));
-        measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
+        tampered(&scene, |_, c| Some(crossing(&self.scene, c)))
     }
 
     /// Returns the p-value of the comparison of photons with a prediction.
@@ -119,38 +117,4 @@ pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let light = plane.frame.to_local(scene.path.frame.origin);
     let away = DVec3::new(across * sin, up, across * cos);
     [away, (light - place).normalize()]
-}
-
-/// A tracer that modifies crossings before they are recorded.
-pub(crate) struct Tampered<F> {
-    tracer: Tracer,
-    crossing: F,
-}
-
-impl<F: Fn(Crossing) -> Crossing> Tampered<F> {
-    pub(crate) fn new(scene: &Scene, crossing: F) -> Self {
-        Self {
-            tracer: Tracer::new(scene),
-            crossing,
-        }
-    }
-}
-
-impl<F: Fn(Crossing) -> Crossing + Sync> PhotonSource for Tampered<F> {
-    fn emitted(&self, batch: u32) -> u64 {
-        self.tracer.emitted(batch)
-    }
-
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        let mut tampered = |plane: usize, crossings: &[Crossing]| {
-            let crossings: Vec<Crossing> = crossings.iter().map(|c| (self.crossing)(*c)).collect();
-            record(plane, &crossings);
-        };
-        self.tracer.emit(batch, &mut tampered, progress)
-    }
 }

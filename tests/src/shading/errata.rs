@@ -47,14 +47,9 @@ pub(super) fn errata() -> ReportSection {
     let word = |accepted: bool| if accepted { "accepted" } else { "rejected" }.to_owned();
     let rows = all.into_iter().map(|e| {
         let checks = vec![
-            Check::new("printed", e.off, AtLeast(e.at_least), "it is wrong"),
-            Check::new(
-                "corrected",
-                e.mended,
-                Below(e.at_most),
-                "the reference is accurate to \
-                this",
-            ),
+            Check::new("printed", e.off, AtLeast(e.at_least)).because("it is wrong"),
+            Check::new("corrected", e.mended, Below(e.at_most))
+                .because("the reference is accurate to this"),
         ];
         let cells = vec![
             e.place.to_owned(),

@@ -183,9 +183,11 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             told += i32::from(rejected);
             let within = |id, x: f64, slack: f64| {
                 let bounds = [Above(ours[0] - slack), Below(ours[1] + slack)];
-                bounds.map(|bound| Check::new(id, x, bound, "within the error of the criterion"))
+                bounds.map(|bound| {
+                    Check::new(id, x, bound).because("within the error of the criterion")
+                })
             };
-            let mut checks = vec![Check::new("noise", off.abs(), Below(MOST), "errors")];
+            let mut checks = vec![Check::new("noise", off.abs(), Below(MOST)).because("errors")];
             checks.extend(within("exact one", exact, 0.0));
             checks.extend(within("measured one", found.value, noise));
             checks.extend(apart.then(|| {

@@ -39,7 +39,7 @@ pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
         for misprint in misprints {
             let printed = bench.p_value(&bench.photons, &misprint.said);
             let checks = vec![
-                Check::new("printed", printed, Below(level), "it is wrong"),
+                Check::new("printed", printed, Below(level)).because("it is wrong"),
                 Check::p("corrected", Some(corrected), level),
             ];
             let cells = vec![

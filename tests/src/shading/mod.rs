@@ -29,7 +29,6 @@ mod traced;
 mod visibility;
 mod words;
 
-pub(crate) use bench::Tampered;
 pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;

@@ -34,19 +34,10 @@ pub(super) fn operators() -> ReportSection {
             small(found.fault.1),
         ];
         let checks = vec![
-            Check::new(
-                "off",
-                found.off,
-                Below(REQUIRED),
-                "both sides are accurate to 1e-12",
-            ),
-            Check::new(
-                "fault",
-                found.fault.1,
-                Above(SEEN),
-                "a fault changes far more than the \
-                tolerance",
-            ),
+            Check::new("off", found.off, Below(REQUIRED))
+                .because("both sides are accurate to 1e-12"),
+            Check::new("fault", found.fault.1, Above(SEEN))
+                .because("a fault changes far more than the tolerance"),
         ];
         Row::new(cells, checks).of(found.line)
     };

@@ -104,20 +104,16 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
     let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
+        Check::new("light", light, AtLeast(1.0)).because("p says nothing without light"),
         Check::exact(report, level),
         Check::fact("first order", agrees, "by the rule for first-order chains"),
-        Check::new("ledger", imbalance.abs(), Below(LEDGER), "rounding"),
+        Check::new("ledger", imbalance.abs(), Below(LEDGER)).because("rounding"),
     ];
     if first.is_some_and(|f| f.verdict == Verdict::Undecided) {
         let enough = AtLeast(report.photons_needed.unwrap_or(f64::INFINITY));
         let photons = scene.run.photons as f64;
-        checks.push(Check::new(
-            "photons",
-            photons,
-            enough,
-            "this many photons would decide",
-        ));
+        checks
+            .push(Check::new("photons", photons, enough).because("this many photons would decide"));
     }
     checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));

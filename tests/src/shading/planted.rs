@@ -109,157 +109,93 @@ impl Plant {
     }
 }
 
+impl Stand {
+    fn new(scene: &'static str, plane: &'static str) -> Self {
+        Self {
+            scene,
+            plane,
+            texts: &[],
+            faults: Vec::new(),
+        }
+    }
+
+    fn fault(mut self, name: &'static str, plant: Plant) -> Self {
+        self.faults.push((name, plant));
+        self
+    }
+
+    fn prediction(self, name: &'static str, change: fn(&mut Reflectance)) -> Self {
+        self.fault(name, Plant::Prediction(change))
+    }
+
+    fn crossings(self, name: &'static str, change: fn(&Scene, Crossing) -> Crossing) -> Self {
+        self.fault(name, Plant::Photons(|_| (), change))
+    }
+}
+
 fn stands() -> Vec<Stand> {
-    let crossings = |crossing| Plant::Photons(|_| (), crossing);
     vec![
+        Stand::new("fresnel_grazing", "reflection")
+            .crossings("cosine missing", |s, c| scaled(c, 1.0 / cosine(s, &c)))
+            .crossings("cosine counted twice", |s, c| scaled(c, cosine(s, &c)))
+            .crossings("cosine of the central ray for all rays", |s, c| {
+                scaled(c, s.planes[0].longitude.cos() / cosine(s, &c))
+            })
+            .crossings("Fresnel factor of s-polarised light alone", |s, c| {
+                scaled(c, polarised(cosine(s, &c))[0])
+            })
+            .crossings("Fresnel factor of p-polarised light alone", |s, c| {
+                scaled(c, polarised(cosine(s, &c))[1])
+            })
+            .prediction("index + 2 %", |s| {
+                s.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
+            }),
+        Stand::new("textured_glossy", "texture")
+            .prediction("exponent + 5 %", |s| lobe(s, 1.05))
+            .prediction("exponent − 5 %", |s| lobe(s, 0.95))
+            .prediction("frequency of the texture + 1 %", |s| texture(s, 1.01))
+            .prediction("frequency of the texture − 1 %", |s| texture(s, 0.99))
+            .prediction("albedo forgotten", |s| s.first_mut().albedo = 1.0),
+        Stand::new("textured_glossy", "beyond").fault(
+            "texture multiplied in at this plane",
+            Plant::Photons(|s| reflectance(s).texture = None, textured_here),
+        ),
+        Stand::new("weighted", "reflection")
+            .prediction("weights swapped", swapped)
+            .prediction("width of a lobe + 1 %", |s| lobe(s, 1.01_f64.powi(-2)))
+            .prediction("width of a lobe − 1 %", |s| lobe(s, 0.99_f64.powi(-2)))
+            .prediction("modulation of the weights 1 instead of 0.9", full),
+        Stand::new("sum", "reflection")
+            .prediction("a term left out", |s| {
+                s.terms.remove(1);
+            })
+            .prediction("weights swapped", swapped)
+            .prediction("h for f", turned_round),
+        Stand::new("factor_incoming", "reflection")
+            .prediction("h for f", turned_round)
+            .prediction("f left out", |s| s.first_mut().incoming = None),
+        Stand::new("factor_outgoing", "reflection").prediction("f for h", turned_round),
         Stand {
-            scene: "fresnel_grazing",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![
-                (
-                    "cosine missing",
-                    crossings(|s, c| scaled(c, 1.0 / cosine(s, &c))),
-                ),
-                (
-                    "cosine counted twice",
-                    crossings(|s, c| scaled(c, cosine(s, &c))),
-                ),
-                (
-                    "cosine of the central ray for all rays",
-                    crossings(|s, c| scaled(c, s.planes[0].longitude.cos() / cosine(s, &c))),
-                ),
-                (
-                    "Fresnel factor of s-polarised light alone",
-                    crossings(|s, c| scaled(c, polarised(cosine(s, &c))[0])),
-                ),
-                (
-                    "Fresnel factor of p-polarised light alone",
-                    crossings(|s, c| scaled(c, polarised(cosine(s, &c))[1])),
-                ),
-                (
-                    "index + 2 %",
-                    Plant::Prediction(|s| {
-                        s.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
-                    }),
-                ),
-            ],
-        },
-        Stand {
-            scene: "textured_glossy",
-            plane: "texture",
-            texts: &[],
-            faults: vec![
-                ("exponent + 5 %", Plant::Prediction(|s| lobe(s, 1.05))),
-                ("exponent − 5 %", Plant::Prediction(|s| lobe(s, 0.95))),
-                (
-                    "frequency of the texture + 1 %",
-                    Plant::Prediction(|s| texture(s, 1.01)),
-                ),
-                (
-                    "frequency of the texture − 1 %",
-                    Plant::Prediction(|s| texture(s, 0.99)),
-                ),
-                (
-                    "albedo forgotten",
-                    Plant::Prediction(|s| s.first_mut().albedo = 1.0),
-                ),
-            ],
-        },
-        Stand {
-            scene: "textured_glossy",
-            plane: "beyond",
-            texts: &[],
-            faults: vec![(
-                "texture multiplied in at this plane",
-                Plant::Photons(|s| reflectance(s).texture = None, textured_here),
-            )],
-        },
-        Stand {
-            scene: "weighted",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![
-                ("weights swapped", Plant::Prediction(swapped)),
-                (
-                    "width of a lobe + 1 %",
-                    Plant::Prediction(|s| lobe(s, 1.01_f64.powi(-2))),
-                ),
-                (
-                    "width of a lobe − 1 %",
-                    Plant::Prediction(|s| lobe(s, 0.99_f64.powi(-2))),
-                ),
-                (
-                    "modulation of the weights 1 instead of 0.9",
-                    Plant::Prediction(full),
-                ),
-            ],
-        },
-        Stand {
-            scene: "sum",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![
-                (
-                    "a term left out",
-                    Plant::Prediction(|s| {
-                        s.terms.remove(1);
-                    }),
-                ),
-                ("weights swapped", Plant::Prediction(swapped)),
-                ("h for f", Plant::Prediction(turned_round)),
-            ],
-        },
-        Stand {
-            scene: "factor_incoming",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![
-                ("h for f", Plant::Prediction(turned_round)),
-                (
-                    "f left out",
-                    Plant::Prediction(|s| s.first_mut().incoming = None),
-                ),
-            ],
-        },
-        Stand {
-            scene: "factor_outgoing",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![("f for h", Plant::Prediction(turned_round))],
-        },
-        Stand {
-            scene: "checkerboard",
-            plane: "reflection",
             texts: &[[
                 "(0.605186406, 0, -0.796083799)",
                 "(0.0871557427, 0, -0.996194698)",
             ]],
-            faults: vec![("lobe around the normal", crossings(around_the_normal))],
+            ..Stand::new("checkerboard", "reflection")
+                .crossings("lobe around the normal", around_the_normal)
         },
-        Stand {
-            scene: "ggx_sphere",
-            plane: "reflection",
-            texts: &[],
-            faults: vec![(
-                "α² instead of α",
-                Plant::Photons(
-                    |s| {
-                        if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {
-                            *roughness *= *roughness;
-                        }
-                    },
-                    |_, c| c,
-                ),
-            )],
-        },
-        Stand {
-            scene: "environment",
-            plane: "reflection",
-            texts: &[],
-            // k is 1.25 /m.
-            faults: vec![("missing 1/|k|", Plant::Factor(1.25))],
-        },
+        Stand::new("ggx_sphere", "reflection").fault(
+            "α² instead of α",
+            Plant::Photons(
+                |s| {
+                    if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {
+                        *roughness *= *roughness;
+                    }
+                },
+                |_, c| c,
+            ),
+        ),
+        // k is 1.25 /m.
+        Stand::new("environment", "reflection").fault("missing 1/|k|", Plant::Factor(1.25)),
     ]
 }
 
@@ -350,7 +286,7 @@ fn row(
     ];
     let checks = vec![
         Check::p("sound", Some(sound), level),
-        Check::new("planted", p, Below(level), "a fault is planted"),
+        Check::new("planted", p, Below(level)).because("a fault is planted"),
     ];
     Row::new(cells, checks)
 }

@@ -166,7 +166,7 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
             } else {
                 Above(largest)
             };
-            Check::new("off", off, bound, WHY)
+            Check::new("off", off, bound).because(WHY)
         });
         let cells =
             [by_rays, noise_of_rays, by_photons, noise].map(|x| format!("{:.3} %", 100.0 * x));

@@ -80,12 +80,8 @@ pub(super) fn traced() -> ReportSection {
                 Some(known) => orders::check(fitted, known),
                 None => {
                     let largest = errors.into_iter().fold(0.0, worse);
-                    Check::new(
-                        "error",
-                        largest,
-                        Below(ROUNDING),
-                        "error of the trapezoid rule",
-                    )
+                    Check::new("error", largest, Below(ROUNDING))
+                        .because("error of the trapezoid rule")
                 }
             };
             let cells = vec![
@@ -106,7 +102,7 @@ pub(super) fn traced() -> ReportSection {
     for (name, plant) in planted() {
         let errors = SIZES.map(|size| convex.error(ReflectionStep::Outgoing, size, &*plant));
         let reason = "the error of a correct chain falls with the size";
-        let check = Check::new("seen", errors[3], Above(SEEN * right), reason);
+        let check = Check::new("seen", errors[3], Above(SEEN * right)).because(reason);
         let cells = vec![
             "outgoing".to_owned(),
             format!("convex, planted: {name}"),

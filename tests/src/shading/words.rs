@@ -24,13 +24,7 @@ pub(super) fn words() -> ReportSection {
         let [low, high] = s.expected;
         let checks = [AtLeast(low), AtMost(high)];
         let checks = checks.map(|bound| {
-            Check::new(
-                "number",
-                s.number,
-                bound,
-                "bounds fixed \
-            before the run",
-            )
+            Check::new("number", s.number, bound).because("bounds fixed before the run")
         });
         let cells = vec![
             s.said.to_owned(),

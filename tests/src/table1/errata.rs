@@ -148,7 +148,7 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
                 "the formula is wrong, unless its errors cancel",
             ),
             Check::fact("corrected", is_sound, "it is right"),
-            Check::new("chain", bench.apart(index), Below(SAME), "rounding"),
+            Check::new("chain", bench.apart(index), Below(SAME)).because("rounding"),
         ];
         let cells = vec![
             outcome.scene.name.clone(),
@@ -213,7 +213,7 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
             rows.push(Row::new(cells, vec![Check::exact(report, level)]));
         }
         let reason = "some plane of each scene shows the misprint";
-        checks.push(Check::new("rejected", rejected, AtLeast(1.0), reason));
+        checks.push(Check::new("rejected", rejected, AtLeast(1.0)).because(reason));
     }
     ReportSection::new(
         "Scenes predicted as printed",

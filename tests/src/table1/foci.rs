@@ -45,7 +45,8 @@ pub(super) fn foci(outcome: &TableRun) -> ReportSection {
             let off = [exact[axis], known[axis]].map(|f| (measured[axis] - f) / error);
             // A wide beam has an aberration, which the exact prediction includes.
             let narrow = (width - WIDTHS[1]).abs() < 1e-12;
-            let within = |id, off: f64| Check::new(id, off.abs(), Below(MOST), "standard errors");
+            let within =
+                |id, off: f64| Check::new(id, off.abs(), Below(MOST)).because("standard errors");
             let mut checks = vec![within("predicted", off[0])];
             checks.extend(narrow.then(|| within("Coddington", off[1])));
             let cells = vec![

@@ -55,14 +55,14 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
     let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0), "p says nothing without light"),
+        Check::new("light", light, AtLeast(1.0)).because("p says nothing without light"),
         Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
     ];
     if resolvable.is_some_and(|r| error > 2.0 * r) {
         let p = p_first.unwrap_or(1.0);
         let reason = "the error is twice what noise can hide";
-        checks.push(Check::new("told apart", p, Below(level), reason));
+        checks.push(Check::new("told apart", p, Below(level)).because(reason));
     }
     let planar = section(&view).map(|(path, stage)| path.found(stage));
     checks.extend(planar.iter().flat_map(StageFound::checks));

@@ -123,7 +123,7 @@ pub(super) struct StageFound {
 impl StageFound {
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
-            Check::new("map", self.map, Below(ROUNDING), "rounding error of a sum"),
+            Check::new("map", self.map, Below(ROUNDING)).because("rounding error of a sum"),
             orders::check(self.order, self.known),
         ]
     }

@@ -115,7 +115,9 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
             let accepted = judged.iter().all(|(_, r)| r.verdict == Verdict::Pass);
             let check = match name {
                 "none" => Check::fact("accepted", accepted, "nothing is wrong"),
-                _ => Check::new("rejected", count as f64, AtLeast(1.0), "a fault is planted"),
+                _ => {
+                    Check::new("rejected", count as f64, AtLeast(1.0)).because("a fault is planted")
+                }
             };
             let decisive = judged
                 .iter()
@@ -217,7 +219,7 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
             let rejected = least < level;
             let check = match name {
                 "none" => Check::p("accepted", Some(least), level),
-                _ => Check::new("rejected", least, Below(level), "a number is wrong"),
+                _ => Check::new("rejected", least, Below(level)).because("a number is wrong"),
             };
             let cells = vec![
                 outcome.scene.name.clone(),

@@ -60,13 +60,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
         ];
         cells.extend(found.map(|(_, d)| format!("{d:.1e}")));
         let checks = found.map(|(id, d)| {
-            Check::new(
-                id,
-                d,
-                Below(ROUNDING),
-                "rounding error of \
-            finite differences",
-            )
+            Check::new(id, d, Below(ROUNDING)).because("rounding error of finite differences")
         });
         rows.push(Row::new(cells, checks.into()));
     }

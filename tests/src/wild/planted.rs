@@ -93,7 +93,7 @@ pub(super) fn planted() -> ReportSection {
         let cells = vec![(*name).to_owned(), format!("{p:.5}")];
         Row::new(
             cells,
-            vec![Check::new("p", p, Below(SEEN), "the fault is planted")],
+            vec![Check::new("p", p, Below(SEEN)).because("the fault is planted")],
         )
     }));
     ReportSection::new(
