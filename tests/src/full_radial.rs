@@ -4,12 +4,12 @@
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::emit;
+use crate::scenes::{emit, read, sound};
 use crate::statistics::{mean, uniformity};
 use etendue_compare::{FullRadialComparison, FullRadialReport, PredictedField};
 use etendue_field::{FieldGrid, PhotonSource};
 use etendue_predict::{Applicability, predict_field};
-use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use etendue_trace::{Backward, Tracer};
 use rayon::prelude::*;
@@ -22,18 +22,6 @@ struct Case {
     set: &'static [(&'static str, &'static str)],
     by: &'static str,
 }
-
-macro_rules! text {
-    ($path:literal) => {
-        include_str!(concat!("../../scenes/", $path, ".ron"))
-    };
-}
-
-const TEXTS: &[(&str, &str)] = &[
-    ("fig9b", text!("fig9b")),
-    ("tilted_card", text!("tilted_card")),
-    ("glossy", text!("table1/glossy")),
-];
 
 /// The spectra have fewer frequencies than in the scene files, so that 200 seeds take only
 /// minutes.
@@ -53,7 +41,7 @@ const CASES: &[Case] = &[
         by: "nets of rays past an obstacle",
     },
     Case {
-        scene: "glossy",
+        scene: "table1/glossy",
         plane: "reflection",
         set: &[("frequencies.rho.max", "15"), ("frequencies.nu.max", "8")],
         by: "nets of scattered rays",
@@ -70,19 +58,19 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
+    /// Returns the name of the scene, without its folder.
+    fn name(&self) -> &'static str {
+        self.scene.rsplit('/').next().unwrap_or(self.scene)
+    }
+
     /// Returns the scene of the case with only the plane of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
-        let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
-        let (name, text) = found.expect("a scene of these");
-        let file = SceneFile::parse(text).expect("a scene of the repository");
         let set = self.set.iter().chain(set);
-        let set: Vec<_> = set
-            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-            .collect();
-        let mut file = file.with_all(&set).expect("words of a scene");
+        let set: Vec<_> = set.map(|(k, v)| (*k, (*v).to_owned())).collect();
+        let mut file = read(self.scene, &set);
         emit(&mut file.run, Some(photons));
         file.run.seed = seed;
-        let scene = resolve(name, file, ".".as_ref(), u64::MAX).expect("a sound scene");
+        let scene = sound(self.name(), file);
         let mut planes = scene.planes.iter();
         let index = planes.position(|plane| plane.name == self.plane);
         let scene = scene.seen_at(&[index.expect("a plane of the scene")]);
@@ -144,7 +132,7 @@ pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
 /// Compares, for each seed, the photons of a case with the prediction of this case.
 fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let prediction = predicted(&case.scene(photons, 1, &[]));
-    let title = format!("{} {}: {}", case.scene, case.plane, case.by);
+    let title = format!("{} {}: {}", case.name(), case.plane, case.by);
     (
         title,
         each_seed(seeds, |seed| {

@@ -197,52 +197,34 @@ const CLAIMS: ValidationCommand = ValidationCommand::Claims(claims::ClaimRun {
     seed: SEED,
 });
 
+fn main() -> ExitCode {
+    let command = ValidationCli::parse().command;
+    let one = |section: std::io::Result<ReportSection>| printed(section.map(|one| vec![one]));
+    match &command {
+        ValidationCommand::Bandwidth { photons } => bandwidth::page(*photons),
+        ValidationCommand::Nets => nets::page(),
+        ValidationCommand::Hostile(options) => one(hostile::hostile(options)),
+        ValidationCommand::Kills(options) => one(kills::kills(options)),
+        ValidationCommand::Wild(options) => one(wild::wild(options)),
+        ValidationCommand::Small(options) => one(wild::small(options)),
+        ValidationCommand::Several(options) => one(wild::several(options)),
+        ValidationCommand::Worlds(options) => one(worlds::worlds(options)),
+        ValidationCommand::Assumptions(options) => one(assumptions::assumptions(options)),
+        ValidationCommand::Pulls(options) => printed(pulls::pulls(options)),
+        ValidationCommand::Transform(options) => one(transform::transform(options)),
+        ValidationCommand::Plain(options) => one(second::plain(options)),
+        ValidationCommand::Second => one(second::second()),
+        _ => written(&command),
+    }
+}
+
+/// Prints the sections of a command, and writes its part of a page in results/.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "the report is the product"
 )]
-fn main() -> ExitCode {
-    let command = ValidationCli::parse().command;
-    if let ValidationCommand::Bandwidth { photons } = command {
-        return bandwidth::page(photons);
-    }
-    if matches!(command, ValidationCommand::Nets) {
-        return nets::page();
-    }
-    if let ValidationCommand::Hostile(options) = &command {
-        return printed(hostile::hostile(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Kills(options) = &command {
-        return printed(kills::kills(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Wild(options) = &command {
-        return printed(wild::wild(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Small(options) = &command {
-        return printed(wild::small(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Several(options) = &command {
-        return printed(wild::several(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Worlds(options) = &command {
-        return printed(worlds::worlds(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Assumptions(options) = &command {
-        return printed(assumptions::assumptions(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Pulls(options) = &command {
-        return printed(pulls::pulls(options));
-    }
-    if let ValidationCommand::Transform(options) = &command {
-        return printed(transform::transform(options).map(|section| vec![section]));
-    }
-    if let ValidationCommand::Plain(options) = &command {
-        return printed(second::plain(options).map(|section| vec![section]));
-    }
-    if matches!(command, ValidationCommand::Second) {
-        return printed(second::second().map(|section| vec![section]));
-    }
+fn written(command: &ValidationCommand) -> ExitCode {
     let parts = match command {
         ValidationCommand::Rows => &[TABLE1, SHADING][..],
         ValidationCommand::All => &[
@@ -252,7 +234,7 @@ fn main() -> ExitCode {
             ValidationCommand::Orders,
             ValidationCommand::Main,
         ],
-        ref other => std::slice::from_ref(other),
+        other => std::slice::from_ref(other),
     };
     let report = |command: &ValidationCommand, sections: Vec<ReportSection>| {
         let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
@@ -412,22 +394,6 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
         ValidationCommand::FullRadial { seeds, photons } => {
             full_radial::full_radial(seeds, photons)
         }
-        ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // Each of these commands writes its own report, or consists of others.
-        ValidationCommand::Nets
-        | ValidationCommand::Second
-        | ValidationCommand::Plain(_)
-        | ValidationCommand::Hostile(_)
-        | ValidationCommand::Kills(_)
-        | ValidationCommand::Wild(_)
-        | ValidationCommand::Small(_)
-        | ValidationCommand::Worlds(_)
-        | ValidationCommand::Several(_)
-        | ValidationCommand::Assumptions(_)
-        | ValidationCommand::Pulls(_)
-        | ValidationCommand::Transform(_)
-        | ValidationCommand::Rows
-        | ValidationCommand::All => Vec::new(),
         ValidationCommand::Noise { most } => noise(most),
         ValidationCommand::Main => {
             let mut sections = noise(1 << 30);
@@ -435,6 +401,8 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             sections.extend(faults(1 << 23));
             sections
         }
+        // Each of the other commands writes its own report, or consists of others.
+        _ => Vec::new(),
     }
 }
 

@@ -7,55 +7,31 @@ use etendue_scene::{RunFile, Sampling, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::{AllLights, Backward, Tracer};
 
-macro_rules! scene {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../scenes/", $name, ".ron")))
-    };
-}
+/// The names of all scenes of the repository that `suite` judges. The scenes of `shading` and of
+/// `table1` are not among them.
+pub(crate) const SUITE: &str = "travel fig1 fig3 fig8 fig9a fig9b fig9c fig4_source fig4_point \
+    fig4_spot fig7_one fig7_other fig7_two fig14 fig15 grating two_layers iris disc_light \
+    two_lights colors mesh_blocker furnace diffuse two_bounces two_glossy";
 
-/// Every scene of the repository that `suite` judges, with its text. The scenes of `shading` and of
-/// `table1` are not in this list.
-pub(crate) const SUITE: &[(&str, &str)] = &[
-    scene!("travel"),
-    scene!("fig1"),
-    scene!("fig3"),
-    scene!("fig8"),
-    scene!("fig9a"),
-    scene!("fig9b"),
-    scene!("fig9c"),
-    scene!("fig4_source"),
-    scene!("fig4_point"),
-    scene!("fig4_spot"),
-    scene!("fig7_one"),
-    scene!("fig7_other"),
-    scene!("fig7_two"),
-    scene!("fig14"),
-    scene!("fig15"),
-    scene!("grating"),
-    scene!("two_layers"),
-    scene!("iris"),
-    scene!("disc_light"),
-    scene!("two_lights"),
-    scene!("colors"),
-    scene!("mesh_blocker"),
-    scene!("furnace"),
-    scene!("diffuse"),
-    scene!("two_bounces"),
-    scene!("two_glossy"),
-];
-
-/// Returns a scene of the suite. If no number of photons or no seed is given, the scene keeps the
-/// value in its file.
+/// Returns the scene `scenes/NAME.ron`. If no number of photons or no seed is given, the scene
+/// keeps the value in its file.
 ///
 /// # Panics
 /// Panics if there is no scene of this name, or if the scene is invalid.
 pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scene {
-    let text = SUITE.iter().find(|(known, _)| *known == name);
-    let (_, text) = text.expect("a scene of the suite");
-    let mut file = SceneFile::parse(text).expect("a scene of the suite is a scene file");
+    let mut file = read(name, &[]);
     emit(&mut file.run, photons);
     file.run.seed = seed.unwrap_or(file.run.seed);
-    sound(name, file)
+    sound(name.rsplit('/').next().unwrap_or(name), file)
+}
+
+/// Returns the text of `scenes/NAME.ron`.
+///
+/// # Panics
+/// Panics if there is no such scene file.
+pub(crate) fn text(name: &str) -> String {
+    let path = format!("{}/../scenes/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("a file of the repository")
 }
 
 /// Reads `scenes/NAME.ron`, and sets fields of the file, as `--set` does.
@@ -63,8 +39,7 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
 /// # Panics
 /// Panics if there is no such scene file, or if it has no such field.
 pub(crate) fn read(name: &str, fields: &[(&str, String)]) -> SceneFile {
-    let path = format!("{}/../scenes/{name}.ron", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("a file of the repository");
+    let text = text(name);
     let fields = fields
         .iter()
         .map(|(path, value)| ((*path).to_owned(), value.clone()));
@@ -185,6 +160,39 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
     }
     let backward = Backward::new(scene).ok()?;
     Some(measured(scene, &backward))
+}
+
+/// A scene whose planes are measured with photons, and compared with predictions and with backward
+/// rays.
+pub(crate) struct ComparedScene {
+    pub(crate) scene: Scene,
+    pub(crate) measurement: Measurement,
+    pub(crate) planes: Vec<PlaneComparison>,
+    /// For each plane, the p-value of the comparison of photons with backward rays; `None` if no
+    /// backward rays are traced.
+    pub(crate) backward: Vec<Option<f64>>,
+}
+
+impl ComparedScene {
+    /// Measures and compares all planes, at the given level.
+    pub(crate) fn new(scene: Scene, level: f64) -> Self {
+        let measurement = traced(&scene);
+        let reference = traced_backwards(&scene);
+        let predictions = predicted(&scene, reference.as_ref());
+        let at = |i: usize| compared(&scene, &measurement, i, &predictions[i], level);
+        let against = |i: usize| {
+            let reference = referred(&scene, i, reference.as_ref()?);
+            let compared = compared(&scene, &measurement, i, &reference, level);
+            compared.report.p_value
+        };
+        let planes = 0..scene.planes.len();
+        Self {
+            planes: planes.clone().map(at).collect(),
+            backward: planes.map(against).collect(),
+            measurement,
+            scene,
+        }
+    }
 }
 
 /// Predicts all planes of a scene; the measurement `reference` replaces theory at planes where no

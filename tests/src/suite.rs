@@ -2,19 +2,10 @@
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
-use etendue_compare::{PlaneComparison, PlaneReport, TESTS, Verdict, sidak};
+use crate::scenes::{ComparedScene, SUITE, named};
+use etendue_compare::{PlaneReport, TESTS, Verdict, sidak};
 use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// The results of a scene of the suite.
-struct SuiteRun {
-    scene: Scene,
-    planes: Vec<PlaneComparison>,
-    /// For each plane, the p-value of the comparison of photons with backward rays; `None` if no
-    /// backward rays are traced.
-    backward: Vec<Option<f64>>,
-}
 
 /// False rejection rate over all planes of the suite.
 const ALPHA: f64 = 0.01;
@@ -23,12 +14,13 @@ const ALPHA: f64 = 0.01;
 /// has the number of photons in its file.
 pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     let scenes: Vec<Scene> = SUITE
-        .iter()
-        .map(|(name, _)| named(name, photons, None))
+        .split(' ')
+        .map(|name| named(name, photons, None))
         .collect();
     let planes: usize = scenes.iter().map(|scene| scene.planes.len()).sum();
     let level = sidak(ALPHA, TESTS * planes);
-    let outcomes: Vec<SuiteRun> = scenes.into_iter().map(|scene| run(scene, level)).collect();
+    let each = scenes.into_iter();
+    let outcomes: Vec<_> = each.map(|scene| ComparedScene::new(scene, level)).collect();
     vec![
         table(&outcomes, planes, level),
         occluders(&outcomes),
@@ -37,26 +29,7 @@ pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     ]
 }
 
-fn run(scene: Scene, level: f64) -> SuiteRun {
-    let measurement = traced(&scene);
-    let reference = traced_backwards(&scene);
-    let predictions = predicted(&scene, reference.as_ref());
-    let at = |i: usize| compared(&scene, &measurement, i, &predictions[i], level);
-    let against = |i: usize| {
-        let reference = referred(&scene, i, reference.as_ref()?);
-        compared(&scene, &measurement, i, &reference, level)
-            .report
-            .p_value
-    };
-    let planes = 0..scene.planes.len();
-    SuiteRun {
-        planes: planes.clone().map(at).collect(),
-        backward: planes.map(against).collect(),
-        scene,
-    }
-}
-
-fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> ReportSection {
+fn table(outcomes: &[ComparedScene], planes: usize, level: f64) -> ReportSection {
     let rows = outcomes.iter().flat_map(|outcome| {
         let planes = outcome.planes.iter().zip(&outcome.backward);
         planes.map(|(plane, p)| row(&outcome.scene, &plane.report, *p, level))
@@ -105,13 +78,13 @@ fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -
     Row::new(cells, checks)
 }
 
-fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
+fn outcome<'a>(outcomes: &'a [ComparedScene], name: &str) -> Option<&'a ComparedScene> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
 /// Checks two occluders that together block all light, although each of them blocks little light
 /// (Durand et al. 2005, Fig. 7).
-fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
+fn occluders(outcomes: &[ComparedScene]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
         outcome(outcomes, name)?
@@ -213,7 +186,7 @@ fn travels(operator: &etendue_theory::Operator) -> bool {
 
 /// Checks H of the light that leaves the receiver behind blockers of three sizes (Durand et al.
 /// 2005, Fig. 9).
-fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
+fn high_frequencies(outcomes: &[ComparedScene]) -> ReportSection {
     let shares = |name: &str| {
         let leaving = outcome(outcomes, name)?
             .planes
@@ -262,7 +235,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
 
 /// Checks the white furnace against its closed form: radiance times the configuration factor of
 /// the light.
-fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
+fn furnace(outcomes: &[ComparedScene]) -> ReportSection {
     let mut rows = Vec::new();
     if let Some(outcome) = outcome(outcomes, "furnace") {
         let (plane, compared) = (&outcome.scene.planes[0], &outcome.planes[0]);

@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+use crate::common::{edited, photons};
 use etendue_compare::Residuals;
 use etendue_field::{Light, Orientation, ProjectionGrid, Quantity, VirtualPlane};
 use etendue_predict::{Applicability, path};
-use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::{Measurement, measure};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
 use etendue_theory::{Model, Observed, Predicted, RayBudget};
-use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
 /// The budget of a prediction. With this budget, the error of a prediction in these tests is a few
@@ -25,10 +25,7 @@ type Fault = (&'static str, fn(&mut Observed));
 
 /// Returns a scene of the repository, with fewer photons than its file states.
 fn scene(name: &str) -> Scene {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
-    let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();
-    let file = SceneFile::parse(&text).unwrap();
-    let mut scene = resolve("scene", file, folder.as_ref(), u64::MAX).unwrap();
+    let mut scene = edited(name, &[]);
     scene.run.photons = PHOTONS;
     scene
 }
@@ -107,18 +104,13 @@ fn without_masks(view: &mut Observed) {
     view.system.masks.clear();
 }
 
-fn traced(scene: &Scene) -> Measurement {
-    let tracer = Tracer::new(scene);
-    measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
-}
-
 /// Checks Fig. 3, five suns behind a grating, in slopes and in angles. The arrangement of the
 /// five suns is symmetric under a rotation by half a turn.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn two_parameterisations() {
     let scene = scene("fig3");
-    let photons = traced(&scene);
+    let photons = photons(&scene);
     let faults: [Fault; 2] = [("no masks", without_masks), ("light turned", turned_light)];
     for plane in ["travel", "plane_sphere"] {
         tells(&scene, &photons, plane, &faults);
@@ -130,7 +122,7 @@ fn two_parameterisations() {
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {
     let scene = scene("fig14");
-    let photons = traced(&scene);
+    let photons = photons(&scene);
     let faults: [Fault; 2] = [
         ("frame turned", turned_round),
         ("light turned", turned_light),
@@ -151,7 +143,7 @@ fn the_steps_of_shading() {
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn behind_several_surfaces() {
     let scene = scene("wild/sky_on_walls");
-    let photons = traced(&scene);
+    let photons = photons(&scene);
     let faults: [Fault; 3] = [
         ("no card", |view| view.system.masks.clear()),
         ("light turned", |view| turn(&mut view.system.light, 3.0)),

@@ -2,43 +2,21 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Class, Verdict, compare};
-use etendue_field::PhotonSource;
-use etendue_predict::{Applicability, predict, test_of};
-use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::measure;
+use crate::common::{edited, measured, resolved, verdicts};
+use etendue_compare::{Class, Verdict};
+use etendue_predict::Applicability;
+use etendue_scene::Scene;
 use etendue_trace::AllLights;
-
-const TWO_LIGHTS: &str = include_str!("../../scenes/two_lights.ron");
 
 /// Returns a scene with several lights before a surface. `rest` has the fields after the surface.
 fn scene(lights: &str, surface: &str, rest: &str) -> Scene {
-    resolved(&format!(
+    let text = format!(
         "({lights}, surfaces: [{surface}], \
          path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"it\"]), {rest}, \
          window: (x: Hann(0.3), u: Hann(0.4)), \
          frequencies: (azimuths: 4, rho: (max: 10), nu: (max: 10)), run: (photons: 400_000))"
-    ))
-}
-
-fn resolved(text: &str) -> Scene {
-    let file = SceneFile::parse(text).unwrap();
-    resolve("lights", file, ".".as_ref(), u64::MAX).unwrap()
-}
-
-/// Compares a measurement of the scene `traced` with predictions for the scene `predicted`; returns
-/// the verdict on each plane.
-fn verdicts(traced: &Scene, source: &dyn PhotonSource, predicted: &Scene) -> Vec<Verdict> {
-    let measurement = measure(source, &traced.planes, 0..traced.run.batches, &|_| ());
-    let test = test_of(traced);
-    let planes = predicted.planes.iter().enumerate();
-    let verdicts = planes.map(|(i, plane)| {
-        let theory = Applicability::new(predicted, plane);
-        let prediction = predict(predicted, plane, &theory);
-        let compared = compare(&measurement, i, &prediction, &test).unwrap();
-        compared.report.verdict
-    });
-    verdicts.collect()
+    );
+    resolved("lights", &text)
 }
 
 #[test]
@@ -56,7 +34,7 @@ fn photons_and_backward_rays_agree_with_theory() {
     let gloss = r#"Smooth(name: "it", center: (0, 0, 1), facing: (0.3, 0, -1), form: Plane, aperture: 2, event: Reflects(brdf: (lobe: Phong(20))))"#;
     let behind = r#"planes: [(name: "behind", at: Distance(1.4))]"#;
     for (name, scene, class) in [
-        ("two_lights", resolved(TWO_LIGHTS), Class::Exact),
+        ("two_lights", edited("two_lights", &[]), Class::Exact),
         ("diffuse", scene(lights, floor, planes), Class::Exact),
         ("mirror", scene(lights, mirror, behind), Class::FirstOrder),
         ("gloss", scene(narrow, gloss, behind), Class::FirstOrder),
@@ -65,11 +43,12 @@ fn photons_and_backward_rays_agree_with_theory() {
             let theory = Applicability::new(&scene, plane);
             assert_eq!(theory.class(), class, "{name}: {:?}", theory.reasons);
         }
-        let photons = verdicts(&scene, &AllLights::photons(&scene), &scene);
-        let backward = AllLights::backward(&scene).unwrap();
-        let backward = verdicts(&scene, &backward, &scene);
-        for verdict in photons.into_iter().chain(backward) {
-            assert_eq!(verdict, Verdict::Pass, "{name}");
+        let photons = measured(&scene, &AllLights::photons(&scene));
+        let backward = measured(&scene, &AllLights::backward(&scene).unwrap());
+        for measurement in [photons, backward] {
+            for verdict in verdicts(&scene, &measurement, &scene) {
+                assert_eq!(verdict, Verdict::Pass, "{name}");
+            }
         }
     }
 }
@@ -77,31 +56,19 @@ fn photons_and_backward_rays_agree_with_theory() {
 /// Plants faults in the second light of the scene for theory.
 #[test]
 fn theory_with_a_changed_light_fails() {
-    let second = "Disc(center: (0.45, 0.1, -0.3), radius: 0.15, radiance: 2)";
-    assert!(TWO_LIGHTS.contains(second));
-    let traced = resolved(TWO_LIGHTS);
-    let photons = AllLights::photons(&traced);
-    for (fault, changed) in [
-        (
-            "offset",
-            "Disc(center: (0.453, 0.1, -0.3), radius: 0.15, radiance: 2),",
-        ),
-        (
-            "depth",
-            "Disc(center: (0.45, 0.1, -0.306), radius: 0.15, radiance: 2),",
-        ),
-        (
-            "power",
-            "Disc(center: (0.45, 0.1, -0.3), radius: 0.15, radiance: 2.04),",
-        ),
-        (
-            "size",
-            "Disc(center: (0.45, 0.1, -0.3), radius: 0.151, radiance: 2),",
-        ),
-        ("left out", ""),
+    let second = "Disc(center: (0.45, 0.1, -0.3), radius: 0.15, radiance: 2),";
+    let traced = edited("two_lights", &[]);
+    let photons = measured(&traced, &AllLights::photons(&traced));
+    for (fault, part, wrong) in [
+        ("offset", "0.45,", "0.453,"),
+        ("depth", "-0.3)", "-0.306)"),
+        ("power", "radiance: 2", "radiance: 2.04"),
+        ("size", "0.15,", "0.151,"),
+        ("left out", second, ""),
     ] {
-        let changed = TWO_LIGHTS.replace(&format!("{second},"), changed);
-        let predicted = resolved(&changed);
+        let changed = second.replace(part, wrong);
+        assert_ne!(changed, second);
+        let predicted = edited("two_lights", &[(second, &changed)]);
         let found = verdicts(&traced, &photons, &predicted);
         assert!(found.contains(&Verdict::Fail), "{fault}: {found:?}");
     }
@@ -112,9 +79,7 @@ fn theory_with_a_changed_light_fails() {
 fn reasons_name_their_lights() {
     let slat = "shapes: [Rectangle(center: (0, 0), size: (0.3, 4))]";
     let star = "mesh: Star(radius: 0.2, relief: 0.3, lobes: 5, rings: 120)";
-    assert!(TWO_LIGHTS.contains(slat));
-    let text = TWO_LIGHTS.replace(slat, star).replace("Shapes(", "Mesh(");
-    let scene = resolved(&text);
+    let scene = edited("two_lights", &[(slat, star), ("Shapes(", "Mesh(")]);
     let plane = scene.plane_named("leaving").unwrap();
     let theory = Applicability::new(&scene, &scene.planes[plane]);
     assert_eq!(theory.class(), Class::Reference);

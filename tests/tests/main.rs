@@ -3,6 +3,7 @@
 #![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
 
 mod architecture;
+mod common;
 mod environments;
 mod fuzz;
 mod hostile;

@@ -1,27 +1,20 @@
 //! Tests scenes that must pass and scenes that must fail, from the text of the scene to the
 //! verdict.
 
-use etendue_compare::{Class, FirstOrderChain, Verdict, compare};
-use etendue_predict::{Applicability, predict, test_of};
+use crate::common::{self, SCENES, photons, text};
+use etendue_compare::{Class, FirstOrderChain, Verdict};
+use etendue_predict::Applicability;
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::measure;
 use etendue_theory::PathKind;
 use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::path::rays;
-use etendue_trace::Tracer;
-
-const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
 
 /// Photons per run: noise is 2 to 4 % of each spectrum.
 const PHOTONS: u64 = 400_000;
 
 /// Returns the scene `fig9b` with parts of its text replaced.
 fn scene(edits: &[(&str, &str)]) -> Scene {
-    let mut text = FIG9B.to_owned();
-    for (from, to) in edits {
-        assert!(text.contains(from), "{from} is not in the scene");
-        text = text.replace(from, to);
-    }
+    let text = text("fig9b", edits);
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
     // Photons that are not aimed have noise of 16 %, which is low enough for this test.
@@ -32,25 +25,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
 /// Compares photons of the scene `traced` with predictions for the scene `predicted`; returns the
 /// verdict on each plane.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
-    let measurement = measure(
-        &Tracer::new(traced),
-        &traced.planes,
-        0..traced.run.batches,
-        &|_| (),
-    );
-    let test = test_of(traced);
-    predicted
-        .planes
-        .iter()
-        .enumerate()
-        .map(|(i, plane)| {
-            let prediction = predict(predicted, plane, &Applicability::new(predicted, plane));
-            compare(&measurement, i, &prediction, &test)
-                .expect("a resolved scene has enough batches")
-                .report
-                .verdict
-        })
-        .collect()
+    common::verdicts(traced, &photons(traced), predicted)
 }
 
 /// Tests that variants of fig9b pass, as fig9b itself does. Some variants have objects beside or
@@ -141,13 +116,7 @@ fn a_forgotten_surface_is_noticed() {
     let verdicts = verdicts(&scene(&[("surfaces: [", fin)]), &scene(&[]));
     assert_eq!(
         verdicts,
-        [
-            Verdict::Pass,
-            Verdict::Pass,
-            Verdict::Pass,
-            Verdict::Fail,
-            Verdict::Fail
-        ]
+        [[Verdict::Pass; 3].as_slice(), &[Verdict::Fail; 2]].concat()
     );
 }
 
@@ -178,7 +147,6 @@ fn a_black_receiver_is_dark() {
 
 /// Returns every scene file of the repository whose planes lie behind smooth surfaces.
 fn scene_files() -> Vec<Scene> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let read = |folder: &str| {
         let entries = std::fs::read_dir(folder).expect("the folder of scenes");
         let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -187,7 +155,7 @@ fn scene_files() -> Vec<Scene> {
         scenes.sort();
         scenes
     };
-    let paths = ["", "/table1", "/wild", "/words"].map(|sub| read(&format!("{folder}{sub}")));
+    let paths = ["", "/table1", "/wild", "/words"].map(|sub| read(&format!("{SCENES}{sub}")));
     let resolved = paths.concat().into_iter().filter_map(|path| {
         let text = std::fs::read_to_string(&path).expect("a scene file");
         let mut file = SceneFile::parse(&text).expect("a scene file");

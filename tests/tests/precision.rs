@@ -1,9 +1,10 @@
 //! Tests that the transform of reduced precision, which photons of a light with extent use, changes
 //! spectra by much less than their noise.
 
+use crate::common::measured;
 use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_scene::{SceneFile, resolve};
-use etendue_spectrum::{Measurement, estimate, measure};
+use etendue_spectrum::{Measurement, estimate};
 use etendue_trace::Tracer;
 
 const SCENES: [&str; 4] = [
@@ -74,9 +75,8 @@ fn reduced_precision_is_hidden_by_noise() {
         let scene = resolve("test", file, "../scenes".as_ref(), u64::MAX).expect("a sound scene");
         let tracer = Tracer::new(&scene);
         assert!(!tracer.is_precise());
-        let batches = 0..scene.run.batches;
-        let full = measure(&Precise(&tracer), &scene.planes, batches.clone(), &|_| ());
-        let reduced = measure(&tracer, &scene.planes, batches, &|_| ());
+        let full = measured(&scene, &Precise(&tracer));
+        let reduced = measured(&scene, &tracer);
         let first = |m: &Measurement| m.at_plane(0).next().map(|batch| batch.slices.clone());
         assert_ne!(first(&full), first(&reduced));
         for (i, plane) in scene.planes.iter().enumerate() {

@@ -1,10 +1,11 @@
 //! Tests, over many seeds, how `etendue diff` compares two measured results of one scene.
 
+use crate::common::measured;
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::{estimate, measure};
+use etendue_spectrum::estimate;
 use etendue_trace::{Backward, Tracer};
 
 /// Returns the scene `fig9b` with few photons and few frequencies.
@@ -24,8 +25,7 @@ fn scene(seed: u64) -> Scene {
 
 /// Returns, for each plane, the measured data in a result of `scene`.
 fn samples(scene: &Scene, source: &dyn PhotonSource) -> Vec<Sample> {
-    let batches = scene.run.batches;
-    let measurement = measure(source, &scene.planes, 0..batches, &|_| ());
+    let measurement = measured(scene, source);
     let sample = |plane| {
         let slices = estimate::slices(&measurement, plane).expect("enough batches");
         Sample {

@@ -43,7 +43,7 @@ impl InputKind {
 }
 
 /// An attack: the input, and the commands run on it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Attack {
     /// The input files, with the content that they have before the command runs.
     pub(crate) files: Folder,

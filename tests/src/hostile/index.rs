@@ -8,28 +8,12 @@ use serde_json::{Value, json};
 pub(crate) const TAIL: &str = ",\n  \"index_hash\": \"";
 
 /// Tokens of JSON in general, and tokens of the indices of results folders.
-const WORDS: [&str; 16] = [
-    "null",
-    "true",
-    "[]",
-    "{}",
-    "\"\"",
-    "\\",
-    "\"files\"",
-    "\"planes\"",
-    "\"batches\"",
-    "\"photons\"",
-    "\"exact\"",
-    "\"reference\"",
-    "\"backward\"",
-    "\"../a\"",
-    "1e400",
-    "0.1.1",
-];
+const WORDS: &str = "null | true | [] | {} | \"\" | \\ | \"files\" | \"planes\" | \"batches\" | \
+    \"photons\" | \"exact\" | \"reference\" | \"backward\" | \"../a\" | 1e400 | 0.1.1";
 
 /// Returns a mutated text of an index.
 pub(crate) fn mutated(index: &str, dice: &mut Dice) -> Vec<u8> {
-    text::mutated(index, &WORDS, dice)
+    text::mutated(index, WORDS, dice)
 }
 
 /// Returns the index after a change of one value, with a hash that matches the changed text.

@@ -9,34 +9,8 @@ use super::{bytes, text};
 use etendue_scene::{Fault, Mesh};
 
 /// Tokens of the formats OBJ and PLY.
-const WORDS: [&str; 26] = [
-    "v",
-    "f",
-    "vn",
-    "vt",
-    "l",
-    "p",
-    "o",
-    "g",
-    "usemtl",
-    "cstype",
-    "curv",
-    "-1",
-    "1/1/1",
-    "//",
-    "\\\n",
-    "\n",
-    "#",
-    "property",
-    "element",
-    "list",
-    "uchar",
-    "double",
-    "int",
-    "vertex",
-    "face",
-    "end_header",
-];
+const WORDS: &str = "v | f | vn | vt | l | p | o | g | usemtl | cstype | curv | -1 | 1/1/1 | // | \
+    \\\n | \n | # | property | element | list | uchar | double | int | vertex | face | end_header";
 
 /// A mesh as blocker, away from the centre of the light.
 const BLOCKER: &str = r#"(
@@ -126,10 +100,10 @@ pub(crate) fn attack(seeds: &[Meshes; 2], dice: &mut Dice) -> Attack {
     let mut mesh = whole.clone();
     let end = find(&mesh, b"end_header\n").map(|at| at + 11);
     match (std::str::from_utf8(whole), end) {
-        (Ok(whole), _) if !dice.one_in(4) => mesh = text::mutated(whole, &WORDS, dice),
+        (Ok(whole), _) if !dice.one_in(4) => mesh = text::mutated(whole, WORDS, dice),
         (Err(_), Some(end)) if dice.one_in(2) => {
             let head = String::from_utf8_lossy(&whole[..end]);
-            mesh = text::mutated(&head, &WORDS, dice);
+            mesh = text::mutated(&head, WORDS, dice);
             mesh.extend_from_slice(&whole[end..]);
         }
         _ => bytes::mutate(&mut mesh, dice),

@@ -25,6 +25,7 @@ use case::{Attack, CaseOutcome, InputKind};
 use dice::Dice;
 use std::fs;
 use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -97,40 +98,45 @@ pub(crate) fn hostile(options: &HostileOptions) -> io::Result<ReportSection> {
         None => 0..options.count,
     };
     let bar = progress(cases.end - cases.start, "cases");
-    let next = AtomicU64::new(cases.start);
     let tallies = Mutex::new(Tallies::default());
-    let worker = |thread: usize| -> io::Result<()> {
+    on_threads(options.threads, cases, |thread, number| {
         let at = place.path().join(thread.to_string());
         fs::create_dir_all(&at)?;
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= cases.end {
-                return Ok(());
-            }
-            let mut attack = seeds.attack(options.seed, number)?;
-            attack.then = attack.then.filter(|_| !options.quick);
-            let outcome = case::run(&program, &attack, &at)?;
-            if !outcome.faults.is_empty() || options.case.is_some() {
-                keep(options, number, &attack, &outcome)?;
-            }
-            if let Ok(mut tallies) = tallies.lock() {
-                tallies.add(number, &outcome);
-            }
-            bar.one();
+        let mut attack = seeds.attack(options.seed, number)?;
+        attack.then = attack.then.filter(|_| !options.quick);
+        let outcome = case::run(&program, &attack, &at)?;
+        if !outcome.faults.is_empty() || options.case.is_some() {
+            keep(options, number, &attack, &outcome)?;
         }
-    };
-    on_threads(options.threads, worker)?;
+        if let Ok(mut tallies) = tallies.lock() {
+            tallies.add(number, &outcome);
+        }
+        bar.one();
+        Ok(())
+    })?;
     bar.end();
     let tallies = tallies.into_inner().unwrap_or_default();
     Ok(tallies.section(options.seed))
 }
 
-/// Runs `worker(0)`, `worker(1)`, ... on the given number of threads, or one for each core.
+/// Calls `one(thread, number)` for each of the numbers, on the given number of threads, or one for
+/// each core.
 pub(crate) fn on_threads(
     threads: Option<usize>,
-    worker: impl Fn(usize) -> io::Result<()> + Sync,
+    numbers: Range<u64>,
+    one: impl Fn(usize, u64) -> io::Result<()> + Sync,
 ) -> io::Result<()> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicU64::new(numbers.start);
+    let worker = |thread: usize| {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= numbers.end {
+                return Ok(());
+            }
+            one(thread, number)?;
+        }
+    };
     let worker = &worker;
     std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.unwrap_or(cores).max(1))

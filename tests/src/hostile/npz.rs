@@ -8,22 +8,8 @@ use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 /// Tokens of array headers.
-const WORDS: [&str; 14] = [
-    "'>f8'",
-    "'<f4'",
-    "'<c16'",
-    "'<u4'",
-    "'|O'",
-    "'<U8'",
-    "True",
-    "False",
-    "None",
-    "()",
-    "(1,)",
-    "(18446744073709551615, 2)",
-    "(1099511627776,)",
-    "'shape'",
-];
+const WORDS: &str = "'>f8' | '<f4' | '<c16' | '<u4' | '|O' | '<U8' | True | False | None | () | \
+    (1,) | (18446744073709551615, 2) | (1099511627776,) | 'shape'";
 
 /// Returns the NPZ file after a mutation of one of its arrays or of the archive.
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
@@ -86,7 +72,7 @@ fn data(npy: &[u8]) -> usize {
 fn change_header(npy: &mut Vec<u8>, dice: &mut Dice) {
     let end = data(npy);
     let old = String::from_utf8_lossy(npy.get(10..end).unwrap_or_default()).into_owned();
-    let mut new = text::mutated(&old, &WORDS, dice);
+    let mut new = text::mutated(&old, WORDS, dice);
     if dice.one_in(2) {
         new.resize(old.len(), b' ');
     }

@@ -9,38 +9,13 @@ use std::io;
 use std::path::Path;
 
 /// Tokens of scene files.
-const WORDS: [&str; 30] = [
-    "()",
-    "[]",
-    "Emission",
-    "Box(0.1)",
-    "Hann(1e-9)",
-    "Gaussian(width: 1, cut: 1e9)",
-    "After(\"blockers\")",
-    "Before(\"floor\")",
-    "Distance(1)",
-    "Distance(1e-12)",
-    "Rectangle",
-    "Mesh",
-    "Smooth",
-    "Mirror",
-    "ThinLens(1e-9)",
-    "Refraction(front: 1, back: 1.5)",
-    "Refraction(front: 1e9, back: 1e-9)",
-    "Sphere(1000)",
-    "Sphere(-2)",
-    "Cylinder(3)",
-    "Paraboloid(1e6, -1e6)",
-    "Star(radius: 0.1, relief: 0.9, lobes: 4294967295, rings: 2048)",
-    "File(\"scene.ron\")",
-    "File(\"/dev/zero\")",
-    "File(\"..\")",
-    "Phong(1e9)",
-    "LocalNormals",
-    "Tangent",
-    "Plain",
-    "true",
-];
+const WORDS: &str = "() | [] | Emission | Box(0.1) | Hann(1e-9) | Gaussian(width: 1, cut: 1e9) | \
+    After(\"blockers\") | Before(\"floor\") | Distance(1) | Distance(1e-12) | Rectangle | Mesh | \
+    Smooth | Mirror | ThinLens(1e-9) | Refraction(front: 1, back: 1.5) | \
+    Refraction(front: 1e9, back: 1e-9) | Sphere(1000) | Sphere(-2) | Cylinder(3) | \
+    Paraboloid(1e6, -1e6) | Star(radius: 0.1, relief: 0.9, lobes: 4294967295, rings: 2048) | \
+    File(\"scene.ron\") | File(\"/dev/zero\") | File(\"..\") | Phong(1e9) | LocalNormals | \
+    Tangent | Plain | true";
 
 /// Links below the folder of results that lead out of it, with their targets. The folder itself may
 /// be a link, because the user names it.
@@ -78,7 +53,7 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
 /// Returns a mutated scene file.
 pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
     let scene: &String = dice.pick(seeds);
-    let text = text::mutated(scene, &WORDS, dice);
+    let text = text::mutated(scene, WORDS, dice);
     let folder = |text| Folder::from([(SCENE.to_owned(), Some(text))]);
     Attack {
         sound: Some(folder(scene.clone().into_bytes())),
@@ -115,7 +90,6 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         // With fewer files, the program cannot be loaded.
         open_files: dice.one_in(2).then(|| 4 + dice.below(12)),
         link,
-        sound: None,
-        summary: None,
+        ..Attack::default()
     }
 }

@@ -113,11 +113,8 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
     Ok(Attack {
         files,
         arguments: words(COMPARE),
-        then: None,
-        open_files: None,
-        link: None,
-        sound: None,
         summary,
+        ..Attack::default()
     })
 }
 
@@ -175,12 +172,7 @@ fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) ->
             .cloned()
             .flatten()
             .unwrap_or_default(),
-        4..6 => {
-            let mut new = old.clone();
-            bytes::mutate(&mut new, dice);
-            new
-        }
-        _ if name.ends_with(".npz") => npz::mutated(&old, dice)?,
+        6.. if name.ends_with(".npz") => npz::mutated(&old, dice)?,
         _ => {
             let mut new = old.clone();
             bytes::mutate(&mut new, dice);

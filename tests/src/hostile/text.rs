@@ -4,30 +4,8 @@ use super::bytes;
 use super::dice::Dice;
 
 /// Critical numbers, for any format.
-const NUMBERS: [&str; 22] = [
-    "0",
-    "-0.0",
-    "-1",
-    "1",
-    "2",
-    "3",
-    "0.5",
-    "33",
-    "1e-9",
-    "1e-300",
-    "5e-324",
-    "1000000",
-    "1e9",
-    "-1e9",
-    "1e308",
-    "-1e308",
-    "NaN",
-    "inf",
-    "-inf",
-    "2147483648",
-    "4294967296",
-    "18446744073709551616",
-];
+const NUMBERS: &str = "0 -0.0 -1 1 2 3 0.5 33 1e-9 1e-300 5e-324 1000000 1e9 -1e9 1e308 -1e308 \
+    NaN inf -inf 2147483648 4294967296 18446744073709551616";
 
 /// Invalid file names, and terminal control sequences.
 const NAMES: [&str; 14] = [
@@ -48,8 +26,10 @@ const NAMES: [&str; 14] = [
 ];
 
 /// Returns the text after one to three mutations, which replace, remove, double or swap tokens,
-/// repeat blocks, or make larger changes. The tokens `words` belong to the format of the text.
-pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
+/// repeat blocks, or make larger changes. The tokens `words` belong to the format of the text, and
+/// are separated by ` | `.
+pub(crate) fn mutated(text: &str, words: &str, dice: &mut Dice) -> Vec<u8> {
+    let words: Vec<&str> = words.split(" | ").collect();
     let mut tokens = split(text);
     let mut raw = false;
     for _ in 0..*dice.pick(&[1, 1, 2, 3]) {
@@ -68,8 +48,8 @@ pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
             7 => tokens[at] = "a".repeat(dice.length(100_000)),
             8 => replace_name(&mut tokens, dice),
             9 => raw = true,
-            10..14 => tokens[at] = (*dice.pick(words)).to_owned(),
-            14..30 => replace_number(&mut tokens, dice, |_, dice| (*dice.pick(&NUMBERS)).into()),
+            10..14 => tokens[at] = (*dice.pick(&words)).to_owned(),
+            14..30 => replace_number(&mut tokens, dice, critical),
             _ => replace_number(&mut tokens, dice, another),
         }
     }
@@ -78,6 +58,12 @@ pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
         bytes::mutate(&mut text, dice);
     }
     text
+}
+
+/// Returns a critical number.
+fn critical(_: &str, dice: &mut Dice) -> String {
+    let numbers: Vec<&str> = NUMBERS.split(' ').collect();
+    (*dice.pick(&numbers)).to_owned()
 }
 
 /// Returns a number near the old number, or a valid number of any size.

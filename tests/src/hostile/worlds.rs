@@ -7,32 +7,9 @@ use super::stages::words;
 use super::text;
 
 /// Tokens of the formats.
-const WORDS: [&str; 24] = [
-    "<",
-    "/>",
-    "\"",
-    "\n",
-    "directionalarea",
-    "envmap",
-    "dielectric",
-    "principled",
-    "mask",
-    "instance",
-    "shapegroup",
-    "ref",
-    "$res",
-    "matrix",
-    "ObjectBegin",
-    "ObjectInstance",
-    "AttributeEnd",
-    "Include",
-    "trianglemesh",
-    "[",
-    "nodes",
-    "children",
-    "usemtl",
-    "-1",
-];
+const WORDS: &str = "< | /> | \" | \n | directionalarea | envmap | dielectric | principled | \
+    mask | instance | shapegroup | ref | $res | matrix | ObjectBegin | ObjectInstance | \
+    AttributeEnd | Include | trianglemesh | [ | nodes | children | usemtl | -1";
 
 const MITSUBA: &str = r#"<scene version="3.0.0"><default name="res" value="8"/>
 <integrator type="path"><integer name="max_depth" value="4"/></integrator>
@@ -99,11 +76,11 @@ pub(crate) fn attack(dice: &mut Dice) -> Attack {
     let name = format!("world.{extension}");
     let mut files = Folder::from([("world.mtl".to_owned(), Some(MTL.into()))]);
     if extension == "obj" && dice.one_in(2) {
-        let mutated = text::mutated(MTL, &WORDS, dice);
+        let mutated = text::mutated(MTL, WORDS, dice);
         files.insert("world.mtl".to_owned(), Some(mutated));
         files.insert(name.clone(), Some(sound.into()));
     } else {
-        files.insert(name.clone(), Some(text::mutated(sound, &WORDS, dice)));
+        files.insert(name.clone(), Some(text::mutated(sound, WORDS, dice)));
     }
     let command = *dice.pick(&[
         "render NAME --size 8x8 --samples 2",
@@ -120,8 +97,6 @@ pub(crate) fn attack(dice: &mut Dice) -> Attack {
         arguments: words(&format!("import {name}")),
         then: Some(words(&then.replace("NAME", &name))),
         open_files: dice.one_in(4).then(|| 4 + dice.below(12)),
-        link: None,
-        sound: None,
-        summary: None,
+        ..Attack::default()
     }
 }

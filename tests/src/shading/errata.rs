@@ -5,10 +5,11 @@ use super::brdfs::{
     self, K, chain, lopsided, lopsided_hat, primal, reflection, said, surface, term,
 };
 use super::eye::EyeScene;
+use super::factors::{mirrored_sky, sky_hat};
 use super::light::{PrimalSurface, light_hat};
-use super::planar::environment::{Glow, mirrored_differential_irradiance};
+use super::planar::environment::mirrored_differential_irradiance;
 use super::planar::{Factor, ReflectionStep};
-use super::primal::{between, integral, transform, wave};
+use super::primal::{between, integral};
 use super::small;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -187,38 +188,22 @@ fn brdf() -> Vec<Erratum> {
 
 fn environment() -> Vec<Erratum> {
     let k = 0.6;
-    let glows = [(1.0, 0.3, 0.4), (0.5, -0.5, 0.25)].map(|(amplitude, mean, deviation)| Glow {
-        amplitude,
-        mean,
-        deviation,
-    });
-    let hat = |w: f64| -> Complex { glows.iter().map(|glow| glow.spectrum(w)).sum() };
-    let env = |t: f64| -> f64 { glows.iter().map(|glow| glow.value(t)).sum() };
     let compare = |place, omegas: Vec<[f64; 2]>, at_least| {
-        let plain: Vec<Complex> = omegas
-            .iter()
-            .map(|[x, t]| {
-                let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
-                mirrored
-                    .map(|(at, w)| {
-                        let along = super::primal::about(at / k, 4.0 / k, 160);
-                        let inner = transform(along, *x, |s| env(k * s - at));
-                        inner * wave(t * at) * (w * at.cos())
-                    })
-                    .sum()
-            })
-            .collect();
         let of = |f: &dyn Fn([f64; 2]) -> Complex| -> Vec<Complex> {
             omegas.iter().map(|w| f(*w)).collect()
         };
+        let plain = of(&|w| mirrored_sky(k, w));
         Erratum {
             place,
             printed: "env^(Ωx/k) cos⁺^(Ωx/k − Ωθ), with hats added".to_owned(),
             corrected: "env^(Ωx/k) cos⁺^(Ωx/k + Ωθ)/|k|".to_owned(),
-            off: apart(&of(&|[x, t]| hat(x / k) * cosine_hat(x / k - t)), &plain),
+            off: apart(
+                &of(&|[x, t]| sky_hat(x / k) * cosine_hat(x / k - t)),
+                &plain,
+            ),
             at_least,
             mended: apart(
-                &of(&|w| mirrored_differential_irradiance(k, w, &hat)),
+                &of(&|w| mirrored_differential_irradiance(k, w, &sky_hat)),
                 &plain,
             ),
             at_most: QUADRATURE,

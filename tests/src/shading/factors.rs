@@ -295,14 +295,41 @@ fn differential_irradiance() -> OperatorComparison {
     }
 }
 
+/// An environment of two Gaussians.
+const SKY: [Glow; 2] = [
+    Glow {
+        amplitude: 1.0,
+        mean: 0.3,
+        deviation: 0.4,
+    },
+    Glow {
+        amplitude: 0.5,
+        mean: -0.5,
+        deviation: 0.25,
+    },
+];
+
+/// Returns the spectrum of [`SKY`].
+pub(super) fn sky_hat(w: f64) -> Complex {
+    SKY.iter().map(|glow| glow.spectrum(w)).sum()
+}
+
+/// Returns the transform, by quadrature, of the field dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r' of
+/// the environment [`SKY`]. The width of this field over s is the width of the environment's
+/// Gaussians divided by |k|.
+pub(super) fn mirrored_sky(k: f64, [x, t]: [f64; 2]) -> Complex {
+    let env = |t: f64| -> f64 { SKY.iter().map(|glow| glow.value(t)).sum() };
+    let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
+    mirrored
+        .map(|(at, w)| {
+            let along = about(at / k, 4.0 / k.abs(), 160);
+            let inner = transform(along, x, |s| env(k * s - at));
+            inner * wave(t * at) * (w * at.cos())
+        })
+        .sum()
+}
+
 fn environments() -> Vec<OperatorComparison> {
-    let glows = [(1.0, 0.3, 0.4), (0.5, -0.5, 0.25)].map(|(amplitude, mean, deviation)| Glow {
-        amplitude,
-        mean,
-        deviation,
-    });
-    let hat = |w: f64| -> Complex { glows.iter().map(|glow| glow.spectrum(w)).sum() };
-    let env = |t: f64| -> f64 { glows.iter().map(|glow| glow.value(t)).sum() };
     let mut rows = Vec::new();
     for (operator, diffuse, k) in [
         (
@@ -319,23 +346,12 @@ fn environments() -> Vec<OperatorComparison> {
         let omegas: Vec<[f64; 2]> = (0..12)
             .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
             .collect();
-        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. The width of this field over s
-        // is the width of the environment's Gaussians divided by |k|.
-        let primal = |[x, t]: [f64; 2]| -> Complex {
-            let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
-            mirrored
-                .map(|(at, w)| {
-                    let along = about(at / k, 4.0 / k.abs(), 160);
-                    let inner = transform(along, x, |s| env(k * s - at));
-                    inner * wave(t * at) * (w * at.cos())
-                })
-                .sum()
-        };
+        let primal = |w: [f64; 2]| mirrored_sky(k, w);
         let of = |f: &dyn Fn([f64; 2]) -> Complex| -> Vec<Complex> {
             omegas.iter().map(|w| f(*w)).collect()
         };
         let traced = of(&primal);
-        let right = |w| mirrored_differential_irradiance(k, w, &hat);
+        let right = |w| mirrored_differential_irradiance(k, w, &sky_hat);
         rows.push(OperatorComparison {
             operator,
             line: Some(Line::Environment),
@@ -347,12 +363,12 @@ fn environments() -> Vec<OperatorComparison> {
             ),
         });
         let floor = of(&|[x, _]| primal([x, 0.0]));
-        let turned = |[x, _]: [f64; 2]| irradiance(-k, x, &hat);
+        let turned = |[x, _]: [f64; 2]| irradiance(-k, x, &sky_hat);
         rows.push(OperatorComparison {
             operator: diffuse,
             line: Some(Line::Environment),
             compared: format!("E^ at k = {k} /m"),
-            off: apart(&of(&|[x, _]| irradiance(k, x, &hat)), &floor),
+            off: apart(&of(&|[x, _]| irradiance(k, x, &sky_hat)), &floor),
             fault: ("wrong sign of k", apart(&of(&turned), &floor)),
         });
     }

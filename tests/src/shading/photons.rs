@@ -5,8 +5,8 @@ use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
-use crate::scenes::{compared, predicted, referred, traced, traced_backwards};
-use etendue_compare::{PlaneComparison, TESTS, Verdict, sidak};
+use crate::scenes::ComparedScene;
+use etendue_compare::{TESTS, Verdict, sidak};
 use etendue_field::{Lobe, Orientation, Quantity, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 
@@ -14,16 +14,6 @@ use etendue_scene::{Event, Object, Scene};
 const ALPHA: f64 = 0.01;
 /// Maximum rounding error of the flux balance relative to the emitted flux.
 const LEDGER: f64 = 1e-12;
-
-/// The results for one scene of shading.
-struct ShadedRun {
-    scene: Scene,
-    planes: Vec<PlaneComparison>,
-    /// For each plane, the p-value of the comparison of photons with backward rays; `None` if no
-    /// backward rays are traced.
-    backward: Vec<Option<f64>>,
-    imbalance: f64,
-}
 
 /// Returns the section on all planes. Each scene is traced with `photons` photons. If `photons` is
 /// `None`, each scene is traced with the number of photons in its file.
@@ -34,7 +24,7 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut whole = String::new();
     for scene in all {
-        let outcome = run(scene, level);
+        let outcome = ComparedScene::new(scene, level);
         let before = rows.len();
         rows.extend((0..outcome.planes.len()).map(|index| row(&outcome, index, level)));
         if outcome.scene.name == "fig10" {
@@ -73,30 +63,9 @@ pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     )
 }
 
-fn run(scene: Scene, level: f64) -> ShadedRun {
-    let measurement = traced(&scene);
-    let reference = traced_backwards(&scene);
-    let predictions = predicted(&scene, reference.as_ref());
-    let at = |i: usize| compared(&scene, &measurement, i, &predictions[i], level);
-    let against = |i: usize| {
-        let reference = referred(&scene, i, reference.as_ref()?);
-        compared(&scene, &measurement, i, &reference, level)
-            .report
-            .p_value
-    };
-    let planes = 0..scene.planes.len();
-    ShadedRun {
-        planes: planes.clone().map(at).collect(),
-        backward: planes.map(against).collect(),
-        imbalance: measurement.ledger().imbalance(),
-        scene,
-    }
-}
-
-fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
-    let ShadedRun {
-        scene, imbalance, ..
-    } = outcome;
+fn row(outcome: &ComparedScene, index: usize, level: f64) -> Row {
+    let scene = &outcome.scene;
+    let imbalance = outcome.measurement.ledger().imbalance();
     let place = &scene.planes[index];
     let report = &outcome.planes[index].report;
     let backward = outcome.backward[index];

@@ -41,7 +41,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tally::Tally;
 
@@ -88,29 +87,23 @@ pub(crate) fn wild(options: &WildOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "scenes");
-    let next = AtomicU64::new(options.first);
+    let numbers = options.first..options.first + options.scenes;
     let tally = Mutex::new(Tally::default());
     let tell = |number: u64, says: &str| bar.suspend(|| told(options.seed, number, says));
-    let worker = |thread: usize| -> io::Result<()> {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= options.first + options.scenes {
-                return Ok(());
+    on_threads(options.threads, numbers, |thread, number| {
+        let at = place.path().join(format!("{thread}-{number}"));
+        let judged = one(options, &program, number, &at, &tell)?;
+        if let Ok(mut tally) = tally.lock() {
+            match &judged {
+                Some(judged) => tally.add(number, judged),
+                None if options.with.is_none() => tally.undrawn(number),
+                None => {}
             }
-            let at = place.path().join(format!("{thread}-{number}"));
-            let judged = one(options, &program, number, &at, &tell)?;
-            if let Ok(mut tally) = tally.lock() {
-                match &judged {
-                    Some(judged) => tally.add(number, judged),
-                    None if options.with.is_none() => tally.undrawn(number),
-                    None => {}
-                }
-            }
-            fs::remove_dir_all(&at)?;
-            bar.one();
         }
-    };
-    on_threads(options.threads, worker)?;
+        fs::remove_dir_all(&at)?;
+        bar.one();
+        Ok(())
+    })?;
     bar.end();
     let tally = tally.into_inner().unwrap_or_default();
     Ok(tally.section(options.seed))

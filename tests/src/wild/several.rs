@@ -4,14 +4,13 @@
 use super::draw::SceneDraw;
 use super::planted::planted;
 use super::scene;
-use super::small::{MORE_PHOTONS, SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
-use crate::progress::progress;
+use super::small::{MORE_PHOTONS, SmallEnding, SmallOptions};
+use super::small::{kept_ending, object, plane, sharpen, tried};
 use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Class, Verdict};
 use etendue_predict::Applicability;
 use etendue_scene::{Event, Object, Scene, SceneFile, resolve};
 use etendue_theory::PathKind;
-use rayon::prelude::*;
 use std::io;
 use std::path::Path;
 use std::time::Instant;
@@ -39,34 +38,22 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());
     }
-    let bar = progress(options.scenes, "scenes");
-    let numbers = options.first..options.first + options.scenes;
-    let tried: io::Result<Vec<Option<Tried>>> = numbers
-        .into_par_iter()
-        .map(|number| {
-            let folder = tempfile::tempdir()?;
-            let Some(scene) = drawn(options, number, folder.path()) else {
-                bar.one();
-                return Ok(None);
-            };
-            let begun = Instant::now();
-            let ending = ending(&scene, options.classes);
-            if matches!(ending, SmallEnding::Judged(_, Verdict::Fail)) {
-                keep(options, number, &scene, folder.path())?;
-            }
-            bar.one();
-            let theory = Applicability::new(&scene, &scene.planes[0]).theory;
-            Ok(Some(Tried {
-                number,
-                scatterers: scatterers(&scene),
-                by_paths: theory.path_of(PathKind::Several).is_some(),
-                ending,
-                seconds: begun.elapsed().as_secs_f64(),
-            }))
-        })
-        .collect();
-    bar.end();
-    Ok(section(options, &tried?))
+    let tried = tried(options, |number, folder| {
+        let Some(scene) = drawn(options, number, folder) else {
+            return Ok(None);
+        };
+        let begun = Instant::now();
+        let ending = kept_ending(options, number, &scene, folder)?;
+        let theory = Applicability::new(&scene, &scene.planes[0]).theory;
+        Ok(Some(Tried {
+            number,
+            scatterers: scatterers(&scene),
+            by_paths: theory.path_of(PathKind::Several).is_some(),
+            ending,
+            seconds: begun.elapsed().as_secs_f64(),
+        }))
+    })?;
+    Ok(section(options, &tried))
 }
 
 /// Returns a scene whose central ray visits two or more surfaces, with one plane and usually an
@@ -115,8 +102,7 @@ fn scatterers(scene: &Scene) -> usize {
     hits.filter(|hit| scatters(hit.object)).count()
 }
 
-fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
-    let tried: Vec<&Tried> = tried.iter().flatten().collect();
+fn section(options: &SmallOptions, tried: &[Tried]) -> ReportSection {
     let row = |scatterers: usize| {
         let of_kind = || {
             tried

@@ -13,29 +13,10 @@ use std::io;
 use std::time::{Duration, Instant};
 
 /// Names of lists whose elements can be removed.
-const LISTS: [&str; 7] = [
-    "planes",
-    "other_lights",
-    "blockers",
-    "visits",
-    "surfaces",
-    "shapes",
-    "Lobes",
-];
+const LISTS: &str = "planes other_lights blockers visits surfaces shapes Lobes";
 /// Names of fields that can be removed or disabled.
-const OPTIONAL: [&str; 11] = [
-    "y",
-    "v",
-    "window",
-    "frequencies",
-    "spacing",
-    "texture",
-    "leaves",
-    "facing",
-    "along",
-    "grating",
-    "description",
-];
+const OPTIONAL: &str = "y v window frequencies spacing texture leaves facing along grating \
+    description";
 /// Names of fields, each with its simplest variant. A reduction replaces the variant of a field by
 /// the simplest variant.
 const PLAIN: [(&str, &str); 6] = [
@@ -84,7 +65,7 @@ pub(super) fn shrink(
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());
-    for list in LISTS {
+    for list in LISTS.split(' ') {
         for (place, value) in &places {
             let elements = value.as_array().filter(|all| {
                 all.len() > usize::from(!["blockers", "other_lights"].contains(&list))
@@ -103,7 +84,7 @@ fn candidates(tree: &Value) -> Vec<Value> {
     found.extend(without_blends(tree, &places));
     for (place, value) in &places {
         let name = name(place);
-        if OPTIONAL.contains(&name) && !value.is_null() {
+        if OPTIONAL.split(' ').any(|field| field == name) && !value.is_null() {
             found.push(with(tree, place, Value::Null));
         }
         for (_, plain) in PLAIN.iter().filter(|(of, _)| *of == name) {

@@ -83,39 +83,54 @@ pub(super) enum SmallEnding {
 
 /// Tests all scenes.
 pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
-    let bar = progress(options.scenes, "scenes");
-    let numbers = options.first..options.first + options.scenes;
-    let tried: io::Result<Vec<Option<TriedSmall>>> = numbers
-        .into_par_iter()
-        .map(|number| {
-            let folder = tempfile::tempdir()?;
-            let Some((scene, kind)) = drawn(options, number, folder.path()) else {
-                bar.one();
-                return Ok(None);
-            };
-            let ending = ending(&scene, options.classes);
-            if matches!(ending, SmallEnding::Judged(_, Verdict::Fail)) {
-                keep(options, number, &scene, folder.path())?;
-            }
-            bar.one();
-            Ok(Some(TriedSmall {
-                number,
-                kind,
-                ending,
-            }))
-        })
-        .collect();
-    bar.end();
-    Ok(section(options, &tried?))
+    let tried = tried(options, |number, folder| {
+        let Some((scene, kind)) = drawn(options, number, folder) else {
+            return Ok(None);
+        };
+        Ok(Some(TriedSmall {
+            number,
+            kind,
+            ending: kept_ending(options, number, &scene, folder)?,
+        }))
+    })?;
+    Ok(section(options, &tried))
 }
 
-/// Saves a scene with its pictures and meshes.
-pub(super) fn keep(
+/// Tries all scenes, each with a folder of its own for pictures and meshes. The function `one`
+/// returns `None` if no scene could be drawn.
+pub(super) fn tried<T: Send>(
+    options: &SmallOptions,
+    one: impl Fn(u64, &Path) -> io::Result<Option<T>> + Sync,
+) -> io::Result<Vec<T>> {
+    let bar = progress(options.scenes, "scenes");
+    let numbers = (options.first..options.first + options.scenes).into_par_iter();
+    let tried = numbers.map(|number| {
+        let folder = tempfile::tempdir()?;
+        let found = one(number, folder.path());
+        bar.one();
+        found
+    });
+    let tried: io::Result<Vec<Option<T>>> = tried.collect();
+    bar.end();
+    Ok(tried?.into_iter().flatten().collect())
+}
+
+/// Returns the outcome for a scene, and saves the scene if photons reject its prediction.
+pub(super) fn kept_ending(
     options: &SmallOptions,
     number: u64,
     scene: &Scene,
-    from: &Path,
-) -> io::Result<()> {
+    folder: &Path,
+) -> io::Result<SmallEnding> {
+    let ending = ending(scene, options.classes);
+    if matches!(ending, SmallEnding::Judged(_, Verdict::Fail)) {
+        keep(options, number, scene, folder)?;
+    }
+    Ok(ending)
+}
+
+/// Saves a scene with its pictures and meshes.
+fn keep(options: &SmallOptions, number: u64, scene: &Scene, from: &Path) -> io::Result<()> {
     let folder = options.out.join(format!("{}-{number}", options.seed));
     fs::create_dir_all(&folder)?;
     for name in scene.inputs.keys() {
@@ -274,7 +289,7 @@ fn towards_light(scene: &Scene) -> DVec3 {
 
 /// Returns the outcome for the only plane: whether a theory applies, and the verdict of photons on
 /// its prediction.
-pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
+fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);
     if theory.class() == Class::Reference {
@@ -310,10 +325,9 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     SmallEnding::Judged(class, verdict)
 }
 
-fn section(options: &SmallOptions, tried: &[Option<TriedSmall>]) -> ReportSection {
-    let tried: Vec<&TriedSmall> = tried.iter().flatten().collect();
+fn section(options: &SmallOptions, tried: &[TriedSmall]) -> ReportSection {
     let row = |(kind, says): (usize, &&str)| {
-        let of_kind: Vec<&&TriedSmall> = tried.iter().filter(|tried| tried.kind == kind).collect();
+        let of_kind: Vec<&TriedSmall> = tried.iter().filter(|tried| tried.kind == kind).collect();
         let count = |is: &dyn Fn(SmallEnding) -> bool| {
             of_kind.iter().filter(|tried| is(tried.ending)).count()
         };

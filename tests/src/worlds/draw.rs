@@ -8,17 +8,8 @@ use std::fmt::Display;
 pub(super) const SIZE: [usize; 2] = [48, 32];
 
 /// Parameters of `principled` from 0 to 1.
-const PRINCIPLED: [&str; 9] = [
-    "metallic",
-    "roughness",
-    "anisotropic",
-    "specular",
-    "spec_tint",
-    "flatness",
-    "sheen",
-    "clearcoat",
-    "clearcoat_gloss",
-];
+const PRINCIPLED: &str = "metallic roughness anisotropic specular spec_tint flatness sheen \
+    clearcoat clearcoat_gloss";
 
 /// Returns a world with all kinds of shapes, materials, textures and lights, and a pixel of its
 /// camera.
@@ -212,8 +203,8 @@ impl WorldDraw {
                 ))
             }
             5 => {
-                let shares = PRINCIPLED.map(|name| number(name, self.share()));
-                let inside = shares.concat() + &self.reflectance("base_color");
+                let shares = PRINCIPLED.split(' ').map(|name| number(name, self.share()));
+                let inside = shares.collect::<String>() + &self.reflectance("base_color");
                 both(bsdf("principled", &inside))
             }
             6 => {

@@ -13,7 +13,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// Options of the search.
@@ -79,25 +78,19 @@ pub(crate) fn worlds(options: &WorldOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "worlds");
-    let next = AtomicU64::new(options.first);
+    let numbers = options.first..options.first + options.scenes;
     let found = Mutex::new(BTreeMap::new());
-    let worker = |_: usize| -> io::Result<()> {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= options.first + options.scenes {
-                return Ok(());
-            }
-            let at = place.path().join(number.to_string());
-            fs::create_dir_all(&at)?;
-            let outcome = one(options, &program, number, &at)?;
-            if let Ok(mut found) = found.lock() {
-                found.insert(number, outcome);
-            }
-            fs::remove_dir_all(&at)?;
-            bar.one();
+    on_threads(options.threads, numbers, |_, number| {
+        let at = place.path().join(number.to_string());
+        fs::create_dir_all(&at)?;
+        let outcome = one(options, &program, number, &at)?;
+        if let Ok(mut found) = found.lock() {
+            found.insert(number, outcome);
         }
-    };
-    on_threads(options.threads, worker)?;
+        fs::remove_dir_all(&at)?;
+        bar.one();
+        Ok(())
+    })?;
     bar.end();
     Ok(section(
         options.seed,

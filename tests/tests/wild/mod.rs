@@ -12,27 +12,20 @@ mod light;
 mod obstacles;
 mod surfaces;
 
+use crate::common::{self, measured, photons};
 use etendue_compare::{Class, PlaneReport, Prediction, Test, Verdict, compare};
-use etendue_field::{PhotonSource, ProjectionGrid, Slices, VirtualPlane};
+use etendue_field::{ProjectionGrid, Slices, VirtualPlane};
 use etendue_predict::{Applicability, path, predict, predict_reference, test_of};
-use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::{Measurement, measure};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
 use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, Observed, RayBudget};
-use etendue_trace::{Backward, Tracer};
+use etendue_trace::Backward;
 use std::time::Instant;
-
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/wild");
 
 /// Returns a scene of `scenes/wild`, with parts of its text replaced.
 fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
-    let mut text = std::fs::read_to_string(format!("{FOLDER}/{name}.ron")).unwrap();
-    for (from, to) in edits {
-        assert!(text.contains(from), "{from} is not in {name}");
-        text = text.replace(from, to);
-    }
-    let file = SceneFile::parse(&text).unwrap();
-    resolve(name, file, FOLDER.as_ref(), u64::MAX).unwrap()
+    common::edited(&format!("wild/{name}"), edits)
 }
 
 /// Returns a scene of `scenes/wild`.
@@ -43,14 +36,6 @@ fn scene(name: &str) -> Scene {
 /// The number of photons in a scene file, and a larger number that replaces it. With the larger
 /// number, many rays of each batch hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
-
-fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
-    measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
-}
-
-fn photons(scene: &Scene) -> Measurement {
-    measured(scene, &Tracer::new(scene))
-}
 
 fn backward(scene: &Scene) -> Measurement {
     measured(scene, &Backward::new(scene).unwrap())

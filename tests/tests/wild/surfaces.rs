@@ -1,24 +1,20 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    FOLDER, MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory,
+    MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory,
     does_not_fail, edited, forgets_own_shadows, measured, only_the_blind_are_wrong, photons,
     report, scene, scene_does_not_fail, the_tracers_agree, verdict,
 };
+use crate::common;
 use etendue_compare::{Class, Prediction, Verdict};
 use etendue_predict::{Applicability, path};
-use etendue_scene::{SceneFile, resolve};
 use etendue_trace::Tracer;
-use std::path::Path;
 
 /// A fine mesh deviates from the patch that osculates it by more than the noise of photon nets. The
 /// stated error of the prediction includes this deviation; without it, the scene fails.
 #[test]
 fn the_error_of_a_fine_mesh_is_stated() {
-    let folder = Path::new(FOLDER).join("../table1");
-    let text = std::fs::read_to_string(folder.join("mesh_mirror.ron")).unwrap();
-    let file = SceneFile::parse(&text).unwrap();
-    let scene = resolve("mesh_mirror", file, &folder, u64::MAX).unwrap();
+    let scene = common::edited("table1/mesh_mirror", &[]);
     let photons = photons(&scene);
     for (i, plane) in scene.planes.iter().enumerate() {
         let prediction = by_theory(&scene, plane);
