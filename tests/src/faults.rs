@@ -101,7 +101,7 @@ fn of_scene(name: &'static str, rows: Vec<Row>) -> impl Iterator<Item = Row> {
 }
 
 /// The name of a fault, and the prediction with this fault.
-type PlantedFault = (&'static str, Box<Predict>);
+type PredictionFault = (&'static str, Box<Predict>);
 
 /// Returns a function that predicts slices by a modified chain. The function returns `None` if the
 /// modification has no effect.
@@ -114,12 +114,12 @@ fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
 }
 
 /// Returns a fault of the chain.
-fn fault(name: &'static str, change: impl Fn(&mut Chain) + 'static) -> PlantedFault {
+fn fault(name: &'static str, change: impl Fn(&mut Chain) + 'static) -> PredictionFault {
     (name, chained(change))
 }
 
 /// Returns a fault of a parameter, which is multiplied by a factor.
-fn scaled(name: &'static str, which: fn(&Parameter) -> bool, factor: f64) -> PlantedFault {
+fn scaled(name: &'static str, which: fn(&Parameter) -> bool, factor: f64) -> PredictionFault {
     fault(name, move |c| {
         if let Some(p) = c.parameters().into_iter().find(which) {
             scale(c, p, factor);
@@ -127,7 +127,7 @@ fn scaled(name: &'static str, which: fn(&Parameter) -> bool, factor: f64) -> Pla
     })
 }
 
-fn elsewhere() -> Vec<(&'static str, Vec<PlantedFault>)> {
+fn elsewhere() -> Vec<(&'static str, Vec<PredictionFault>)> {
     let is_frequency = |p: &Parameter| matches!(p, Parameter::GratingFrequency(_));
     let is_exponent = |p: &Parameter| matches!(p, Parameter::SpotExponent);
     let layers = vec![
@@ -263,7 +263,7 @@ fn slices(chain: &Chain, plane: &VirtualPlane) -> Slices {
 }
 
 /// Faults that are planted in the prediction.
-fn predictions() -> Vec<PlantedFault> {
+fn predictions() -> Vec<PredictionFault> {
     vec![
         fault("first travel + 1 %", |c| scale_travel(c, 0, 1.01)),
         fault("first travel − 1 %", |c| scale_travel(c, 0, 0.99)),

@@ -4,11 +4,10 @@
 use super::glossy_bench::{ACROSS, BASE, BOX, GlossyBench, Lit, LobeOwner, WIDEST};
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
+use crate::scenes::traced;
 use etendue_compare::measured_bandwidth;
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves};
 use etendue_predict::{Applicability, exact_bandwidth};
-use etendue_spectrum::measure;
-use etendue_trace::Tracer;
 use std::f64::consts::SQRT_2;
 
 /// Default number of photons per point.
@@ -25,118 +24,72 @@ struct GlossySweep {
     values: &'static [f64],
 }
 
+/// Symbols and units of swept quantities.
+const CURVATURE: [&str; 2] = ["*k*", "1/m"];
+const VIEW: [&str; 2] = ["*θ*_{0} = −*θ*_{1}", "degrees"];
+const ASIDE: [&str; 2] = ["*θ*_{0} + *θ*_{1}", "degrees"];
+const DISTANCE: [&str; 2] = ["*d*", "m"];
+const WIDTH: [&str; 2] = ["1/√*n*", "radians"];
+const BLOCKER: [&str; 2] = ["*d*'", "m"];
+const ROUGHNESS: [&str; 2] = ["*α*", ""];
+
 fn sweeps() -> Vec<GlossySweep> {
-    let sweep = |name, symbol, unit, values, bench| GlossySweep {
+    let sweep = |name, [symbol, unit]: [&str; 2], values, bench| GlossySweep {
         name,
         quantity: AxisQuantity::new(symbol, unit),
         bench,
         values,
     };
+    let curvatures = &[-1.75, -1.4, -1.1, -0.88, -0.65, -0.35, 0.0, 0.5, 1.0];
+    let lights = &[0.3, 0.45, 0.8, 1.6];
     vec![
-        sweep(
-            "curvature",
-            "*k*",
-            "1/m",
-            &[-1.75, -1.4, -1.1, -0.88, -0.65, -0.35, 0.0, 0.5, 1.0],
-            |k| GlossyBench {
-                curvature: k,
-                ..BASE
-            },
-        ),
-        sweep(
-            "view angle",
-            "*θ*_{0} = −*θ*_{1}",
-            "degrees",
-            &[0.0, 20.0, 40.0, 60.0],
-            |angle| GlossyBench {
-                incidence: angle.to_radians(),
-                ..BASE
-            },
-        ),
-        sweep(
-            "beside the mirror direction",
-            "*θ*_{0} + *θ*_{1}",
-            "degrees",
-            &[-6.0, -3.0, 3.0, 6.0],
-            |angle| GlossyBench {
-                aside: angle.to_radians(),
-                lobe: LobeOwner::Phong(400.0),
-                ..BASE
-            },
-        ),
-        sweep("distance", "*d*", "m", &[0.1, 0.25, 0.8, 1.5], |d| {
-            GlossyBench {
-                distance: d,
-                ..BASE
-            }
+        sweep("curvature", CURVATURE, curvatures, |k| BASE.curved(k)),
+        sweep("view angle", VIEW, &[0.0, 20.0, 40.0, 60.0], |angle| {
+            BASE.seen_at(angle)
         }),
         sweep(
-            "BRDF width",
-            "1/√*n*",
-            "radians",
-            &[0.01, 0.03, 0.05, 0.1],
-            |width| GlossyBench {
-                lobe: LobeOwner::Phong(width.powi(-2)),
-                ..BASE
+            "beside the mirror direction",
+            ASIDE,
+            &[-6.0, -3.0, 3.0, 6.0],
+            |angle| {
+                let aside = angle.to_radians();
+                let bench = BASE.with(LobeOwner::Phong(400.0));
+                GlossyBench { aside, ..bench }
             },
         ),
-        sweep(
-            "light at d'",
-            "*d*'",
-            "m",
-            &[0.3, 0.45, 0.8, 1.6],
-            |distance| GlossyBench {
-                lit: Lit::Point(distance),
-                ..BASE
-            },
-        ),
-        sweep(
-            "light at d', concave",
-            "*d*'",
-            "m",
-            &[0.3, 0.45, 0.8, 1.6],
-            |distance| GlossyBench {
-                lit: Lit::Point(distance),
-                curvature: -0.5,
-                ..BASE
-            },
-        ),
+        sweep("distance", DISTANCE, &[0.1, 0.25, 0.8, 1.5], |distance| {
+            GlossyBench { distance, ..BASE }
+        }),
+        sweep("BRDF width", WIDTH, &[0.01, 0.03, 0.05, 0.1], |width| {
+            BASE.with(LobeOwner::Phong(width.powi(-2)))
+        }),
+        sweep("light at d'", BLOCKER, lights, |distance| {
+            BASE.lit(Lit::Point(distance))
+        }),
+        sweep("light at d', concave", BLOCKER, lights, |distance| {
+            BASE.lit(Lit::Point(distance)).curved(-0.5)
+        }),
         sweep(
             "curvature, light at 0.6 m",
-            "*k*",
-            "1/m",
+            CURVATURE,
             &[-1.2, -0.6, 0.0, 0.6],
-            |k| GlossyBench {
-                lit: Lit::Point(0.6),
-                curvature: k,
-                ..BASE
-            },
+            |k| BASE.lit(Lit::Point(0.6)).curved(k),
         ),
         sweep(
             "view angle, light at 0.6 m",
-            "*θ*_{0} = −*θ*_{1}",
-            "degrees",
+            VIEW,
             &[0.0, 25.0, 45.0],
-            |angle| GlossyBench {
-                lit: Lit::Point(0.6),
-                incidence: angle.to_radians(),
-                ..BASE
-            },
+            |angle| BASE.lit(Lit::Point(0.6)).seen_at(angle),
         ),
-        sweep("slit at d'", "*d*'", "m", &[0.4, 0.8], |distance| {
-            GlossyBench {
-                lit: Lit::Slit(distance),
-                lobe: LobeOwner::Phong(400.0),
-                ..BASE
-            }
+        sweep("slit at d'", BLOCKER, &[0.4, 0.8], |distance| {
+            let lobe = LobeOwner::Phong(400.0);
+            BASE.lit(Lit::Slit(distance)).with(lobe)
         }),
-        sweep("Beckmann", "*α*", "", &[0.03], |alpha| GlossyBench {
-            lobe: LobeOwner::Beckmann(alpha),
-            ..BASE
+        sweep("Beckmann", ROUGHNESS, &[0.03], |alpha| {
+            BASE.with(LobeOwner::Beckmann(alpha))
         }),
-        sweep("GGX", "*α*", "", &[0.03], |alpha| GlossyBench {
-            lobe: LobeOwner::Ggx(alpha),
-            ..BASE
+        sweep("GGX", ROUGHNESS, &[0.03], |alpha| {
+            BASE.with(LobeOwner::Ggx(alpha))
         }),
     ]
 }
@@ -163,12 +116,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let plane = &scene.planes[0];
             let theory = Applicability::new(&scene, plane);
             let exact = exact_bandwidth(&scene, plane, &theory).expect("light comes");
-            let measurement = measure(
-                &Tracer::new(&scene),
-                &scene.planes,
-                0..scene.run.batches,
-                &|_| (),
-            );
+            let measurement = traced(&scene);
             let found = measured_bandwidth(&measurement, 0).expect("enough batches");
             let found = found.expect("light comes");
             let off = (found.value - exact) / found.error;

@@ -71,6 +71,24 @@ pub(super) const ANY: Windows = Windows {
 };
 
 impl GlossyBench {
+    pub(super) fn curved(self, curvature: f64) -> Self {
+        Self { curvature, ..self }
+    }
+
+    pub(super) fn lit(self, lit: Lit) -> Self {
+        Self { lit, ..self }
+    }
+
+    pub(super) fn with(self, lobe: LobeOwner) -> Self {
+        Self { lobe, ..self }
+    }
+
+    /// Returns the bench with light that arrives at an angle in degrees.
+    pub(super) fn seen_at(self, angle: f64) -> Self {
+        let incidence = angle.to_radians();
+        Self { incidence, ..self }
+    }
+
     fn text(&self, windows: &Windows, photons: u64, seed: u64) -> String {
         let (sine, cosine) = self.incidence.sin_cos();
         let (light, slit, from) = match self.lit {

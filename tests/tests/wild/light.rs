@@ -80,7 +80,7 @@ fn a_wide_glow_is_decided() {
 #[test]
 fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
-    scene_does_not_fail(&scene, &[("p", Class::FirstOrder)]);
+    scene_does_not_fail(&scene, Class::FirstOrder, "p");
 }
 
 /// The rays sample the sky's light that enters the window, even if light from behind is much
@@ -142,7 +142,7 @@ fn the_tail_of_a_projector_is_decided() {
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {
-    does_not_fail("irradiance_after_floor", &[("p", Class::FirstOrder)]);
+    does_not_fail("irradiance_after_floor", Class::FirstOrder, "p");
 }
 
 /// Tests angles beyond a right angle: no light is found there, although there is light at these

@@ -60,7 +60,7 @@ fn light_passes_beside_squares() {
 fn rays_of_a_brdf_meet_obstacles() {
     masks_matter("squares_on_the_way_back");
     let scene = scene("later_mesh");
-    scene_does_not_fail(&scene, &[("p", Class::FirstOrder)]);
+    scene_does_not_fail(&scene, Class::FirstOrder, "p");
     only_the_blind_are_wrong(&scene, 0, forgets_later_surfaces);
 }
 
@@ -68,13 +68,13 @@ fn rays_of_a_brdf_meet_obstacles() {
 /// sampled from the light hits this part.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
-    does_not_fail("sliver_of_slopes", &[("p", Class::FirstOrder)]);
+    does_not_fail("sliver_of_slopes", Class::FirstOrder, "p");
 }
 
 /// A wall beside the light extends behind the light, which emits only forward.
 #[test]
 fn a_wall_that_reaches_behind_the_light_is_decided() {
-    does_not_fail("beside_the_light", &[("p", Class::FirstOrder)]);
+    does_not_fail("beside_the_light", Class::FirstOrder, "p");
 }
 
 /// A surface that the path visits later stands before the first surface, in a corner of the
@@ -135,7 +135,7 @@ fn masks_matter(name: &str) {
 /// parallel planes is wrong.
 fn only_the_chain_is_wrong(name: &str, class: Class) {
     let scene = scene(name);
-    scene_does_not_fail(&scene, &[("p", class)]);
+    scene_does_not_fail(&scene, class, "p");
     let plane = &scene.planes[0];
     let slices = etendue_theory::slices(&chain(&scene, plane), &plane.window, &plane.grid);
     let wrong = replaced(by_exact_rays(&scene, 0), slices, Vec::new());

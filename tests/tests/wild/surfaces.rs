@@ -1,9 +1,9 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory,
-    does_not_fail, edited, forgets_own_shadows, measured, only_the_blind_are_wrong, photons,
-    report, scene, scene_does_not_fail, the_tracers_agree, verdict,
+    MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory, edited,
+    forgets_own_shadows, measured, only_the_blind_are_wrong, photons, report, scene,
+    scene_does_not_fail, the_tracers_agree, verdict,
 };
 use crate::common;
 use etendue_compare::{Class, Prediction, Verdict};
@@ -131,8 +131,8 @@ fn light_does_not_meet_its_surface_again() {
 /// the second surface.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
-    let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];
-    does_not_fail("before_second_after_brdf", &planes);
+    let scene = scene("before_second_after_brdf");
+    scene_does_not_fail(&scene, Class::FirstOrder, "tangent local");
 }
 
 /// If light meets a mesh from behind, the ratio of the mesh's indices of refraction is inverted.
@@ -161,10 +161,8 @@ fn a_coarse_mesh_is_decided() {
         ("Beam(", "Rectangle("),
         ("image: (width: (0.01, 0.01))", "size: (0.01, 0.01)"),
     ];
-    scene_does_not_fail(
-        &edited("coarse_mesh_mirror", &area),
-        &[("p", Class::Reference)],
-    );
+    let scene = edited("coarse_mesh_mirror", &area);
+    scene_does_not_fail(&scene, Class::Reference, "p");
 }
 
 /// The triangles of a roof turn light about interpolated normals, which does not conserve étendue.
