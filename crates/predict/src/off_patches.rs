@@ -52,10 +52,10 @@ impl OffPatches {
 }
 
 /// A ray that brings light into the window: its predicted arrival, and its arrival by triangles, if
-/// any, with the ratio of its radiance there to its predicted radiance.
+/// any.
 struct Displaced {
     predicted: TwoPlane,
-    by_triangles: Option<(TwoPlane, f64)>,
+    by_triangles: Option<TwoPlane>,
     /// The light of the ray before the window's weight is applied, and after.
     before: f64,
     light: f64,
@@ -113,7 +113,7 @@ impl Displaced {
     fn apart(&self, plane: &VirtualPlane) -> f64 {
         let window = &plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
-        self.by_triangles.map_or(LOST, |(seen, _)| {
+        self.by_triangles.map_or(LOST, |seen| {
             let z = &self.predicted;
             let apart = [seen.x - z.x, seen.y - z.y, seen.u - z.u, seen.v - z.v];
             let shares = apart.iter().zip(half).map(|(d, half)| (d / half).abs());
@@ -133,8 +133,8 @@ fn change(plane: &VirtualPlane, lit: &[Displaced]) -> f64 {
         for ray in lit.iter().skip(first).step_by(2) {
             all += ray.light;
             sum.deposit(&ray.predicted, -ray.light);
-            if let Some((seen, ratio)) = &ray.by_triangles {
-                sum.deposit(seen, ratio * ray.before * plane.window.value(seen));
+            if let Some(seen) = &ray.by_triangles {
+                sum.deposit(seen, ray.before * plane.window.value(seen));
             }
         }
         sum.finish(if all > 0.0 { 1.0 / all } else { 0.0 }).half
@@ -147,17 +147,14 @@ fn change(plane: &VirtualPlane, lit: &[Displaced]) -> f64 {
     norm(&a + &b) + norm(a - b)
 }
 
-/// Returns the arrival of a ray by the triangles of smooth meshes, and the ratio of its radiance to
-/// that of a ray by smooth surfaces; `None` if the ray misses a mesh or meets a mesh again. `start`
-/// has the ray's position and slopes at the light. Interpolated normals do not conserve étendue, so
-/// the ratio is not 1 ([`Scene::warnings`]).
+/// Returns the arrival of a ray by the triangles of smooth meshes; `None` if the ray misses a mesh
+/// or meets a mesh again. `start` has the ray's position and slopes at the light.
 fn by_triangles(
     scene: &Scene,
     view: &Observed,
     objects: &[Object],
     [x, y, u, v]: [f64; 4],
-) -> Option<(TwoPlane, f64)> {
-    let mut ratio = 1.0;
+) -> Option<TwoPlane> {
     let mut point = DVec3::new(x, y, 0.0);
     let mut direction = DVec3::new(u, v, 1.0).normalize();
     // A mesh also stops light on the legs that neither begin nor end at it.
@@ -183,7 +180,7 @@ fn by_triangles(
             let corners = &mesh.triangles[triangle];
             let normals = &mesh.smooth.as_ref()?.normals[triangle];
             let normal = interpolated_normal(corners, normals, point);
-            beyond = Some((mesh, NEIGHBOURS * longest_edge(corners), corners));
+            beyond = Some((mesh, NEIGHBOURS * longest_edge(corners)));
             -normal.dot(direction).signum() * normal
         } else {
             let local = patch.frame.to_local(point);
@@ -196,15 +193,13 @@ fn by_triangles(
             return None;
         }
         let event = surface.event()?;
-        let came = direction;
-        direction = event.turned(&patch.frame, normal, point, came)?.normalize();
-        if let Some((mesh, from, [a, b, c])) = beyond {
-            if hits(mesh, point, direction, from).next().is_some() {
-                return None;
-            }
-            let facet = (b - a).cross(c - a);
-            let kept = |d: DVec3| d.dot(facet) / d.dot(normal);
-            ratio *= (kept(came) / kept(direction)).abs();
+        direction = event
+            .turned(&patch.frame, normal, point, direction)?
+            .normalize();
+        if let Some((mesh, from)) = beyond
+            && hits(mesh, point, direction, from).next().is_some()
+        {
+            return None;
         }
     }
     let frame = &view.plane.frame;
@@ -213,7 +208,7 @@ fn by_triangles(
         return None;
     }
     let [x, y, u, v] = view.plane.arrival(point, direction)?;
-    Some((TwoPlane { x, y, u, v }, ratio))
+    Some(TwoPlane { x, y, u, v })
 }
 
 /// Returns the distances at which a ray meets triangles of a mesh, beyond a given distance, and the
