@@ -123,18 +123,18 @@ pub enum ObstacleForm {
     Mesh(Vec<[DVec3; 3]>),
 }
 
-/// Obstacles prepared for many rays, each with the centre and the radius of a sphere around its mesh.
+/// Obstacles prepared for many rays, each with the triangles of its mesh, if it is one.
 #[derive(Debug)]
-pub(crate) struct PreparedObstacles<'a>(Vec<(&'a Obstacle, DVec3, f64)>);
+pub(crate) struct PreparedObstacles<'a>(Vec<(&'a Obstacle, Option<TriangleTree>)>);
 
 /// Maximum relative rounding error of a distance.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
-        let each = obstacles.iter().map(|obstacle| {
-            let (center, radius) = around(&obstacle.form);
-            (obstacle, center, radius)
+        let each = obstacles.iter().map(|obstacle| match &obstacle.form {
+            ObstacleForm::Mesh(triangles) => (obstacle, Some(TriangleTree::new(triangles.clone()))),
+            ObstacleForm::Rectangle { .. } | ObstacleForm::Patch(_) => (obstacle, None),
         });
         Self(each.collect())
     }
@@ -146,36 +146,64 @@ impl<'a> PreparedObstacles<'a> {
         let is_between = |t: f64| start < t && t < length;
         let is_there = |obstacle: &Obstacle| obstacle.until.is_none_or(|until| leg < until);
         let mut there = self.0.iter().filter(|(obstacle, ..)| is_there(obstacle));
-        there.any(|(obstacle, center, radius)| match &obstacle.form {
+        there.any(|(obstacle, tree)| match &obstacle.form {
             ObstacleForm::Rectangle { frame, size } => {
                 on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
             ObstacleForm::Patch(patch) => ray.hits(patch).any(is_between),
-            ObstacleForm::Mesh(triangles) => {
-                let mut meets = triangles.iter().filter_map(|triangle| on(triangle, ray));
-                is_near(*center, *radius, ray) && meets.any(is_between)
-            }
+            ObstacleForm::Mesh(_) => tree
+                .as_ref()
+                .is_some_and(|tree| tree.stops(ray, &is_between)),
         })
     }
 }
 
-/// Returns the centre and the radius of a sphere around a mesh; a sphere without bounds around
-/// other forms.
-fn around(form: &ObstacleForm) -> (DVec3, f64) {
-    let ObstacleForm::Mesh(triangles) = form else {
-        return (DVec3::ZERO, f64::INFINITY);
-    };
-    let corners = || triangles.as_flattened().iter();
-    let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
-    let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
-    let center = 0.5 * (low + high);
-    let radius = corners().map(|corner| corner.distance(center));
-    (center, radius.fold(0.0, f64::max))
+/// The triangles of a mesh in a sphere, and parts of the mesh with spheres of their own.
+#[derive(Debug)]
+struct TriangleTree {
+    center: DVec3,
+    radius: f64,
+    triangles: Vec<[DVec3; 3]>,
+    parts: Vec<Self>,
 }
 
-fn is_near(center: DVec3, radius: f64, ray: &LegRay) -> bool {
-    let beside = (center - ray.point).cross(ray.direction);
-    beside.length_squared() <= radius * radius
+/// The largest number of triangles that are not divided among parts.
+const UNDIVIDED: usize = 8;
+
+impl TriangleTree {
+    fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
+        let corners = || triangles.as_flattened().iter();
+        let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+        let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+        let center = 0.5 * (low + high);
+        let radius = corners().map(|corner| corner.distance(center));
+        let radius = (1.0 + ROUNDING) * radius.fold(0.0, f64::max);
+        let mut parts = Vec::new();
+        if triangles.len() > UNDIVIDED {
+            let axis = (high - low).max_position();
+            let place = |[a, b, c]: &[DVec3; 3]| (*a + *b + *c)[axis];
+            triangles.sort_by(|one, other| place(one).total_cmp(&place(other)));
+            let rest = triangles.split_off(triangles.len() / 2);
+            parts = [std::mem::take(&mut triangles), rest].map(Self::new).into();
+        }
+        Self {
+            center,
+            radius,
+            triangles,
+            parts,
+        }
+    }
+
+    /// Checks whether a ray meets a triangle at a distance that `is_between` accepts.
+    fn stops(&self, ray: &LegRay, is_between: &impl Fn(f64) -> bool) -> bool {
+        let beside = (self.center - ray.point).cross(ray.direction);
+        let mut meets = self
+            .triangles
+            .iter()
+            .filter_map(|triangle| on(triangle, ray));
+        beside.length_squared() <= self.radius * self.radius
+            && (meets.any(is_between) || self.parts.iter().any(|part| part.stops(ray, is_between)))
+    }
 }
 
 fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {

@@ -42,7 +42,12 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("store", 3185, 3188, "its head says what it leaves out"),
     ("sweep", 1238, 1238, ""),
-    ("theory", 15390, 15390, ""),
+    (
+        "theory",
+        15390,
+        15418,
+        "a ray finds the triangles of a mesh in its way by a tree",
+    ),
     (
         "trace",
         6797,
