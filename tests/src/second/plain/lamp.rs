@@ -182,10 +182,11 @@ impl Lamp {
         matches!(self.kind, Kind::Lobes(_))
     }
 
-    /// Returns where a ray through a point leaves the plane of an environment.
-    pub(super) fn origin(&self, point: Vector, along: Vector) -> Vector {
+    /// Returns where a ray through a point leaves the plane of an environment; `None` for a point
+    /// behind this plane, from which light only travels forward.
+    pub(super) fn origin(&self, point: Vector, along: Vector) -> Option<Vector> {
         let [.., height] = self.axes.coordinates(point);
-        plus(point, -height / dot(along, self.axes.d), along)
+        (height > 0.0).then(|| plus(point, -height / dot(along, self.axes.d), along))
     }
 
     /// Returns the flux that leaves towards a direction per solid angle, and per area if the light

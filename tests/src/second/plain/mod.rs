@@ -79,6 +79,11 @@ const MAX_DEVIATION: f64 = 4.0;
 const PILOT: u64 = 0x70_696c_6f74;
 /// Fewer paths or photons with light do not tell their error.
 const MIN_LIT: u64 = 1000;
+/// If the error of an estimate is a larger share of the light, a few rays carry most of the light,
+/// and the error is not known either.
+const MAX_NOISE: f64 = 0.1;
+/// If masks leave a smaller share of the light, at most 26 of the first photons find it.
+const MIN_SHARE: f64 = 1e-4;
 
 /// An estimate with its standard error.
 #[derive(Clone, Copy)]
@@ -130,6 +135,8 @@ impl fmt::Display for Estimate {
 struct Pair {
     plain: Estimate,
     photons: Estimate,
+    /// Whether the rays cannot tell whether the estimates differ.
+    is_faint: bool,
 }
 
 impl Pair {
@@ -145,7 +152,7 @@ impl Pair {
     }
 
     fn deviation(&self) -> f64 {
-        if !self.is_lit() && !self.is_dark_in_one() {
+        if self.is_faint || !self.is_lit() && !self.is_dark_in_one() {
             return 0.0;
         }
         let error = self.plain.error.hypot(self.photons.error);
@@ -202,11 +209,11 @@ fn one(options: &PlainOptions, path: &Path) -> io::Result<ReportSection> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let file = SceneFile::parse(&fs::read_to_string(path)?).map_err(io::Error::other)?;
     let scene = resolve("plain", file.clone(), folder, u64::MAX).map_err(io::Error::other)?;
-    let world = PlainWorld::new(&file).ok_or_else(|| {
+    let mut world = PlainWorld::new(&file).ok_or_else(|| {
         io::Error::other("the plain tracer has no meshes, pictures, ray files, or other planes")
     })?;
-    let pair = judged(&world, &scene, options.photons);
-    let Pair { plain, photons } = pair;
+    let pair = judged(&mut world, &scene, options.photons);
+    let Pair { plain, photons, .. } = pair;
     let text = format!("Paths find {plain}, photons {photons} W m⁻² sr⁻¹ m².");
     Ok(section(options, vec![row(None, 1, &[(0, pair)])]).with_text(text))
 }
@@ -218,7 +225,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
     let Some(file) = plain_scene(options.seed, number, options.photons, folder.path()) else {
         return Ok(None);
     };
-    let Some(world) = PlainWorld::new(&file) else {
+    let Some(mut world) = PlainWorld::new(&file) else {
         return Ok(None);
     };
     let resolved = resolve("plain", file.clone(), folder.path(), u64::MAX);
@@ -228,7 +235,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
     {
         return Ok(None);
     }
-    let pair = judged(&world, &scene, options.photons);
+    let pair = judged(&mut world, &scene, options.photons);
     if fault.is_none() && pair.deviation().abs() > MAX_DEVIATION {
         fs::create_dir_all(&options.out)?;
         let name = format!("{}-{number}.ron", options.seed);
@@ -238,8 +245,8 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
 }
 
 /// Compares a scene; if the tracers are far apart, compares it once more.
-fn judged(world: &PlainWorld, scene: &Scene, photons: u64) -> Pair {
-    let compared = |seed: u64, more: u64| {
+fn judged(world: &mut PlainWorld, scene: &Scene, photons: u64) -> Pair {
+    let compared = |world: &PlainWorld, seed: u64, more: u64| {
         let plain = by_paths(world, seed, more);
         // If paths do not resolve the light, photons need not resolve it either.
         let most = if plain.noise() <= RESOLVED {
@@ -251,14 +258,22 @@ fn judged(world: &PlainWorld, scene: &Scene, photons: u64) -> Pair {
         Pair {
             plain,
             photons: by_photons(scene, seed, rays),
+            is_faint: false,
         }
     };
-    let first = compared(1, 1);
-    if first.deviation().abs() > MAX_DEVIATION {
-        compared(2, MORE_PHOTONS)
-    } else {
-        first
+    let mut found = compared(world, 1, 1);
+    if found.deviation().abs() > MAX_DEVIATION {
+        found = compared(world, 2, MORE_PHOTONS);
     }
+    if found.deviation().abs() > MAX_DEVIATION {
+        found.is_faint = if found.is_dark_in_one() {
+            world.masks.clear();
+            found.plain.mean.max(found.photons.mean) < MIN_SHARE * by_paths(world, 1, 1).mean
+        } else {
+            found.plain.noise().max(found.photons.noise()) > MAX_NOISE
+        };
+    }
+    found
 }
 
 /// Returns an estimate by as many rays as it needs, from the first number to the largest.

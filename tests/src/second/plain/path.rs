@@ -109,7 +109,7 @@ impl PlainWorld {
                 let cosine = dot(along, surface.normal(point)).abs();
                 aimed = Some(point);
                 Light {
-                    at: lamp.origin(point, along),
+                    at: lamp.origin(point, along)?,
                     weight: per_density * area * cosine,
                     along: Ok(along),
                     left: None,
@@ -237,7 +237,7 @@ impl PlainWorld {
     /// Returns the light of an environment at a plane of the first leg, for a ray of the window.
     fn environment(&self, lamp: &Lamp, draws: &mut Draws<'_>) -> Option<f64> {
         let (point, along, weight) = self.ray(draws);
-        let from = lamp.origin(point, along);
+        let from = lamp.origin(point, along)?;
         let light = Light {
             at: from,
             weight: 1.0,
@@ -245,9 +245,6 @@ impl PlainWorld {
             left: None,
         };
         let ahead = dot(plus(point, -1.0, from), along);
-        if ahead <= 0.0 {
-            return None;
-        }
         let passes = self.passes(&light, along, ahead, self.end, false);
         Some(lamp.radiance(along) * passes * weight)
     }

@@ -10,10 +10,10 @@ const MASKS_BEFORE_A_LAMP: [&str; 2] = [
 
 fn pair(text: &str, fault: Option<&str>) -> Pair {
     let file = SceneFile::parse(text).unwrap();
-    let world = PlainWorld::new(&file).unwrap();
+    let mut world = PlainWorld::new(&file).unwrap();
     let mut scene = resolve("plain", file, Path::new("."), u64::MAX).unwrap();
     assert!(fault.is_none_or(|fault| planted::plant(fault, &mut scene)));
-    judged(&world, &scene, 1 << 18)
+    judged(&mut world, &scene, 1 << 18)
 }
 
 #[test]
@@ -76,6 +76,7 @@ fn light_on_one_side_alone_is_a_difference() {
     let [dark, bright] = [Estimate::ZERO, lit].map(|photons| Pair {
         plain: lit,
         photons,
+        is_faint: false,
     });
     assert!(dark.deviation().abs() > 99.0 && bright.deviation().abs() < MAX_DEVIATION);
 }
@@ -88,6 +89,21 @@ fn light_along_the_normal_of_glass_goes_on() {
         path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["glass"]),
         planes: [(name: "p", at: Distance(1.5))],
         window: (x: Hann(0.2), u: Hann(0.1)),
+        frequencies: (azimuths: 1, rho: (max: 1), nu: (max: 1)), run: (photons: 1000))"#;
+    let found = pair(text, None);
+    assert!(found.is_resolved() && found.deviation().abs() < MAX_DEVIATION);
+}
+
+/// A lens that stands partly behind the plane of the sky receives its light only before this plane.
+#[test]
+fn light_of_the_sky_goes_forward_from_its_plane() {
+    let text = r#"(light: Environment(center: (0, 0, 0), up: (0, 1, 0), front: (0, 0, 1),
+            map: Lobes([(from: (-0.4, 0, -1), width: 0.4)])),
+        surfaces: [Smooth(name: "lens", center: (0, 0, 0.1), facing: (-0.7, 0, 0.7), form: Plane,
+            aperture: 0.4, event: ThinLens(-0.7))],
+        path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["lens"]),
+        planes: [(name: "p", at: Distance(0.8))],
+        window: (x: Hann(0.3), u: Hann(0.3)),
         frequencies: (azimuths: 1, rho: (max: 1), nu: (max: 1)), run: (photons: 1000))"#;
     let found = pair(text, None);
     assert!(found.is_resolved() && found.deviation().abs() < MAX_DEVIATION);
