@@ -49,7 +49,12 @@ impl Beam {
                 let secant = local.length() / local.z;
                 scale * picture.value(&(0.5 - 0.5 * at).into()) * secant * secant * secant
             }
-            _ => 0.0,
+            // No other light is made a beam.
+            Light::Point { .. }
+            | Light::Directional { .. }
+            | Light::Sheet { .. }
+            | Light::Constant { .. }
+            | Light::Sky(_) => 0.0,
         }
     }
 }

@@ -92,7 +92,13 @@ impl SampledLight {
                     flash: None,
                 })
             }
-            Self::Plain(_) => None,
+            // The other lights are of the other kinds; named here, so that a new light must be placed.
+            Self::Plain(
+                Light::Spot { .. }
+                | Light::Projector { .. }
+                | Light::Constant { .. }
+                | Light::Sky(_),
+            ) => None,
             Self::Sky(sky) => {
                 let toward = sky.sample(place);
                 let (radiance, density) = sky.radiance_and_density(toward);

@@ -152,7 +152,9 @@ impl From<&Light> for SampledLight {
             }),
             Light::Constant { radiance } => Self::Sky(SampledSky::Constant(*radiance)),
             Light::Sky(map) => Self::Sky(SampledSky::new(map)),
-            plain => Self::Plain(plain.clone()),
+            Light::Point { .. } | Light::Directional { .. } | Light::Sheet { .. } => {
+                Self::Plain(light.clone())
+            }
         }
     }
 }
@@ -190,7 +192,13 @@ impl SampledLight {
                 let weight = exitance.value(&hit.point);
                 Some(Incoming::from_one(-normal, hit.distance, weight))
             }
-            Self::Plain(_) => None,
+            // The other lights are of the other kinds; named here, so that a new light must be placed.
+            Self::Plain(
+                Light::Spot { .. }
+                | Light::Projector { .. }
+                | Light::Constant { .. }
+                | Light::Sky(_),
+            ) => None,
             Self::Sky(sky) => {
                 let toward = sky.sample(r);
                 let (radiance, density) = sky.radiance_and_density(toward);
