@@ -3,7 +3,8 @@
 //! `run` measures a scene, predicts its spectra, compares and draws. `measure`, `predict` and
 //! `compare` are the stages of `run`, and exchange files. `check` describes a scene.
 //!
-//! This crate computes nothing: `etendue_pipeline` runs the stages, and `etendue_report` draws results.
+//! This crate computes nothing: `etendue_pipeline` runs the stages, and `etendue_report` draws
+//! results.
 
 mod args;
 mod bandwidth;

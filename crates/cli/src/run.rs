@@ -95,13 +95,14 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         watch.lap("predict");
         let mut results = match results {
             Some(results) => results,
-            None => claim(args, &job, &folder)?,
+            None => {
+                let results = claim(args, &job, &folder)?;
+                if let Some(code) = finished(args, &job.scene, &folder) {
+                    return Ok(code);
+                }
+                results
+            }
         };
-        if args.resume
-            && let Some(code) = finished(args, &job.scene, &folder)
-        {
-            return Ok(code);
-        }
         let case = job.with(measurement, predictions);
         let ending = Ending {
             options: OutputOptions {

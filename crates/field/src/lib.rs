@@ -56,7 +56,8 @@ pub use ray_light::{FluxRay, RayLight};
 pub use rectangle::Rectangle;
 pub use reflectance::{MOST_TERMS, Mixture, Reflectance, Term, Weight};
 pub use shape::{
-    Disc, Grating, HalfPlane, Shape, interpolated_normal, triangle_distance, triangle_is_met,
+    Disc, Grating, HalfPlane, Shape, facet_ratio, interpolated_normal, triangle_distance,
+    triangle_is_met,
 };
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};

@@ -117,6 +117,19 @@ pub fn interpolated_normal(corners: &[DVec3; 3], normals: &[DVec3; 3], point: DV
     (p * share(b, c) + q * share(c, a) + r * share(a, b)).normalize()
 }
 
+/// Returns the ratio of two radiances of light that comes along `came` and leaves along `leaves`:
+/// behind a triangle whose interpolated normal is `normal`, and behind a surface that really has this
+/// normal. `facet` is the normal of the triangle's plane; the vectors may have any length. The ratio
+/// is negative if light is on the wrong side of the triangle either before or after its deflection.
+///
+/// A triangle turns light about the interpolated normal, but receives and emits it through its own
+/// area. So interpolated normals do not conserve étendue (Veach 1997, section 5.3).
+#[must_use]
+pub fn facet_ratio(facet: DVec3, normal: DVec3, came: DVec3, leaves: DVec3) -> f64 {
+    let kept = |d: DVec3| d.dot(facet) / d.dot(normal);
+    kept(came) / kept(leaves)
+}
+
 /// The points of a plane on one side of a line along X or Y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HalfPlane {

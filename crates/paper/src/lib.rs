@@ -4,7 +4,8 @@
 //! figures, draws the figures, and writes each figure with its data and recipe. The content of
 //! each figure of the paper is listed in `recipe.rs`.
 //!
-//! This crate has no theory and no tracer of its own; a figure chooses scenes and draws their results.
+//! This crate has no theory and no tracer of its own, except for flatland; a figure chooses scenes
+//! and draws their results.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -87,8 +87,8 @@ impl Job {
         }
     }
 
-    /// Traces the photons of all batches. Returns `None` if another process that shares the work has
-    /// written the result.
+    /// Traces the photons of all batches. Returns `None` if another process that shares the work
+    /// has written the result.
     ///
     /// # Errors
     /// When the method of measurement finds no light, when time is up, or when too many photons

@@ -3,16 +3,14 @@
 use crate::applicability::Applicability;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_theory::path::PathSystem;
-use etendue_theory::{Model, Observed, Obstacle, ObstacleForm, RayBudget};
+use etendue_theory::{Model, Observed, RayBudget};
 
 /// The rays of each sum. Its error is some per cent, but sums with the same rays differ by less.
 const BUDGET: RayBudget = RayBudget::new(8e3, 0.0);
 /// Smaller shares are not reported, because the sums may be that far off.
 const LEAST: f64 = 0.01;
-/// If a path has more objects around it, or a mesh with more triangles, they are not measured,
-/// because each object takes a sum, and each ray of a sum is tested against every triangle.
+/// If a path has more objects around it, they are not measured, because each of them takes a sum.
 const MOST_OBJECTS: usize = 16;
-const MOST_TRIANGLES: usize = 500;
 
 /// Returns the surfaces of the path, and the objects beside it, that stop light on its way to a
 /// plane, each with its share of the light in the window: of the light that would arrive without
@@ -54,8 +52,7 @@ pub fn stopped(plane: &VirtualPlane, applicability: &Applicability) -> Vec<(Stri
         obstacles,
         ..
     } = &view.system;
-    let is_fine = |obstacle: &Obstacle| matches!(&obstacle.form, ObstacleForm::Mesh(triangles) if triangles.len() > MOST_TRIANGLES);
-    if surfaces.len() + obstacles.len() > MOST_OBJECTS || obstacles.iter().any(is_fine) {
+    if surfaces.len() + obstacles.len() > MOST_OBJECTS {
         return Vec::new();
     }
     let all = light(view);

@@ -5,7 +5,8 @@ use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlan
 use etendue_scene::{Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
 use etendue_theory::path::{Interaction, PatchExtent, PathSurface, PathSystem, reflections};
-use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane};
+use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane, TriangleTree};
+use std::sync::Arc;
 
 /// Returns a plane, the light, all masks and all surfaces of the path to it. Returns `None` where
 /// light comes from a ray file, where too many surfaces have scattered the light, or where some
@@ -226,7 +227,8 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
             },
             Object::Patch(i) => ObstacleForm::Patch(scene.patches[i].patch),
             Object::Mesh(i) => {
-                ObstacleForm::Mesh(scene.meshes[i].triangles.iter().copied().collect())
+                let triangles = scene.meshes[i].triangles.iter().copied().collect();
+                ObstacleForm::Mesh(Arc::new(TriangleTree::new(triangles)))
             }
         },
         until: None,

@@ -98,10 +98,8 @@ pub fn write_result(
     }
     let path = path?;
     path.write(&mut results)?;
-    let explores = options.save.contains(&Save::Explorer);
-    let explorer = explores
-        .then(|| explorer::fragment(&summary.scene_file))
-        .flatten();
+    let explorer = explorer::fragment(&summary.scene_file);
+    let explorer = explorer.filter(|_| options.save.contains(&Save::Explorer));
     let data = page::data(case, summary, planes, (path.svg(), explorer.as_deref()));
     results.write(
         page::NAME,

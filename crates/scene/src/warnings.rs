@@ -2,7 +2,7 @@
 
 use crate::mistakes::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
-use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, tidy};
+use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, facet_ratio, interpolated_normal, tidy};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -27,15 +27,12 @@ impl Scene {
     /// Returns the warnings for the scene: one for each likely mistake, and one for each smooth
     /// mesh on the path that is too coarse.
     ///
-    /// A mesh deflects light according to its interpolated normal n, but receives light according
-    /// to the normal t of the triangle. Let light come along d and leave along e. Its radiance is
-    /// f = (d·t / d·n) / (e·t / e·n) times the radiance behind a surface that really has the
-    /// normal n, because interpolated normals do not conserve étendue. The effect of a mesh on a
-    /// plane is the ratio of two spectra at the measured frequencies along x and y, for light that
-    /// fills the window evenly. Both spectra are computed at the points where the light hits the
-    /// mesh. The first spectrum is the spectrum of the window times f − 1, and the second is the
-    /// spectrum of the window alone. If facets are finer than the waves of these frequencies, their
-    /// effects average out.
+    /// The radiance behind a mesh is f times the radiance behind a smooth surface, see
+    /// [`facet_ratio`]. The effect of a mesh on a plane is the ratio of two spectra at the measured
+    /// frequencies along x and y, for light that fills the window evenly. Both spectra are computed
+    /// at the points where the light hits the mesh. The first spectrum is the spectrum of the window
+    /// times f − 1, and the second is the spectrum of the window alone. If facets are finer than the
+    /// waves of these frequencies, their effects average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -270,9 +267,8 @@ impl<'a> WindowView<'a> {
         if weight <= 0.0 || -back.dot(normal) * self.side <= 0.0 {
             return;
         }
-        let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
         // Light on the wrong side of a triangle is either lost or counted twice.
-        let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
+        let factor = facet_ratio(flat, normal, back, leaves).clamp(0.0, 2.0);
         if factor.is_finite() {
             sums.difference += weight * (factor - 1.0);
             sums.whole += weight;

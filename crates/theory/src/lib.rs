@@ -74,7 +74,7 @@ mod work;
 
 pub use model::{Model, Over};
 pub use nets::{REPLICATES, RayBudget, RayNets};
-pub use obstacle::{Obstacle, ObstacleForm};
+pub use obstacle::{Obstacle, ObstacleForm, TriangleTree};
 pub use parallel::{
     Chain, Harmonics, Operator, Source, at, blurred_projection, blurred_slices, derivative,
     projection, quadrature_error, slices,

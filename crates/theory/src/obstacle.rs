@@ -2,6 +2,7 @@
 
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A straight leg of a ray.
 #[derive(Clone, Copy, Debug)]
@@ -119,48 +120,35 @@ pub enum ObstacleForm {
     },
     /// An opaque smooth surface.
     Patch(Patch),
-    /// Opaque triangles.
-    Mesh(Vec<[DVec3; 3]>),
+    /// Opaque triangles, which changed copies of a path share.
+    Mesh(Arc<TriangleTree>),
 }
-
-/// Obstacles prepared for many rays, each with the triangles of its mesh, if it is one.
-#[derive(Debug)]
-pub(crate) struct PreparedObstacles<'a>(Vec<(&'a Obstacle, Option<TriangleTree>)>);
 
 /// Maximum relative rounding error of a distance.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-impl<'a> PreparedObstacles<'a> {
-    pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
-        let each = obstacles.iter().map(|obstacle| match &obstacle.form {
-            ObstacleForm::Mesh(triangles) => (obstacle, Some(TriangleTree::new(triangles.clone()))),
-            ObstacleForm::Rectangle { .. } | ObstacleForm::Patch(_) => (obstacle, None),
-        });
-        Self(each.collect())
-    }
-
-    /// Checks whether an obstacle stops a ray within the first `length` metres of the leg with index
+impl Obstacle {
+    /// Checks whether the obstacle stops a ray within the first `length` metres of the leg with index
     /// `leg`.
-    pub(crate) fn stop(&self, leg: usize, ray: &LegRay, length: f64) -> bool {
+    pub(crate) fn stops(&self, leg: usize, ray: &LegRay, length: f64) -> bool {
+        if self.until.is_some_and(|until| leg >= until) {
+            return false;
+        }
         let start = ray.start();
         let is_between = |t: f64| start < t && t < length;
-        let is_there = |obstacle: &Obstacle| obstacle.until.is_none_or(|until| leg < until);
-        let mut there = self.0.iter().filter(|(obstacle, ..)| is_there(obstacle));
-        there.any(|(obstacle, tree)| match &obstacle.form {
+        match &self.form {
             ObstacleForm::Rectangle { frame, size } => {
                 on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
             ObstacleForm::Patch(patch) => ray.hits(patch).any(is_between),
-            ObstacleForm::Mesh(_) => tree
-                .as_ref()
-                .is_some_and(|tree| tree.stops(ray, &is_between)),
-        })
+            ObstacleForm::Mesh(triangles) => triangles.stop(ray, &is_between),
+        }
     }
 }
 
 /// The triangles of a mesh in a sphere, and parts of the mesh with spheres of their own.
-#[derive(Debug)]
-struct TriangleTree {
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleTree {
     center: DVec3,
     radius: f64,
     triangles: Vec<[DVec3; 3]>,
@@ -171,7 +159,9 @@ struct TriangleTree {
 const UNDIVIDED: usize = 8;
 
 impl TriangleTree {
-    fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
+    /// Builds the tree of triangles, of which there is at least one.
+    #[must_use]
+    pub fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
         let corners = || triangles.as_flattened().iter();
         let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
@@ -195,14 +185,16 @@ impl TriangleTree {
     }
 
     /// Checks whether a ray meets a triangle at a distance that `is_between` accepts.
-    fn stops(&self, ray: &LegRay, is_between: &impl Fn(f64) -> bool) -> bool {
+    fn stop(&self, ray: &LegRay, is_between: &impl Fn(f64) -> bool) -> bool {
         let beside = (self.center - ray.point).cross(ray.direction);
-        let mut meets = self
+        if beside.length_squared() > self.radius * self.radius {
+            return false;
+        }
+        let mut hits = self
             .triangles
             .iter()
             .filter_map(|triangle| on(triangle, ray));
-        beside.length_squared() <= self.radius * self.radius
-            && (meets.any(is_between) || self.parts.iter().any(|part| part.stops(ray, is_between)))
+        hits.any(is_between) || self.parts.iter().any(|part| part.stop(ray, is_between))
     }
 }
 
@@ -241,7 +233,7 @@ mod tests {
             form: form.clone(),
             until: Some(3),
         };
-        PreparedObstacles::new(&[obstacle]).stop(leg, ray, length)
+        obstacle.stops(leg, ray, length)
     }
 
     /// Tests which rays are stopped by a square, by a bowl with its vertex on the square, and by
@@ -264,7 +256,7 @@ mod tests {
             ObstacleForm::Rectangle { frame, size },
             ObstacleForm::Patch(bowl(0.0)),
             ObstacleForm::Patch(bowl(-0.1)),
-            ObstacleForm::Mesh(square),
+            ObstacleForm::Mesh(Arc::new(TriangleTree::new(square))),
         ];
         let beside = LegRay {
             point: RAY.point + 0.3 * DVec3::X,

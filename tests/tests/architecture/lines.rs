@@ -10,11 +10,16 @@ use std::collections::BTreeMap;
 /// The second number may be lowered freely. Where a crate becomes smaller, it must be lowered.
 const LINES: &[(&str, usize, usize, &str)] = &[
     ("bvh", 1261, 1261, ""),
-    ("cli", 4109, 4118, "`--save explorer`"),
+    ("cli", 4109, 4120, "`--save explorer`"),
     ("compare", 2927, 2927, ""),
     ("explorer", 1050, 1050, ""),
     ("export", 1413, 1415, "its head says what it leaves out"),
-    ("field", 3031, 3031, ""),
+    (
+        "field",
+        3031,
+        3045,
+        "what triangles with interpolated normals do to radiance",
+    ),
     ("figures", 4650, 4650, ""),
     ("fuzz", 125, 125, ""),
     ("mpi", 77, 77, ""),
@@ -28,10 +33,10 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("python", 1640, 1640, ""),
     ("rayfile", 2394, 2394, ""),
-    ("report", 2599, 2615, "`--save explorer`"),
+    ("report", 2599, 2613, "`--save explorer`"),
     ("sampling", 495, 497, "its head says what it leaves out"),
     ("scatter", 1291, 1291, ""),
-    ("scene", 6454, 6454, ""),
+    ("scene", 6450, 6450, ""),
     ("scenefile", 3036, 3036, ""),
     ("scenes", 52, 52, ""),
     (
@@ -45,18 +50,18 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "theory",
         15390,
-        15418,
+        15409,
         "a ray finds the triangles of a mesh in its way by a tree",
     ),
     (
         "trace",
         6797,
-        6838,
+        6832,
         "backward rays on triangles with interpolated normals",
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
     ("variance", 2023, 2025, "its head says what it leaves out"),
-    ("worlds", 22_190, 22_190, ""),
+    ("worlds", 22_217, 22_217, ""),
     (
         "tests of all kinds",
         69_203,

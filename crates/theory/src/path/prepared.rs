@@ -2,14 +2,13 @@
 
 use super::PathSystem;
 use crate::barrier::Barrier;
-use crate::obstacle::{LegRay, PreparedObstacles, ROUNDING};
+use crate::obstacle::{LegRay, ROUNDING};
 
-/// A system whose masks and obstacles are prepared for many rays.
+/// A system whose masks are prepared for many rays.
 #[derive(Debug)]
 pub(crate) struct PreparedPath<'a> {
     pub(crate) system: &'a PathSystem,
     masks: Vec<Barrier<'a>>,
-    obstacles: PreparedObstacles<'a>,
 }
 
 /// Two distances along a ray are treated as equal if they differ by less than this share.
@@ -21,7 +20,6 @@ impl<'a> PreparedPath<'a> {
         Self {
             system,
             masks: masks.map(|(at, mask)| Barrier::new(*at, mask)).collect(),
-            obstacles: PreparedObstacles::new(&system.obstacles),
         }
     }
 
@@ -74,7 +72,8 @@ impl<'a> PreparedPath<'a> {
                 }
             }
         }
-        if self.obstacles.stop(leg, ray, end) {
+        let mut obstacles = self.system.obstacles.iter();
+        if obstacles.any(|obstacle| obstacle.stops(leg, ray, end)) {
             return 0.0;
         }
         passes

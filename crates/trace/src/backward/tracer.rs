@@ -13,7 +13,9 @@ use crate::heading::Heading;
 use crate::line::{direction, start};
 use crate::sampling::{LAMBERTIAN, point};
 use crate::sky::Sky;
-use etendue_field::{Crossing, Frame, Ledger, Light, PhotonSource, Specular, TwoPlane};
+use etendue_field::{
+    Crossing, Frame, Ledger, Light, PhotonSource, Specular, TwoPlane, facet_ratio,
+};
 use etendue_sampling::{about, cosine_hemisphere};
 use etendue_scene::{Object, Scene};
 use etendue_transform::random::{self, Stream};
@@ -249,8 +251,11 @@ impl Backward {
                     return 0.0;
                 };
                 let to_front = along.dot(facing) > 0.0;
-                let facets = primitive.facet_normal();
-                let by_facet = facets.map_or(1.0, |facet| facet_factor(facet, facing, along, came));
+                // Photons have this ratio by themselves, because each of them keeps its flux.
+                let by_facet = primitive.facet_normal().map_or(1.0, |facet| {
+                    let ratio = facet_ratio(facet, facing, came, along).abs();
+                    if ratio.is_finite() { ratio } else { 0.0 }
+                });
                 let factor = by_facet * radiance_factor(lens, *event, to_front, along, came);
                 let [point, came] = [frame.to_world(point), frame.vector_to_world(-came)];
                 visible * factor * self.along(*leg - 1, point, came, block, words)
@@ -377,17 +382,6 @@ impl Backward {
         let incoming = IncomingRay { leg, heading, ray };
         solid * self.arriving(&incoming, end, block + 1, words)
     }
-}
-
-/// Returns the ratio of the radiance after a deflection by a triangle with an interpolated normal
-/// to the radiance after a deflection by a surface that really has this normal. A triangle turns
-/// light about the interpolated normal, but receives and emits it through its own area, so
-/// interpolated normals do not conserve étendue (Veach 1997, section 5.3). Photons have
-/// this ratio by themselves, because each of them keeps its flux.
-fn facet_factor(facet: DVec3, normal: DVec3, along: DVec3, came: DVec3) -> f64 {
-    let kept = |d: DVec3| d.dot(facet) / d.dot(normal);
-    let factor = (kept(came) / kept(along)).abs();
-    if factor.is_finite() { factor } else { 0.0 }
 }
 
 impl Backward {

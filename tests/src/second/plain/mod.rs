@@ -209,10 +209,10 @@ fn one(options: &PlainOptions, path: &Path) -> io::Result<ReportSection> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let file = SceneFile::parse(&fs::read_to_string(path)?).map_err(io::Error::other)?;
     let scene = resolve("plain", file.clone(), folder, u64::MAX).map_err(io::Error::other)?;
-    let mut world = PlainWorld::new(&file).ok_or_else(|| {
+    let world = PlainWorld::new(&file).ok_or_else(|| {
         io::Error::other("the plain tracer has no meshes, pictures, ray files, or other planes")
     })?;
-    let pair = judged(&mut world, &scene, options.photons);
+    let pair = judged(world, &scene, options.photons);
     let Pair { plain, photons, .. } = pair;
     let text = format!("Paths find {plain}, photons {photons} W m⁻² sr⁻¹ m².");
     Ok(section(options, vec![row(None, 1, &[(0, pair)])]).with_text(text))
@@ -225,7 +225,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
     let Some(file) = plain_scene(options.seed, number, options.photons, folder.path()) else {
         return Ok(None);
     };
-    let Some(mut world) = PlainWorld::new(&file) else {
+    let Some(world) = PlainWorld::new(&file) else {
         return Ok(None);
     };
     let resolved = resolve("plain", file.clone(), folder.path(), u64::MAX);
@@ -235,7 +235,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
     {
         return Ok(None);
     }
-    let pair = judged(&mut world, &scene, options.photons);
+    let pair = judged(world, &scene, options.photons);
     if fault.is_none() && pair.deviation().abs() > MAX_DEVIATION {
         fs::create_dir_all(&options.out)?;
         let name = format!("{}-{number}.ron", options.seed);
@@ -245,7 +245,7 @@ fn random(options: &PlainOptions, number: u64, fault: Option<usize>) -> io::Resu
 }
 
 /// Compares a scene; if the tracers are far apart, compares it once more.
-fn judged(world: &mut PlainWorld, scene: &Scene, photons: u64) -> Pair {
+fn judged(mut world: PlainWorld, scene: &Scene, photons: u64) -> Pair {
     let compared = |world: &PlainWorld, seed: u64, more: u64| {
         let plain = by_paths(world, seed, more);
         // If paths do not resolve the light, photons need not resolve it either.
@@ -261,14 +261,14 @@ fn judged(world: &mut PlainWorld, scene: &Scene, photons: u64) -> Pair {
             is_faint: false,
         }
     };
-    let mut found = compared(world, 1, 1);
+    let mut found = compared(&world, 1, 1);
     if found.deviation().abs() > MAX_DEVIATION {
-        found = compared(world, 2, MORE_PHOTONS);
+        found = compared(&world, 2, MORE_PHOTONS);
     }
     if found.deviation().abs() > MAX_DEVIATION {
         found.is_faint = if found.is_dark_in_one() {
             world.masks.clear();
-            found.plain.mean.max(found.photons.mean) < MIN_SHARE * by_paths(world, 1, 1).mean
+            found.plain.mean.max(found.photons.mean) < MIN_SHARE * by_paths(&world, 1, 1).mean
         } else {
             found.plain.noise().max(found.photons.noise()) > MAX_NOISE
         };

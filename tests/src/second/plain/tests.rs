@@ -10,10 +10,10 @@ const MASKS_BEFORE_A_LAMP: [&str; 2] = [
 
 fn pair(text: &str, fault: Option<&str>) -> Pair {
     let file = SceneFile::parse(text).unwrap();
-    let mut world = PlainWorld::new(&file).unwrap();
+    let world = PlainWorld::new(&file).unwrap();
     let mut scene = resolve("plain", file, Path::new("."), u64::MAX).unwrap();
     assert!(fault.is_none_or(|fault| planted::plant(fault, &mut scene)));
-    judged(&mut world, &scene, 1 << 18)
+    judged(world, &scene, 1 << 18)
 }
 
 #[test]

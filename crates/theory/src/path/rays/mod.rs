@@ -11,9 +11,9 @@
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux; `emission.rs` defines the flux of the rays of each
 //! light. Flux is conserved at every surface. A ray is lost if it misses a patch, if it is totally
-//! reflected, if the next patch or the plane is behind it, or if something stops it before. Flux Φ corresponds to Φ (1 + u² +
-//! v²)² in radiance space at a plane perpendicular to the central ray, and to Φ/(cos θ cos² φ) on a
-//! surface (docs/theory.md, section 8).
+//! reflected, if the next patch or the plane is behind it, or if something stops it before. Flux Φ
+//! corresponds to Φ (1 + u² + v²)² in radiance space at a plane perpendicular to the central ray, and
+//! to Φ/(cos θ cos² φ) on a surface (docs/theory.md, section 8).
 //!
 //! For a plane on a surface itself (`LocalNormals`), the integral over positions is over the
 //! surface's area.
