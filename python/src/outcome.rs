@@ -10,6 +10,7 @@ use ndarray::Array1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// The measurement of some or all batches of a scene.
@@ -26,7 +27,7 @@ pub(crate) struct Outcome(pub(crate) etendue_pipeline::Outcome);
 
 impl Outcome {
     fn plane(&self, plane: usize) -> PyResult<&PlaneComparison> {
-        let found = self.0.planes().get(plane);
+        let found = self.0.judged.planes.get(plane);
         found.ok_or_else(|| PyIndexError::new_err("no such plane"))
     }
 }
@@ -39,19 +40,20 @@ pub(crate) fn cells(grid: &ProjectionGrid) -> [Array1<f64>; 2] {
 #[pymethods]
 impl Outcome {
     fn summary(&self) -> String {
-        String::from_utf8_lossy(&self.0.summary()).into_owned()
+        let summary = self.0.judged.summary.json(&BTreeMap::new());
+        String::from_utf8_lossy(&summary).into_owned()
     }
 
     fn table(&self) -> String {
-        self.0.table()
+        etendue_report::table::text(&self.0.judged.summary)
     }
 
     fn measurement(&self) -> Measurement {
-        Measurement(self.0.case().measurement.clone())
+        Measurement(self.0.case.measurement.clone())
     }
 
     fn prediction(&self) -> Prediction {
-        Prediction(self.0.predictions().to_vec())
+        Prediction(self.0.case.predictions.clone())
     }
 
     fn slices<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
@@ -92,7 +94,7 @@ impl Outcome {
 
     fn light_field<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
         let found = self.plane(plane)?;
-        let predicted = self.0.predictions()[plane].projection.values.clone();
+        let predicted = self.0.case.predictions[plane].projection.values.clone();
         let [x, u] = cells(&found.projection.mean.grid);
         Ok(Arrays::new(py)
             .add("x", x)?

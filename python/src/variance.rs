@@ -3,8 +3,9 @@
 use crate::arguments::{Arguments, wrong};
 use crate::job::Job;
 use crate::live::alive;
+use etendue_pipeline::point_file;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
-use etendue_pipeline::{point_file, variance_table};
+use etendue_report::variance_table;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_variance::{
     FREQUENCIES, MAX_COUNTS, MAX_POINTS, PointCounts, PointFile, SETS, Sampler,

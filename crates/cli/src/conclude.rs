@@ -5,10 +5,13 @@ use crate::args::Expect;
 use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
 use etendue_compare::{PlaneReport, Verdict};
+use etendue_field::{percent, tidy};
 use etendue_pipeline::photons::Save;
-use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work, table, target};
-use etendue_report::{OutputOptions, write_result};
+use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work};
+use etendue_report::{OutputOptions, table, write_result};
 use etendue_store::{Failure, Finished, Results};
+use indicatif::HumanDuration;
+use std::time::Duration;
 
 /// The user's options for the conclusion of a command.
 #[derive(Debug)]
@@ -56,11 +59,10 @@ impl Ending<'_> {
     fn print(&self, summary: &Summary, finished: Finished, seconds: Option<f64>) {
         say(&table::text(summary));
         say(&format!("results in {}", finished.folder.display()));
-        let left_out = self.target_error;
-        if let Some(left_out) = left_out.map(|t| target::left_out(&summary.planes, t)) {
-            say(&left_out);
+        if let Some(target) = self.target_error {
+            say(&left_out(&summary.planes, target));
         }
-        if let Some(outlook) = seconds.and_then(|s| target::outlook(&summary.planes, s)) {
+        if let Some(outlook) = seconds.and_then(|s| outlook(&summary.planes, s)) {
             say(&outlook);
         }
         let mut gone = finished.gone;
@@ -72,6 +74,41 @@ impl Ending<'_> {
             ));
         }
     }
+}
+
+/// Describes the noise of the run, and predicts the noise of a run that lasts a hundred times as
+/// long. Returns `None` if there is no light.
+fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
+    let noise = |plane: &PlaneReport| plane.noise_limit;
+    let lit = planes
+        .iter()
+        .filter_map(|plane| Some((&plane.name, noise(plane)?)));
+    let (plane, noise) = lit.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
+    let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(noise, 3));
+    Some(format!(
+        "noise is {noise} at {plane}; a run with 100 times as many photons takes about {longer}, \
+         and has noise of {less} or less"
+    ))
+}
+
+/// Describes the noise of predictions, which `target` does not include.
+fn left_out(planes: &[PlaneReport], target: f64) -> String {
+    let sampled = planes
+        .iter()
+        .filter(|plane| plane.quadrature_error.is_some_and(|error| error > 0.0));
+    let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
+    let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+        Some((name, noise)) => format!(
+            "if the errors of predictions are included, the largest noise is {} (at {name})",
+            percent(noise, 3)
+        ),
+        None => "all predictions are in closed form".to_owned(),
+    };
+    format!(
+        "--target-error {} %: the noise of the photons at each plane is at most this share; {rest}",
+        tidy(100.0 * target)
+    )
 }
 
 /// Returns the exit code under `--expect`: photons must agree with every exact prediction, and

@@ -5,9 +5,9 @@ use crate::args::ConvergeArgs;
 use crate::print::{deliver, say, tell};
 use crate::progress;
 use crate::threads::on_threads;
-use etendue_pipeline::table::aligned;
 use etendue_pipeline::{limits, load};
 use etendue_predict::{Applicability, Convergence, converge as shrink, seconds};
+use etendue_report::table::aligned;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 

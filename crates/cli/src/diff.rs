@@ -3,7 +3,7 @@
 use crate::args::DiffArgs;
 use crate::conclude::code_of;
 use crate::print::{deliver, deliver_json};
-use etendue_pipeline::diff::{Diff, json, text};
+use etendue_report::diff::{Diff, json, text};
 use etendue_store::Failure;
 
 /// Runs `etendue diff`; returns the exit code.

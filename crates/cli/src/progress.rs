@@ -2,7 +2,7 @@
 
 use crate::print::{say, tell};
 use crate::warnings;
-use etendue_pipeline::table::grouped;
+use etendue_field::grouped;
 use etendue_pipeline::{Progress, Reporter, Work};
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
 use std::sync::OnceLock;
@@ -28,6 +28,10 @@ impl Reporter for Terminal {
         if !self.quiet {
             self.bars.suspend(|| say(text));
         }
+    }
+
+    fn note_step(&self, text: &str, time: Duration) {
+        self.note(&format!("{text} in about {}", HumanDuration(time)));
     }
 
     fn warn(&self, text: &str) {

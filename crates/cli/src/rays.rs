@@ -2,8 +2,8 @@
 
 use crate::args::RaysArgs;
 use crate::print::{deliver, say};
-use etendue_pipeline::ray_file;
 use etendue_rayfile::{Format, MEMORY, MEMORY_FREE, RayFile, convert, gz};
+use etendue_report::ray_file;
 use etendue_scene::read_file;
 use etendue_store::Failure;
 use etendue_store::machine;

@@ -6,7 +6,7 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
 use etendue_pipeline::Leader;
-use etendue_pipeline::table::aligned;
+use etendue_report::table::aligned;
 use etendue_store::Failure;
 use etendue_sweep::{FinishedSweep, SweepPoints, run};
 

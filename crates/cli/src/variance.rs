@@ -6,9 +6,9 @@ use crate::print::deliver;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
-use etendue_pipeline::{load, method, variance_table};
+use etendue_pipeline::{load, method};
 use etendue_report::pictures::PictureFiles;
-use etendue_report::variance;
+use etendue_report::{variance, variance_table};
 use etendue_store::{ArgumentStyle, Failure, PROBE, Plan, Results, VARIANCE};
 
 /// The exit code if a prediction is undecided.

@@ -95,6 +95,19 @@ pub fn sinc(f: f64) -> f64 {
     }
 }
 
+/// Formats 10000000 as 10 000 000.
+#[must_use]
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&str> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(|group| std::str::from_utf8(group).unwrap_or_default())
+        .collect();
+    groups.join(" ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::{brief, percent, tidy, uncertain};

@@ -3,8 +3,8 @@
 use crate::rows::{DECIBEL, Seen, feet, row};
 use crate::subject::FigureData;
 use etendue_figures::{Figure, Plate, stacked};
-use etendue_pipeline::table::spaced;
 use etendue_report::pictures::spectrum_quantity;
+use etendue_report::table::spaced;
 use etendue_store::Failure;
 
 /// Draws Fig. 11: the steps at normal incidence, and below them spectra at 40°.

@@ -6,8 +6,8 @@ use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, PlaneComparison};
 use etendue_field::{Orientation, Slices, percent, uncertain};
 use etendue_figures::{Figure, Plate};
-use etendue_pipeline::table::off_by;
 use etendue_report::pictures::spectrum_quantity;
+use etendue_report::table::off_by;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 

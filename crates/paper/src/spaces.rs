@@ -131,7 +131,7 @@ fn orders(
         };
         let measured = |step: &ConvergenceStep| [step.share, step.error, 0.0];
         CurvePanel {
-            title: etendue_pipeline::table::spaced(&plane.plane),
+            title: etendue_report::table::spaced(&plane.plane),
             x: AxisQuantity::new("*e*", ""),
             curves: vec![
                 Curve::new(

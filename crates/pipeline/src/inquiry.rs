@@ -4,8 +4,8 @@ use crate::case::MeasuredScene;
 use crate::judge::Judge;
 use crate::reporter::Reporter;
 use crate::summary::Inquiry;
-use crate::table::percent;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Test, Verdict, compare};
+use etendue_field::percent;
 use etendue_predict::{predict_reference, test_of};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
@@ -113,7 +113,9 @@ fn both_pass(
             "{other} agree with {this} and with the prediction: the failure may be chance; use another seed"
         );
     }
-    let noise = percent(theory.noise_limit);
+    let noise = theory
+        .noise_limit
+        .map_or("–".to_owned(), |noise| percent(noise, 3));
     let cannot = format!(
         "{other} cannot decide whether {this} or the prediction is wrong: the noise of {other} is {noise}"
     );
@@ -123,7 +125,7 @@ fn both_pass(
     // of rays.
     let needed = rays * DETECTABLE * error / least;
     if needed > rays && needed.is_finite() {
-        let apart = percent(Some(least.sqrt()));
+        let apart = percent(least.sqrt(), 3);
         format!(
             "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} or more {other} are needed (--photons)"
         )

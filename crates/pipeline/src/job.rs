@@ -10,7 +10,7 @@ use crate::predict::predicted;
 use crate::reporter::{Reporter, Silent};
 use crate::workers::{Leader, Packing};
 use crate::{limits, load, target};
-use etendue_compare::{PlaneComparison, Prediction, Verdict};
+use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
 use etendue_predict::{Applicability, predict};
 use etendue_scene::{RunFile, Scene};
@@ -18,7 +18,6 @@ use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched}
 use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_store::predictions;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A scene, and how to measure it.
@@ -225,57 +224,10 @@ impl Job {
 /// A scene whose planes have been measured, predicted and compared.
 #[derive(Debug)]
 pub struct Outcome {
-    case: MeasuredScene,
-    judged: Judged,
-    inputs: Vec<PathBuf>,
-}
-
-impl Outcome {
-    /// Returns the planes, in the order of the scene.
-    #[must_use]
-    pub fn planes(&self) -> &[PlaneComparison] {
-        &self.judged.planes
-    }
-
-    /// Returns the verdict on all planes.
-    #[must_use]
-    pub fn verdict(&self) -> Verdict {
-        self.judged.summary.verdict
-    }
-
-    /// Returns the predictions with which the planes were compared.
-    #[must_use]
-    pub fn predictions(&self) -> &[Prediction] {
-        &self.case.predictions
-    }
-
-    /// Returns the content of `summary.json`, without hashes of files.
-    #[must_use]
-    pub fn summary(&self) -> Vec<u8> {
-        self.judged.summary.json(&BTreeMap::new())
-    }
-
-    /// Returns the table that `etendue run` prints.
-    #[must_use]
-    pub fn table(&self) -> String {
-        crate::table::text(&self.judged.summary)
-    }
-
-    /// Returns the scene with its measurement and predictions.
-    #[must_use]
-    pub fn case(&self) -> &MeasuredScene {
-        &self.case
-    }
-
-    /// Returns the comparisons and their summary.
-    #[must_use]
-    pub fn judged(&self) -> &Judged {
-        &self.judged
-    }
-
-    /// Returns the files from which the scene was read.
-    #[must_use]
-    pub fn inputs(&self) -> &[PathBuf] {
-        &self.inputs
-    }
+    /// The scene with its measurement and predictions.
+    pub case: MeasuredScene,
+    /// The comparisons of the planes, in the order of the scene, and their summary.
+    pub judged: Judged,
+    /// The files from which the scene was read.
+    pub inputs: Vec<PathBuf>,
 }

@@ -13,7 +13,6 @@
 mod case;
 mod checkpoint;
 pub mod covariance;
-pub mod diff;
 mod enough_photons;
 pub mod field;
 mod follower;
@@ -30,14 +29,11 @@ pub mod photons;
 pub mod planes;
 pub mod point_file;
 mod predict;
-pub mod ray_file;
 mod read_case;
 mod reporter;
 mod summary;
-pub mod table;
-pub mod target;
+mod target;
 pub mod variance;
-pub mod variance_table;
 mod workers;
 
 pub use case::MeasuredScene;

@@ -1,10 +1,15 @@
 //! Defines how a run reports its progress.
 
+use std::time::Duration;
+
 /// A receiver of the progress reports of a run: a command prints the reports, and a library may
 /// ignore them. The methods of a reporter are called from any thread.
 pub trait Reporter: Sync {
     /// Reports what the run will do next, or what it has found.
     fn note(&self, text: &str);
+
+    /// Reports the next step of a run with several steps, and about how long it takes.
+    fn note_step(&self, _text: &str, _time: Duration) {}
 
     /// Reports a warning that the user should read before trusting the result.
     fn warn(&self, text: &str);

@@ -1,16 +1,13 @@
-//! Adds photons until noise is low enough, and estimates how long lower noise would take.
+//! Adds photons until noise is low enough.
 
 use crate::measure::measured;
 use crate::reporter::Reporter;
-use crate::table::{grouped, percent};
-use etendue_compare::PlaneReport;
-use etendue_field::tidy;
+use etendue_field::{grouped, percent, tidy};
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, estimate};
 use etendue_store::Failure;
 use etendue_store::Method;
-use indicatif::HumanDuration;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Number of photons of the first measurement.
 const FIRST_PHOTONS: u64 = 1 << 20;
@@ -52,7 +49,7 @@ pub(crate) fn reached(
         if noise <= target {
             return Ok(measurement);
         }
-        let noise_now = percent(Some(noise));
+        let noise_now = percent(noise, 3);
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
         // With nets, fewer photons than the square-root law predicts may suffice, so the next
         // measurement has the largest power of two below the predicted number.
@@ -69,52 +66,12 @@ pub(crate) fn reached(
             )));
         }
         let next = next.min(most);
-        {
-            let time = begun.elapsed().mul_f64(next as f64 / photons as f64);
-            let next = grouped(next);
-            let time = HumanDuration(time);
-            reporter.note(&format!(
-                "{now}: the next step traces {next} photons in about {time}"
-            ));
-        }
+        reporter.note_step(
+            &format!("{now}: the next step traces {} photons", grouped(next)),
+            begun.elapsed().mul_f64(next as f64 / photons as f64),
+        );
         photons = next;
     }
-}
-
-/// Describes the noise of the run, and predicts the noise of a run that lasts a hundred times as
-/// long. Returns `None` if there is no light.
-pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
-    let noise = |plane: &PlaneReport| plane.noise_limit;
-    let lit = planes
-        .iter()
-        .filter_map(|plane| Some((&plane.name, noise(plane)?)));
-    let (plane, noise) = lit.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
-    let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(Some(noise)));
-    Some(format!(
-        "noise is {noise} at {plane}; a run with 100 times as many photons takes about {longer}, \
-         and has noise of {less} or less"
-    ))
-}
-
-/// Describes the noise of predictions, which `target` does not include.
-#[must_use]
-pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
-    let sampled = planes
-        .iter()
-        .filter(|plane| plane.quadrature_error.is_some_and(|error| error > 0.0));
-    let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
-    let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
-        Some((name, noise)) => format!(
-            "if the errors of predictions are included, the largest noise is {} (at {name})",
-            percent(Some(noise))
-        ),
-        None => "all predictions are in closed form".to_owned(),
-    };
-    format!(
-        "--target-error {} %: the noise of the photons at each plane is at most this share; {rest}",
-        tidy(100.0 * target)
-    )
 }
 
 /// Returns the name of the plane with the most noise among planes with light, and its noise as a

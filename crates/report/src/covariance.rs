@@ -1,9 +1,10 @@
 //! Draws the spectrum of a plane with the ellipses of its covariances.
 
 use crate::pictures;
+use crate::table::spaced;
+use etendue_field::grouped;
 use etendue_figures::{AxisQuantity, Ellipse, Ellipses, Figure, Picture, ellipses};
 use etendue_pipeline::covariance::SceneCovariances;
-use etendue_pipeline::table::{grouped, spaced};
 use etendue_predict::SliceMoment;
 use etendue_scene::Scene;
 use etendue_spectrum::CrossPower;

@@ -1,7 +1,7 @@
-//! Writes the readable output of a run: pictures of its planes and path, and a page that shows
-//! everything.
+//! Writes the readable output of a run: tables, pictures of its planes and path, and a page that
+//! shows everything. It also compares the results of two runs.
 //!
-//! This crate measures and judges nothing; it shows what `etendue_pipeline` has found.
+//! This crate measures nothing; it shows what `etendue_pipeline` has found.
 
 #![allow(
     clippy::missing_errors_doc,
@@ -9,12 +9,16 @@
 )]
 
 pub mod covariance;
+pub mod diff;
 mod drawing;
 mod explorer;
 pub mod page;
 pub mod pictures;
+pub mod ray_file;
 mod shell;
+pub mod table;
 pub mod variance;
+pub mod variance_table;
 mod write_result;
 
 pub use shell::shell_word;

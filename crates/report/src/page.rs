@@ -3,10 +3,10 @@
 
 mod data;
 
+use crate::diff::no_result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub use data::data;
-use etendue_pipeline::diff::no_result;
 use etendue_scene::read_file;
 use etendue_store::Failure;
 use etendue_store::SUMMARY;

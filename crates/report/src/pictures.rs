@@ -15,12 +15,12 @@ pub use words::{
 };
 
 use crate::drawing;
+use crate::table::{self, spaced, word};
 use chance::Outliers;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Verdict};
-use etendue_field::{VirtualPlane, percent};
+use etendue_field::{VirtualPlane, grouped, percent};
 use etendue_figures::{Comparison, Figure, Scale, comparison, section};
 use etendue_pipeline::Summary;
-use etendue_pipeline::table::{self, grouped, spaced, word};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::Results;

@@ -1,11 +1,11 @@
 //! Draws predicted and found variances against the number of points, or beside each other if each
 //! sampler has only one number of points.
 
+use crate::table::spaced;
 use etendue_field::fixed;
 use etendue_figures::{
     AxisQuantity, Chart, Curve, CurveKind, CurvePanel, Curves, Figure, Style, chart, curves,
 };
-use etendue_pipeline::table::spaced;
 use etendue_pipeline::variance::PlaneVariance;
 use etendue_store::Failure;
 use etendue_variance::{CountReport, SamplerReport, VarianceCurve};

@@ -128,9 +128,9 @@ pub fn save(
     force: bool,
     arguments: ArgumentStyle,
 ) -> Result<PathBuf, Failure> {
-    let scene = &outcome.case().scene;
+    let scene = &outcome.case.scene;
     check_earlier(folder, SUMMARY, scene, force, arguments)?;
-    let inputs = outcome.inputs().to_vec();
+    let inputs = outcome.inputs.clone();
     let plan = plan(scene, &[], inputs, force, arguments);
     let results = Results::claim(folder, plan)?;
     let options = OutputOptions {
@@ -138,6 +138,6 @@ pub fn save(
         compact: false,
     };
     let watch = Stopwatch::start();
-    let finished = write_result(outcome.case(), &options, results, outcome.judged(), watch)?;
+    let finished = write_result(&outcome.case, &options, results, &outcome.judged, watch)?;
     Ok(finished.folder)
 }

@@ -3,7 +3,7 @@
 use crate::table::{BANDWIDTHS, PointResult, SLOPE, TableNumber, numbers};
 use crate::values::{SweepPoint, short, shown};
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Style};
-use etendue_pipeline::table::spaced;
+use etendue_report::table::spaced;
 use etendue_store::Failure;
 
 /// Names of the picture files, without extensions.

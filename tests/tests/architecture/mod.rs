@@ -49,7 +49,7 @@ const MAY_USE: &[(&str, &str)] = &[
     ),
     (
         "report",
-        "compare explorer field figures pipeline predict scene spectrum store variance",
+        "compare explorer field figures pipeline predict rayfile scene spectrum store variance",
     ),
     (
         "sweep",

@@ -1,8 +1,8 @@
 //! Formats covariances as a table.
 
 use etendue_field::{tidy, uncertain};
-use etendue_pipeline::table::aligned;
 use etendue_predict::{AXES, CovarianceReport};
+use etendue_report::table::aligned;
 
 /// The matrix entries that are shown: variances, and the covariances that arise as light travels.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];

@@ -1,8 +1,8 @@
 //! A plane that cuts the scene, and the resulting segments.
 
+use crate::table::spaced;
 use etendue_field::{Light, Mask, Patch, Rectangle, Shape, Specular, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
-use etendue_pipeline::table::spaced;
 use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, Leg, MeshObject, Object, Scene};
 use glam::DVec3;

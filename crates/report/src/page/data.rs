@@ -2,14 +2,14 @@
 
 use crate::pictures::{light_field_axes, light_field_quantity, spectrum_axes, verdict_line};
 use crate::shell_word;
+use crate::table::{self, on_chain, verdict_text};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use etendue_compare::{PlaneComparison, PlaneReport, Prediction, Verdict};
-use etendue_field::VirtualPlane;
+use etendue_field::{VirtualPlane, grouped};
 use etendue_figures::Axis;
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::Summary;
-use etendue_pipeline::table::{self, grouped, on_chain, verdict_text};
 use etendue_scene::SceneFile;
 use etendue_store::Method;
 use etendue_store::arrays::{radial_z, z};

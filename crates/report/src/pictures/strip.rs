@@ -9,10 +9,9 @@ use super::words::{
 use super::{FLOOR, PictureFiles, verdict_lines};
 use crate::drawing;
 use etendue_compare::{Class, FullRadialComparison, PlaneComparison, Verdict};
-use etendue_field::{Side, Slices, VirtualPlane};
+use etendue_field::{Side, Slices, VirtualPlane, grouped};
 use etendue_figures::{AcrossPictures, Figure, Guide, Picture, Strip, StripColumn, Style, strip};
 use etendue_pipeline::MeasuredScene;
-use etendue_pipeline::table::grouped;
 use etendue_predict::{Applicability, Theory, stands_before};
 use etendue_scene::Scene;
 use etendue_store::Failure;

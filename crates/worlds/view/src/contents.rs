@@ -1,7 +1,7 @@
 //! Describes the content of another program's scene.
 
 use crate::world_source::{WorldSource, has_light, load, no_camera, no_light, notes};
-use etendue_pipeline::table::aligned;
+use etendue_report::table::aligned;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_world::{Camera, Geometry, Light, Projection, World};
 use std::collections::HashSet;

@@ -3,9 +3,9 @@
 use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
-use crate::table::{aligned, grouped, number, percent, with_unit};
+use crate::table::{aligned, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
-use etendue_field::{percent as percent_of, tidy, uncertain};
+use etendue_field::{grouped, percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
 
 /// The maximum number of differing fields that are listed.

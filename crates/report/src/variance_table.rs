@@ -1,8 +1,8 @@
 //! The tables of a study of variance, for a terminal.
 
-use crate::table::{aligned, grouped};
-use crate::variance::{PlaneVariance, VarianceOptions};
-use etendue_field::{brief, fixed, percent, uncertain};
+use crate::table::aligned;
+use etendue_field::{brief, fixed, grouped, percent, uncertain};
+use etendue_pipeline::variance::{PlaneVariance, VarianceOptions};
 use etendue_spectrum::Uncertain;
 use etendue_variance::{AxisSetPower, CountReport, SamplerReport, VarianceCurve};
 

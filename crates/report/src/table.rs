@@ -1,10 +1,10 @@
 //! Formats the tables of a run's results.
 
-use crate::summary::Summary;
 use etendue_compare::{
     FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, TESTS, Verdict, sidak,
 };
-use etendue_field::{brief, decimals, fixed, uncertain};
+use etendue_field::{brief, decimals, fixed, grouped, uncertain};
+use etendue_pipeline::Summary;
 
 /// Returns the table of planes, the table of parameters, and the verdict, as printed by
 /// `etendue run`.
@@ -343,18 +343,6 @@ pub fn number(value: Option<f64>, digits: usize) -> String {
 /// Returns a share in per cent, or `–` if there is no share.
 pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
-}
-
-/// Formats 10000000 as 10 000 000.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let groups: Vec<&str> = digits
-        .as_bytes()
-        .rchunks(3)
-        .rev()
-        .map(|group| std::str::from_utf8(group).unwrap_or_default())
-        .collect();
-    groups.join(" ")
 }
 
 /// Returns a name for display, with spaces in place of underscores.
