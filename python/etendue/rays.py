@@ -117,7 +117,7 @@ def spectrum(
     group, batches = _groups(rays, batch, batches)
     plane = Scene(_around(window, frequencies), name="rays")
     with told(progress) as tell:
-        found: dict[str, Any] = plane._job.spectrum(  # pyright: ignore[reportPrivateUsage]
+        found: dict[str, Any] = plane._run.spectrum(  # pyright: ignore[reportPrivateUsage]
             columns, group, batches, thread_count(threads), tell
         )
     if not np.isfinite(found["power"]).all():

@@ -194,8 +194,8 @@ class Result(Mapping[str, Plane]):
         return len(self._planes)
 
     def __reduce__(self) -> tuple[object, ...]:
-        job, outcome = self.scene._job, self._outcome  # pyright: ignore[reportPrivateUsage]
-        return _compared, (self.scene, job.packed(outcome.measurement()), job.packed_prediction(outcome.prediction()))
+        run, outcome = self.scene._run, self._outcome  # pyright: ignore[reportPrivateUsage]
+        return _compared, (self.scene, run.packed(outcome.measurement()), run.packed_prediction(outcome.prediction()))
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Writes what `etendue run` writes: pictures, arrays, `report.html` and `summary.json`. Returns the folder.
@@ -222,8 +222,8 @@ class Result(Mapping[str, Plane]):
 
 def _compared(scene: Scene, batches: list[tuple[int, bytes]], planes: list[bytes]) -> Result:
     """A result that was pickled as its measurement and its prediction."""
-    job = scene._job  # pyright: ignore[reportPrivateUsage]
-    return Result(scene, job.compare(job.unpacked(batches), job.unpacked_prediction(planes), None))
+    run = scene._run  # pyright: ignore[reportPrivateUsage]
+    return Result(scene, run.compare(run.unpacked(batches), run.unpacked_prediction(planes), None))
 
 
 def _row(report: Mapping[str, Any]) -> str:

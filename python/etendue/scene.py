@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Union, cast
 
 from etendue import types
-from etendue._etendue import Job
+from etendue._etendue import Run
 
 if TYPE_CHECKING:
     from etendue._etendue import SceneArgument
@@ -64,45 +64,45 @@ class Scene:
         backward = method == "backward"
         if isinstance(source, (str, os.PathLike)):
             self._folder = os.fspath(Path(source).absolute().parent)
-            self._job = Job.read(source, fields, count, seed, backward)
+            self._run = Run.read(source, fields, count, seed, backward)
         else:
             self._folder = os.fspath(Path(folder).absolute())
-            self._job = Job.read((json.dumps(source), name, self._folder), fields, count, seed, backward)
+            self._run = Run.read((json.dumps(source), name, self._folder), fields, count, seed, backward)
         self._method: Method = method
 
     @property
     def name(self) -> str:
         """The name of the scene file, without its extension."""
-        return self._job.name
+        return self._run.name
 
     @property
     def file(self) -> types.Scene:
         """The tree of the scene's fields, including defaults and overrides."""
-        return cast(types.Scene, json.loads(self._job.json()))
+        return cast(types.Scene, json.loads(self._run.json()))
 
     @property
     def photons(self) -> int:
         """Number of photons that a run emits."""
-        return self._job.photons
+        return self._run.photons
 
     @property
     def batches(self) -> int:
         """Number of batches in which photons are emitted; each batch is an independent measurement."""
-        return self._job.batches
+        return self._run.batches
 
     @property
     def planes(self) -> list[PlaneInfo]:
         """The virtual planes of the scene."""
-        found = self._job.planes()
+        found = self._run.planes()
         return [PlaneInfo(name, kind, tuple(chain), tuple(reasons)) for name, kind, chain, reasons in found]
 
     @property
     def warnings(self) -> list[str]:
         """Probable mistakes in the scene, each described by a sentence."""
-        return self._job.warnings()
+        return self._run.warnings()
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _rebuilt, (self._job.json(), self.name, self._folder, self._method)
+        return _rebuilt, (self._run.json(), self.name, self._folder, self._method)
 
     def __repr__(self) -> str:
         names = ", ".join(plane.name for plane in self.planes)
@@ -141,7 +141,7 @@ def scene_argument(scene: Scene | Source) -> SceneArgument:
     if isinstance(scene, (str, os.PathLike)):
         return os.fspath(scene)
     scene = as_scene(scene)
-    return (scene._job.json(), scene.name, scene._folder)  # pyright: ignore[reportPrivateUsage]
+    return (scene._run.json(), scene.name, scene._folder)  # pyright: ignore[reportPrivateUsage]
 
 
 def method_of(scene: Scene | Source) -> Method | None:

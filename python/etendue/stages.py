@@ -34,7 +34,7 @@ class Measurement:
         return self._raw.photons
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _unpacked, (self.scene, self.scene._job.packed(self._raw))  # pyright: ignore[reportPrivateUsage]
+        return _unpacked, (self.scene, self.scene._run.packed(self._raw))  # pyright: ignore[reportPrivateUsage]
 
     def __repr__(self) -> str:
         return f"<etendue.Measurement of {self.scene.name}: {len(self.batches)} batches, {self.photons} photons>"
@@ -48,15 +48,15 @@ class Prediction:
         self._raw = raw
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _unpacked_prediction, (self.scene, self.scene._job.packed_prediction(self._raw))  # pyright: ignore[reportPrivateUsage]
+        return _unpacked_prediction, (self.scene, self.scene._run.packed_prediction(self._raw))  # pyright: ignore[reportPrivateUsage]
 
 
 def _unpacked(scene: Scene, batches: list[tuple[int, bytes]]) -> Measurement:
-    return Measurement(scene, scene._job.unpacked(batches))  # pyright: ignore[reportPrivateUsage]
+    return Measurement(scene, scene._run.unpacked(batches))  # pyright: ignore[reportPrivateUsage]
 
 
 def _unpacked_prediction(scene: Scene, planes: list[bytes]) -> Prediction:
-    return Prediction(scene, scene._job.unpacked_prediction(planes))  # pyright: ignore[reportPrivateUsage]
+    return Prediction(scene, scene._run.unpacked_prediction(planes))  # pyright: ignore[reportPrivateUsage]
 
 
 def check(scene: Scene | Source, *, set: Mapping[str, Value] | None = None) -> Scene:
@@ -83,7 +83,7 @@ def measure(
     numbers = _batches(scene, batches)
     threads = thread_count(threads)
     with told(progress) as tell:
-        raw = scene._job.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
+        raw = scene._run.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
     return Measurement(scene, raw)
 
 
@@ -92,7 +92,7 @@ def predict(
 ) -> Prediction:
     """Predicts each plane of a scene."""
     scene = as_scene(scene, set)
-    return Prediction(scene, scene._job.predict(thread_count(threads)))  # pyright: ignore[reportPrivateUsage]
+    return Prediction(scene, scene._run.predict(thread_count(threads)))  # pyright: ignore[reportPrivateUsage]
 
 
 def merge(measurements: Iterable[Measurement]) -> Measurement:
@@ -121,7 +121,7 @@ def compare(measurement: Measurement, prediction: Prediction | None = None, *, t
         prediction = predict(scene, threads=threads)
     elif {**prediction.scene.file, "run": {}} != {**scene.file, "run": {}}:
         raise ValueError("measurement and prediction are of different scenes")
-    raw = scene._job.compare(  # pyright: ignore[reportPrivateUsage]
+    raw = scene._run.compare(  # pyright: ignore[reportPrivateUsage]
         measurement._raw,  # pyright: ignore[reportPrivateUsage]
         prediction._raw,  # pyright: ignore[reportPrivateUsage]
         thread_count(threads),
@@ -183,8 +183,8 @@ def photons(
     if plane not in names:
         raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
     numbers = _batches(scene, batches)
-    job = scene._job  # pyright: ignore[reportPrivateUsage]
-    rays, counts, emitted = job.crossings(numbers, names.index(plane))
+    run = scene._run  # pyright: ignore[reportPrivateUsage]
+    rays, counts, emitted = run.crossings(numbers, names.index(plane))
     return Photons(rays, np.repeat(np.array(numbers, dtype=np.uint32), counts), sum(emitted))
 
 

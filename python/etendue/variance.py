@@ -249,10 +249,10 @@ def variance(
         shifts=shifts,
         frequencies=frequencies,
     )
-    job = as_scene(scene, set, photons, seed, method)._job  # pyright: ignore[reportPrivateUsage]
+    run = as_scene(scene, set, photons, seed, method)._run  # pyright: ignore[reportPrivateUsage]
     threads = thread_count(threads)
     with told(progress) as tell:
-        index, text = _etendue.variance(job, arguments, threads, tell)
+        index, text = _etendue.variance(run, arguments, threads, tell)
     return Variance(json.loads(index), text)
 
 

@@ -8,13 +8,13 @@ mod arrays;
 mod difference;
 mod figure;
 mod import;
-mod job;
 mod live;
 mod outcome;
 mod probe;
 mod raised;
 mod rays;
 mod render;
+mod run;
 mod scene;
 mod sweep;
 mod variance;
@@ -32,8 +32,6 @@ mod _etendue {
     #[pymodule_export]
     use crate::import::import_scene;
     #[pymodule_export]
-    use crate::job::Job;
-    #[pymodule_export]
     use crate::outcome::{Measurement, Outcome, Prediction};
     #[pymodule_export]
     use crate::probe::probe;
@@ -41,6 +39,8 @@ mod _etendue {
     use crate::raised::{CannotRun, SceneError};
     #[pymodule_export]
     use crate::render::render;
+    #[pymodule_export]
+    use crate::run::Run;
     #[pymodule_export]
     use crate::sweep::sweep;
     #[pymodule_export]

@@ -1,8 +1,8 @@
 //! The Monte Carlo error of a mean over a window, predicted and found.
 
 use crate::arguments::{Arguments, wrong};
-use crate::job::Job;
 use crate::live::alive;
+use crate::run::Run;
 use etendue_pipeline::point_file;
 use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
 use etendue_report::variance_table;
@@ -22,21 +22,21 @@ use std::sync::Arc;
 #[pyfunction]
 pub(crate) fn variance(
     py: Python<'_>,
-    job: &Job,
+    run: &Run,
     arguments: &Bound<'_, PyDict>,
     threads: Option<usize>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
-    let job = Arc::clone(&job.0);
+    let run = Arc::clone(&run.0);
     let arguments = Arguments(arguments);
     let options = options(&arguments, VarianceOptions::new(ArgumentStyle::Python))?;
     let mut plane = None;
     arguments.text("plane", &mut plane)?;
     alive(py, threads, progress.as_ref(), move |live| {
-        let study = VarianceStudy::of_scene(&job.scene, (plane.as_deref(), job.method), options)?;
+        let study = VarianceStudy::of_scene(&run.scene, (plane.as_deref(), run.method), options)?;
         study.check_memory()?;
         let found = study.run(live)?.ok_or_else(|| study.constant())?;
-        let index = serde_json::to_string(&study.index((&job.scene, job.method), &found));
+        let index = serde_json::to_string(&study.index((&run.scene, run.method), &found));
         let index = index.map_err(Failure::cannot_run)?;
         Ok((index, variance_table::text(&found, study.options())))
     })

@@ -15,8 +15,8 @@ use etendue_store::stored::Index;
 
 /// Runs `etendue measure`; returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
-    let job = args.photons.job(&args.scene)?;
-    let scene = &job.scene;
+    let run = args.photons.run(&args.scene)?;
+    let scene = &run.scene;
     let all = 0..scene.run.batches;
     let batches = args.batches.clone().unwrap_or(all.clone());
     if batches.end > all.end {
@@ -27,7 +27,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     }
     let (results, held) = on_threads(&args.work.threads, || {
         warnings::tell(scene, args.work.quiet);
-        job.check_memory()?;
+        run.check_memory()?;
         let files = batches::names(&scene.planes);
         let mut results = load::stage(
             &args.out.folder,
@@ -39,14 +39,14 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
         )?;
         let measurement = measured(
             scene,
-            job.method,
+            run.method,
             batches.clone(),
             &Terminal::new(args.work.quiet),
         )?;
         batches::write(&mut results, &measurement)?;
         let held = Held {
             seed: scene.run.seed,
-            method: job.method,
+            method: run.method,
             photons: measurement.emitted(),
             batches,
         };

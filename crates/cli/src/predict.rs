@@ -22,11 +22,11 @@ pub(crate) fn predict_with(
     args: &PredictArgs,
     workers: Option<&Leader<'_>>,
 ) -> Result<u8, Failure> {
-    let job = args.photons.job(&args.scene)?;
-    let scene = &job.scene;
+    let run = args.photons.run(&args.scene)?;
+    let scene = &run.scene;
     let (results, content) = on_threads(&args.work.threads, || {
         warnings::tell(scene, args.work.quiet);
-        job.check_limits()?;
+        run.check_limits()?;
         let files = predictions::names(&scene.planes);
         let mut results = load::stage(
             &args.out.folder,
@@ -36,8 +36,8 @@ pub(crate) fn predict_with(
             &args.scene.source(),
             args.work.force.force,
         )?;
-        let predictions = job.predictions(workers, &Terminal::new(args.work.quiet))?;
-        let content = predictions::write(&mut results, scene, job.method, &predictions)?;
+        let predictions = run.predictions(workers, &Terminal::new(args.work.quiet))?;
+        let content = predictions::write(&mut results, scene, run.method, &predictions)?;
         Ok((results, content))
     })?;
     let finished = Index::new(scene, content).finish(results)?;

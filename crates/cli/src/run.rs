@@ -9,7 +9,7 @@ use crate::threads::on_threads;
 use crate::warnings;
 use etendue_compare::Verdict;
 use etendue_pipeline::photons::{self, Save};
-use etendue_pipeline::{Checkpointing, Job, Leader, Stopwatch, Tracing, field};
+use etendue_pipeline::{Checkpointing, Leader, Run, Stopwatch, Tracing, field};
 use etendue_report::page::NAME;
 use etendue_report::table::word;
 use etendue_report::{OutputOptions, check_explorer, plan};
@@ -71,39 +71,39 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
 
 fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
-    let mut job = args.photons.job(&args.scene)?;
-    let folder = args.out.or_named(&job.scene.name);
+    let mut run = args.photons.run(&args.scene)?;
+    let folder = args.out.or_named(&run.scene.name);
     on_threads(&args.work.threads, || {
         let terminal = Terminal::new(args.work.quiet);
-        check(args, &job, &folder)?;
-        let mut results = Some(claim(args, &job, &folder)?);
+        check(args, &run, &folder)?;
+        let mut results = Some(claim(args, &run, &folder)?);
         if args.resume {
-            if let Some(code) = finished(args, &job.scene, &folder) {
+            if let Some(code) = finished(args, &run.scene, &folder) {
                 return Ok(code);
             }
             // Several processes share the folder, so no process claims the result until the
             // measurement is complete.
             results = None;
         }
-        announce(args, &job.scene);
+        announce(args, &run.scene);
         let mut watch = Stopwatch::start();
-        let Some(measurement) = job.trace(tracing(args, workers, &folder), &terminal)? else {
-            return finished(args, &job.scene, &folder).ok_or_else(|| gone(&folder));
+        let Some(measurement) = run.trace(tracing(args, workers, &folder), &terminal)? else {
+            return finished(args, &run.scene, &folder).ok_or_else(|| gone(&folder));
         };
         watch.lap("trace");
-        let predictions = job.predictions(workers, &terminal)?;
+        let predictions = run.predictions(workers, &terminal)?;
         watch.lap("predict");
         let mut results = match results {
             Some(results) => results,
             None => {
-                let results = claim(args, &job, &folder)?;
-                if let Some(code) = finished(args, &job.scene, &folder) {
+                let results = claim(args, &run, &folder)?;
+                if let Some(code) = finished(args, &run.scene, &folder) {
                     return Ok(code);
                 }
                 results
             }
         };
-        let case = job.with(measurement, predictions);
+        let case = run.with(measurement, predictions);
         let ending = Ending {
             options: OutputOptions {
                 save: &args.save,
@@ -123,10 +123,10 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
 
 /// Prints warnings, and fails if the run is too large or its folder has the result of another
 /// scene.
-fn check(args: &RunArgs, job: &Job, folder: &Path) -> Result<(), Failure> {
-    let scene = &job.scene;
+fn check(args: &RunArgs, run: &Run, folder: &Path) -> Result<(), Failure> {
+    let scene = &run.scene;
     warnings::tell(scene, args.work.quiet);
-    job.check_limits()?;
+    run.check_limits()?;
     if args.save.contains(&Save::Field) {
         field::check_memory(scene)?;
     }
@@ -136,11 +136,11 @@ fn check(args: &RunArgs, job: &Job, folder: &Path) -> Result<(), Failure> {
 }
 
 /// Claims the result folder. With `--resume`, waits until no other process has claimed it.
-fn claim(args: &RunArgs, job: &Job, folder: &Path) -> Result<Results, Failure> {
+fn claim(args: &RunArgs, run: &Run, folder: &Path) -> Result<Results, Failure> {
     let plan = plan(
-        &job.scene,
+        &run.scene,
         &args.save,
-        job.inputs.clone(),
+        run.inputs.clone(),
         args.work.force.force,
         ArgumentStyle::Command,
     );

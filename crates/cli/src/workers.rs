@@ -4,7 +4,7 @@ use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
 use crate::exit::{ended, not_parsed};
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
-use etendue_pipeline::{Leader, Silent, Workers, follow_job, follow_points, report_failure};
+use etendue_pipeline::{Leader, Silent, Workers, follow_points, follow_run, report_failure};
 use etendue_store::Failure;
 use etendue_sweep::SweepPoints;
 use std::ffi::OsString;
@@ -56,8 +56,10 @@ fn is_shared(command: &Command) -> bool {
 /// Carries out the orders of the leading process until this process is dismissed.
 fn follow(command: &Command, workers: &dyn Workers) {
     let followed = match command {
-        Command::Run(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),
-        Command::Predict(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),
+        Command::Run(args) => follow_scene(&args.scene, &args.photons, &args.work.threads, workers),
+        Command::Predict(args) => {
+            follow_scene(&args.scene, &args.photons, &args.work.threads, workers)
+        }
         Command::Sweep(args) => on_threads(&args.work.threads, || {
             let points = SweepPoints::read(&args.request())?;
             follow_points(workers, points.scenes(), &|number| {
@@ -72,11 +74,11 @@ fn follow(command: &Command, workers: &dyn Workers) {
 }
 
 /// Measures batches and predicts planes of a scene, as the leading process requests.
-fn with_job(
+fn follow_scene(
     scene: &SceneArgs,
     photons: &PhotonArgs,
     threads: &ThreadArgs,
     workers: &dyn Workers,
 ) -> Result<(), Failure> {
-    on_threads(threads, || follow_job(workers, &photons.job(scene)?))
+    on_threads(threads, || follow_run(workers, &photons.run(scene)?))
 }

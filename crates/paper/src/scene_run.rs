@@ -3,7 +3,7 @@
 use crate::quality::Quality;
 use etendue_compare::{PlaneComparison, TESTS};
 use etendue_field::FrequencyAxis;
-use etendue_pipeline::{Job, Reporter, field, judged};
+use etendue_pipeline::{Reporter, Run, field, judged};
 use etendue_predict::{Applicability, test_each};
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
@@ -39,9 +39,9 @@ impl Shot {
                 };
             }
         }
-        let job = Job::of(scene, Method::Photons, Vec::new())?;
-        job.check_limits()?;
-        let case = job.run(reporter)?;
+        let run = Run::of(scene, Method::Photons, Vec::new())?;
+        run.check_limits()?;
+        let case = run.measured_scene(reporter)?;
         let tests = if full_radial { field::TESTS } else { TESTS };
         let mut planes = judged(&case, &test_each(&case.scene, tests))?;
         if full_radial {

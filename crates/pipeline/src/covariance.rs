@@ -2,7 +2,7 @@
 
 use crate::moments::{check_memory, fitting};
 use crate::reporter::{Reporter, Work};
-use crate::{Job, limits, measured, method};
+use crate::{Run, limits, measured, method};
 use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
 use etendue_predict::{AXES, Applicability, CovarianceReport};
@@ -13,7 +13,7 @@ use etendue_store::{Failure, VERSION};
 
 /// A request for the covariances at all planes of a scene.
 #[derive(Debug)]
-pub struct CovarianceStudy(Job);
+pub struct CovarianceStudy(Run);
 
 /// The covariances at all planes, and the measurement to which they belong.
 #[derive(Debug)]
@@ -26,9 +26,9 @@ pub struct SceneCovariances {
 
 impl CovarianceStudy {
     /// Checks that the scene has one light.
-    pub fn new(job: Job) -> Result<Self, Failure> {
-        limits::check_one_light(&job.scene, "covariance tracing")?;
-        Ok(Self(job))
+    pub fn new(run: Run) -> Result<Self, Failure> {
+        limits::check_one_light(&run.scene, "covariance tracing")?;
+        Ok(Self(run))
     }
 
     /// Returns the scene.
@@ -45,7 +45,7 @@ impl CovarianceStudy {
 
     /// Measures and predicts all planes, and compares their covariances.
     pub fn run(&self, reporter: &dyn Reporter) -> Result<SceneCovariances, Failure> {
-        let Job {
+        let Run {
             scene,
             theories,
             method,
@@ -79,7 +79,7 @@ impl CovarianceStudy {
     /// Returns the content of the index, without its list of files.
     #[must_use]
     pub fn index(&self, found: &SceneCovariances) -> serde_json::Value {
-        let Job { scene, method, .. } = &self.0;
+        let Run { scene, method, .. } = &self.0;
         serde_json::json!({
             "scene": scene.name,
             "scene_hash": scene.hash(),

@@ -1,6 +1,6 @@
 //! Runs a follower process, which does the work that the leading process requests.
 
-use crate::job::Job;
+use crate::run::Run;
 use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
@@ -11,24 +11,24 @@ use std::time::{Duration, Instant};
 
 /// Measures batches and predicts planes of a scene when the leading process requests them. Returns
 /// when the leading process dismisses this process.
-pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
+pub fn follow_run(workers: &dyn Workers, run: &Run) -> Result<(), Failure> {
     let mut source: Option<Box<dyn PhotonSource>> = None;
     let mut done = |order: &Order, bytes: &[u8]| match order.task {
         Task::Planes => {
             let predicted =
-                |piece: &Piece| Ok(whole(piece.number, job.packed_prediction(piece.number)?));
+                |piece: &Piece| Ok(whole(piece.number, run.packed_prediction(piece.number)?));
             order.pieces.iter().map(predicted).collect()
         }
         _ => {
             if source.is_none() {
-                source = Some(job.source()?);
+                source = Some(run.source()?);
             }
             source
                 .as_deref()
-                .map_or(Ok(Vec::new()), |source| measured(job, source, order, bytes))
+                .map_or(Ok(Vec::new()), |source| measured(run, source, order, bytes))
         }
     };
-    serve(workers, &key([&job.scene]), &mut done)
+    serve(workers, &key([&run.scene]), &mut done)
 }
 
 /// Computes points of a sweep when the leading process requests them. `scenes` has the scene of
@@ -65,22 +65,22 @@ fn whole(number: u32, bytes: Vec<u8>) -> Packed {
 
 /// Measures batches until the time when they must be sent back.
 fn measured(
-    job: &Job,
+    run: &Run,
     source: &dyn PhotonSource,
     order: &Order,
     bytes: &[u8],
 ) -> Result<Vec<Packed>, Failure> {
     let batches = unpack(&order.pieces, bytes);
-    let batches = batches.map(|(piece, own)| job.packing().unpacked_partial(source, piece, own));
+    let batches = batches.map(|(piece, own)| run.packing().unpacked_partial(source, piece, own));
     let batches: Vec<PartialBatch> = batches.collect::<Result<_, _>>()?;
     let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
-    let planes = &job.scene.planes;
+    let planes = &run.scene.planes;
     let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
     let done = found.batches();
-    let done = done.map(|batch| Ok(whole(batch.index, job.packed(batch)?)));
+    let done = done.map(|batch| Ok(whole(batch.index, run.packed(batch)?)));
     let begun = begun
         .iter()
-        .map(|batch| job.packing().packed_partial(batch));
+        .map(|batch| run.packing().packed_partial(batch));
     done.chain(begun).collect()
 }
 

@@ -3,7 +3,7 @@
 //! photons until the noise is low enough, stores batches, and uses several processes.
 //!
 //! The library does not depend on arguments or a terminal. Progress is reported to a [`Reporter`].
-//! The entry point is [`Job`].
+//! The entry point is [`Run`].
 
 #![allow(
     clippy::missing_errors_doc,
@@ -17,7 +17,6 @@ mod enough_photons;
 pub mod field;
 mod follower;
 mod inquiry;
-mod job;
 mod judge;
 mod judged;
 pub mod limits;
@@ -31,6 +30,7 @@ pub mod point_file;
 mod predict;
 mod read_case;
 mod reporter;
+mod run;
 mod summary;
 mod target;
 pub mod variance;
@@ -38,11 +38,11 @@ mod workers;
 
 pub use case::MeasuredScene;
 pub use checkpoint::Checkpointing;
-pub use follower::{follow_job, follow_points, report_failure};
-pub use job::{Job, Outcome, Tracing};
+pub use follower::{follow_points, follow_run, report_failure};
 pub use judged::{Judged, judged};
 pub use measure::measured;
 pub use read_case::read_case;
 pub use reporter::{Progress, Reporter, Silent, Work};
+pub use run::{Outcome, Run, Tracing};
 pub use summary::{Inquiry, Stopwatch, Summary};
 pub use workers::{Leader, Workers, key};

@@ -44,7 +44,7 @@ pub use picture::{Channels, PictureSize, Samples, read_channels};
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;
 pub use scene::{
-    BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
+    BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, RunSettings, Scene,
     SmoothMesh, Surface, scene_hash,
 };
 pub use triangles::Triangles;

@@ -24,7 +24,7 @@ mod surfaces;
 mod triangles;
 
 use crate::read::read_below;
-use crate::scene::{CentralRay, Object, Run, Scene};
+use crate::scene::{CentralRay, Object, RunSettings, Scene};
 use etendue_field::{Frame, tidy};
 use etendue_scenefile::SceneError;
 use etendue_scenefile::limits::{INPUT_BYTES, MAX_NUMBER};
@@ -130,7 +130,7 @@ impl Resolver<'_> {
             patches,
             planes,
             inputs: std::mem::take(&mut self.inputs),
-            run: Run {
+            run: RunSettings {
                 photons: file.run.photons,
                 seed: file.run.seed,
                 batches: file.run.batches,

@@ -35,7 +35,7 @@ pub struct Scene {
     /// BLAKE3 hash of each mesh and picture, by the file's name in the scene.
     pub inputs: BTreeMap<String, String>,
     /// The settings of the measurement.
-    pub run: Run,
+    pub run: RunSettings,
 }
 
 /// The central ray, which consists of straight legs from surface to surface. Positions and slopes
@@ -332,7 +332,7 @@ impl Scene {
 
 /// The settings of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run {
+pub struct RunSettings {
     /// Photons emitted.
     pub photons: u64,
     /// Seed of the photons.

@@ -3,7 +3,7 @@
 use crate::request::SweepRequest;
 use crate::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
 use etendue_pipeline::load::{self, SceneSource};
-use etendue_pipeline::{Job, Reporter, Summary, judged};
+use etendue_pipeline::{Reporter, Run, Summary, judged};
 use etendue_predict::test_of;
 use etendue_scene::{RunFile, Scene};
 use etendue_store::{ArgumentStyle, Failure, Method};
@@ -92,7 +92,7 @@ impl SweepPoints {
     pub fn summary(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
-        let case = Job::of(scene.clone(), self.method, Vec::new())?.run(reporter)?;
+        let case = Run::of(scene.clone(), self.method, Vec::new())?.measured_scene(reporter)?;
         let summary = Summary::new(&case, &judged(&case, &test_of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }

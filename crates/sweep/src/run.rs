@@ -7,7 +7,7 @@ use crate::request::SweepRequest;
 use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::values::{Sweep, SweepPoint, short, shown};
 use etendue_field::{decimals, fixed, tidy, uncertain};
-use etendue_pipeline::{Job, Leader, Reporter, Work, load};
+use etendue_pipeline::{Leader, Reporter, Run, Work, load};
 use etendue_report::pictures::PictureFiles;
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::VERSION;
@@ -47,7 +47,7 @@ pub fn run(
     reporter: &dyn Reporter,
 ) -> Result<FinishedSweep, Failure> {
     let checked =
-        |scene: &Scene| Job::of(scene.clone(), request.method, Vec::new())?.check_limits();
+        |scene: &Scene| Run::of(scene.clone(), request.method, Vec::new())?.check_limits();
     all.scenes.iter().try_for_each(checked)?;
     let SweepPoints { base, sweeps, .. } = all;
     let arguments = request.scene.arguments;

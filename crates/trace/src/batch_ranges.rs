@@ -1,6 +1,6 @@
 //! Assigns photons to batches, and parts of batches to threads.
 
-use etendue_scene::Run;
+use etendue_scene::RunSettings;
 use std::ops::Range;
 
 /// The number of photons traced between two progress reports.
@@ -18,7 +18,7 @@ pub(crate) struct BatchRanges {
 }
 
 impl BatchRanges {
-    pub(crate) fn new(run: &Run) -> Self {
+    pub(crate) fn new(run: &RunSettings) -> Self {
         Self {
             photons: run.photons,
             batches: run.batches,

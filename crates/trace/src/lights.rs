@@ -7,7 +7,7 @@ use crate::photon_group::PHOTONS_PER_GROUP;
 use crate::tracer::MAX_REDUCED_PHOTONS;
 use crate::{Backward, LightNotFound, Tracer};
 use etendue_field::{Crossing, Ledger, PhotonSource};
-use etendue_scene::{Run, Scene};
+use etendue_scene::{RunSettings, Scene};
 use etendue_transform::random::{self, Stream};
 use fearless_simd::Level;
 
@@ -62,7 +62,7 @@ impl AllLights<Tracer> {
         tracer: impl Fn(&Scene) -> Tracer,
     ) -> Self {
         let own = scene.lights().zip(0..).map(|(of, number)| {
-            let run = Run {
+            let run = RunSettings {
                 seed: seed(scene.run.seed, number),
                 ..scene.run
             };
@@ -141,7 +141,7 @@ fn divided<'a>(
     let counts = counts(scene.run.photons, scene.run.batches, powers);
     let lights = scene.lights().zip(counts).zip(0..);
     lights.map(|((of, photons), number)| {
-        let run = Run {
+        let run = RunSettings {
             photons,
             seed: seed(scene.run.seed, number),
             ..scene.run

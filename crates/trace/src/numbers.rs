@@ -1,7 +1,7 @@
 //! Provides the random numbers with which photons are drawn.
 
 use crate::lattice::{LatticePoints, Lattices};
-use etendue_scene::{Run, Sampling};
+use etendue_scene::{RunSettings, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
 use fearless_simd::{Level, dispatch};
@@ -35,7 +35,7 @@ pub(crate) enum Numbers {
 const POINTS: u64 = 1 << 32;
 
 impl PhotonNumbers {
-    pub(crate) fn new(run: &Run, streams: [Stream; 3], legs: usize) -> Self {
+    pub(crate) fn new(run: &RunSettings, streams: [Stream; 3], legs: usize) -> Self {
         Self {
             sampling: run.sampling,
             seed: run.seed,

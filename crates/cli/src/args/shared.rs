@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use etendue_field::tidy;
-use etendue_pipeline::Job;
+use etendue_pipeline::Run;
 use etendue_pipeline::load::SceneSource;
 use etendue_scene::{Color, RunFile};
 use etendue_store::{Failure, Method};
@@ -68,8 +68,8 @@ impl PhotonArgs {
     }
 
     /// Reads a scene that is measured with these options.
-    pub(crate) fn job(&self, scene: &SceneArgs) -> Result<Job, Failure> {
-        Job::read(&scene.source(), self.method, |run| self.set(run))
+    pub(crate) fn run(&self, scene: &SceneArgs) -> Result<Run, Failure> {
+        Run::read(&scene.source(), self.method, |run| self.set(run))
     }
 }
 

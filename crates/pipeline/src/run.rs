@@ -22,7 +22,7 @@ use std::path::PathBuf;
 
 /// A scene, and how to measure it.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct Run {
     /// The scene.
     pub scene: Scene,
     /// The theory that applies to each plane.
@@ -47,7 +47,7 @@ pub enum Tracing<'a> {
     },
 }
 
-impl Job {
+impl Run {
     /// Reads a scene; `options` applies the settings that have their own arguments.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl Job {
         Self::of(scene, method, inputs)
     }
 
-    /// Returns the job of a resolved scene; `inputs` are the files from which the scene was read.
+    /// Returns the run of a resolved scene; `inputs` are the files from which the scene was read.
     pub fn of(scene: Scene, method: Method, inputs: Vec<PathBuf>) -> Result<Self, Failure> {
         method::check(&scene, method)?;
         Ok(Self {
@@ -105,11 +105,11 @@ impl Job {
         }
     }
 
-    /// Measures and predicts the scene, without storing batches.
+    /// Returns the scene with its measurement and predictions. No batches are stored.
     ///
     /// # Errors
     /// When the method of measurement finds no light.
-    pub fn run(self, reporter: &dyn Reporter) -> Result<MeasuredScene, Failure> {
+    pub fn measured_scene(self, reporter: &dyn Reporter) -> Result<MeasuredScene, Failure> {
         let all = 0..self.scene.run.batches;
         let measurement = measured(&self.scene, self.method, all, reporter)?;
         let predictions = self.predictions(None, reporter)?;

@@ -17,10 +17,10 @@ use std::sync::Arc;
 
 /// A scene with its measurement settings.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Job(pub(crate) Arc<etendue_pipeline::Job>);
+pub(crate) struct Run(pub(crate) Arc<etendue_pipeline::Run>);
 
 #[pymethods]
-impl Job {
+impl Run {
     /// Returns the scene of a file or of a text, with some fields set.
     #[staticmethod]
     fn read(
@@ -37,12 +37,12 @@ impl Job {
         } else {
             Method::Photons
         };
-        let job = etendue_pipeline::Job::read(&source, method, |run| {
+        let run = etendue_pipeline::Run::read(&source, method, |run| {
             run.photons = photons.unwrap_or(run.photons);
             run.seed = seed.unwrap_or(run.seed);
         });
-        let job = job.map_err(|failure| raised(py, failure))?;
-        Ok(Self(Arc::new(job)))
+        let run = run.map_err(|failure| raised(py, failure))?;
+        Ok(Self(Arc::new(run)))
     }
 
     #[getter]
@@ -89,21 +89,21 @@ impl Job {
         threads: Option<usize>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Measurement> {
-        let job = Arc::clone(&self.0);
+        let run = Arc::clone(&self.0);
         let found = alive(py, threads, progress.as_ref(), move |live| {
-            job.check_limits()?;
-            let run = &job.scene.run;
-            let photons = run.photons * batches.len() as u64 / u64::from(run.batches);
-            job.measure(&batches, &live.trace(photons, "photons"))
+            run.check_limits()?;
+            let settings = &run.scene.run;
+            let photons = settings.photons * batches.len() as u64 / u64::from(settings.batches);
+            run.measure(&batches, &live.trace(photons, "photons"))
         });
         found.map(Measurement)
     }
 
     fn predict(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Prediction> {
-        let job = Arc::clone(&self.0);
+        let run = Arc::clone(&self.0);
         let found = alive(py, threads, None, move |_| {
-            job.check_limits()?;
-            job.predictions(None, &Silent)
+            run.check_limits()?;
+            run.predictions(None, &Silent)
         });
         found.map(Prediction)
     }
@@ -115,10 +115,10 @@ impl Job {
         prediction: &Prediction,
         threads: Option<usize>,
     ) -> PyResult<Outcome> {
-        let job = Arc::clone(&self.0);
+        let run = Arc::clone(&self.0);
         let (measurement, predictions) = (measurement.0.clone(), prediction.0.clone());
         let found = alive(py, threads, None, move |_| {
-            job.compare(measurement, predictions)
+            run.compare(measurement, predictions)
         });
         found.map(Outcome)
     }
@@ -133,9 +133,9 @@ impl Job {
         batches: Vec<u32>,
         plane: usize,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<usize>, Vec<u64>)> {
-        let job = Arc::clone(&self.0);
+        let run = Arc::clone(&self.0);
         let (rows, counts, emitted) = alive(py, None, None, move |live| {
-            let source = job.source()?;
+            let source = run.source()?;
             let photons = batches.iter().map(|batch| source.emitted(*batch)).sum();
             let watch = live.trace(photons, "photons");
             let mut rows = Vec::new();
@@ -168,9 +168,9 @@ impl Job {
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rays = Rays::new(&columns, &batch, batches)?;
-        let job = Arc::clone(&self.0);
+        let run = Arc::clone(&self.0);
         let found = alive(py, threads, progress.as_ref(), move |live| {
-            spectrum(&rays, &job.scene.planes[0], live)
+            spectrum(&rays, &run.scene.planes[0], live)
         })?;
         found.arrays(py)
     }
