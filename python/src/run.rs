@@ -7,7 +7,8 @@ use crate::rays::{Rays, spectrum};
 use crate::scene::SceneArgument;
 use etendue_field::Crossing;
 use etendue_pipeline::Silent;
-use etendue_spectrum::{Batch, Watch};
+use etendue_pipeline::method::source;
+use etendue_spectrum::Watch;
 use etendue_store::{Failure, Method, predictions};
 use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
@@ -135,7 +136,7 @@ impl Run {
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<usize>, Vec<u64>)> {
         let run = Arc::clone(&self.0);
         let (rows, counts, emitted) = alive(py, None, None, move |live| {
-            let source = run.source()?;
+            let source = source(&run.scene, run.method)?;
             let photons = batches.iter().map(|batch| source.emitted(*batch)).sum();
             let watch = live.trace(photons, "photons");
             let mut rows = Vec::new();
@@ -183,7 +184,7 @@ impl Run {
     ) -> PyResult<Vec<(u32, Bound<'py, PyBytes>)>> {
         let batches = measurement.0.batches();
         let packed = batches.map(|batch| {
-            let bytes = self.0.packed(batch).map_err(|f| raised(py, f))?;
+            let bytes = self.0.packing().packed(batch).map_err(|f| raised(py, f))?;
             Ok((batch.index, PyBytes::new(py, &bytes)))
         });
         packed.collect()
@@ -194,11 +195,13 @@ impl Run {
         py: Python<'_>,
         batches: Vec<(u32, Bound<'_, PyBytes>)>,
     ) -> PyResult<Measurement> {
-        let source = self.0.source().map_err(|failure| raised(py, failure))?;
+        let source = source(&self.0.scene, self.0.method).map_err(|f| raised(py, f))?;
+        let packing = self.0.packing();
         let mut all = etendue_spectrum::Measurement::new(self.0.scene.planes.clone());
         for (number, bytes) in batches {
-            let batch: Result<Batch, Failure> = self.0.unpacked(&*source, number, bytes.as_bytes());
-            let batch = batch.map_err(|failure| raised(py, failure))?;
+            let batch = packing
+                .unpacked(&*source, number, bytes.as_bytes())
+                .map_err(|failure| raised(py, failure))?;
             all.insert(batch).map_err(|error| bad(py, &error))?;
         }
         Ok(Measurement(all))

@@ -7,11 +7,9 @@ use crate::workers::{Leader, Packing};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
-use etendue_store::Failure;
-use etendue_store::Method;
 use etendue_store::checkpoints::{BatchProgress, CheckpointStore};
 use etendue_store::stored::summary_of;
-use etendue_store::unfinished;
+use etendue_store::{Failure, Method, unfinished};
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
 use std::path::Path;
@@ -87,15 +85,12 @@ pub(crate) fn measured(
                 let packing = Packing { scene, method };
                 workers.measure(packing, &*source, missing, &keeper)?
             }
-            None => {
-                let mut missing = missing.into_iter();
-                measure_watched(&*source, &scene.planes, &mut missing, &keeper)
-            }
+            None => measure_watched(&*source, &scene.planes, &mut missing.into_iter(), &keeper),
         };
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {
-            let mut left = left.iter();
-            left.try_for_each(|batch| kept.write_partial(batch))?;
+            left.iter()
+                .try_for_each(|batch| kept.write_partial(batch))?;
             drop(bar);
             return Err(time_is_up(kept, lit.len()));
         }
@@ -154,16 +149,19 @@ impl Keeper<'_> {
             let damaged;
             (begun, damaged) = self.kept.read(all, &|batch| source.emitted(batch))?;
             for path in damaged {
-                let path = path.display();
-                let message = format!("{path} is damaged: the batch is measured again");
-                self.reporter.warn(&message);
+                self.reporter.warn(&format!(
+                    "{} is damaged: the batch is measured again",
+                    path.display()
+                ));
             }
             let photons = begun.values().map(|batch| photons_of(source, batch));
             self.bar.set(all.emitted() + photons.sum::<u64>());
         }
-        let missing = lit.iter().filter(|b| !all.contains(**b));
-        let missing = missing.map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)));
-        let mut missing: Vec<PartialBatch> = missing.collect();
+        let mut missing: Vec<PartialBatch> = lit
+            .iter()
+            .filter(|b| !all.contains(**b))
+            .map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)))
+            .collect();
         if self.checkpointing.resume && !missing.is_empty() {
             // Processes that share the work begin at different batches.
             let begin = RandomState::new().hash_one(0) % missing.len() as u64;

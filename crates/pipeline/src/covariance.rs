@@ -1,15 +1,15 @@
 //! Traces the covariance of the spectrum at each plane of a scene, and measures it on a 4D grid.
 
-use crate::moments::{check_memory, fitting};
+use crate::field::check_grid;
 use crate::reporter::{Reporter, Work};
 use crate::{Run, limits, measured, method};
 use etendue_compare::Prediction;
-use etendue_field::PhotonSource;
+use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_predict::{AXES, Applicability, CovarianceReport};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_spectrum::field::measure_field;
-use etendue_store::{Failure, VERSION};
+use etendue_spectrum::field::{FieldOptions, measure_field};
+use etendue_store::{Failure, VERSION, machine};
 
 /// A request for the covariances at all planes of a scene.
 #[derive(Debug)]
@@ -102,7 +102,7 @@ fn of_plane(
     reporter: &dyn Reporter,
 ) -> Result<CovarianceReport, Failure> {
     let plane = &measurement.planes()[index];
-    let options = fitting(plane);
+    let options = fitting_options(plane);
     let passes = if options.keep { 1 } else { 2 };
     let bar = reporter.begin(Work::Photons(passes * measurement.emitted()));
     let batches = 0..u32::try_from(measurement.batches().len()).unwrap_or(u32::MAX);
@@ -123,4 +123,37 @@ fn of_plane(
         prediction,
     )
     .map_err(Failure::cannot_run)
+}
+
+/// Returns the options with which a grid computes covariances, and groups of batches for their
+/// errors.
+fn grid_options() -> FieldOptions {
+    FieldOptions {
+        covariance: true,
+        ..FieldOptions::default()
+    }
+}
+
+/// Returns the options of the grid on which a plane is measured. All groups are kept if they fit
+/// into half of the memory; the photons then need not be traced twice.
+pub fn fitting_options(plane: &VirtualPlane) -> FieldOptions {
+    let kept = FieldOptions {
+        keep: true,
+        ..grid_options()
+    };
+    let threads = rayon::current_num_threads();
+    if kept.bytes(&kept.grid(plane), threads) <= machine::available_memory() / 2 {
+        kept
+    } else {
+        grid_options()
+    }
+}
+
+/// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
+pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
+    for plane in planes {
+        let name = format!("covariance: the grid of {}", plane.name);
+        check_grid(&name, &grid_options().grid(plane), &grid_options())?;
+    }
+    Ok(())
 }

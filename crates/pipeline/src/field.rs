@@ -9,12 +9,9 @@ use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_predict::{Theory, predict_field, test_each};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
-use etendue_store::Failure;
-use etendue_store::Method;
-use etendue_store::Results;
-use etendue_store::machine;
 use etendue_store::npz::{Npz, write_npy};
 use etendue_store::sealed::json;
+use etendue_store::{Failure, Method, Results, machine};
 use ndarray::{Array1, Array4};
 use serde::Serialize;
 

@@ -1,5 +1,6 @@
 //! Runs a follower process, which does the work that the leading process requests.
 
+use crate::method;
 use crate::run::Run;
 use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
 use etendue_field::PhotonSource;
@@ -21,7 +22,7 @@ pub fn follow_run(workers: &dyn Workers, run: &Run) -> Result<(), Failure> {
         }
         _ => {
             if source.is_none() {
-                source = Some(run.source()?);
+                source = Some(method::source(&run.scene, run.method)?);
             }
             source
                 .as_deref()
@@ -70,17 +71,17 @@ fn measured(
     order: &Order,
     bytes: &[u8],
 ) -> Result<Vec<Packed>, Failure> {
-    let batches = unpack(&order.pieces, bytes);
-    let batches = batches.map(|(piece, own)| run.packing().unpacked_partial(source, piece, own));
-    let batches: Vec<PartialBatch> = batches.collect::<Result<_, _>>()?;
+    let packing = run.packing();
+    let batches = unpack(&order.pieces, bytes)
+        .map(|(piece, own)| packing.unpacked_partial(source, piece, own))
+        .collect::<Result<Vec<PartialBatch>, _>>()?;
     let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
     let planes = &run.scene.planes;
     let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
-    let done = found.batches();
-    let done = done.map(|batch| Ok(whole(batch.index, run.packed(batch)?)));
-    let begun = begun
-        .iter()
-        .map(|batch| run.packing().packed_partial(batch));
+    let done = found
+        .batches()
+        .map(|batch| Ok(whole(batch.index, packing.packed(batch)?)));
+    let begun = begun.iter().map(|batch| packing.packed_partial(batch));
     done.chain(begun).collect()
 }
 

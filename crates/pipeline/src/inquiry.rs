@@ -8,8 +8,7 @@ use etendue_compare::{Class, PlaneComparison, PlaneReport, Test, Verdict, compar
 use etendue_field::percent;
 use etendue_predict::{predict_reference, test_of};
 use etendue_spectrum::estimate::TooFewBatches;
-use etendue_store::Failure;
-use etendue_store::Method;
+use etendue_store::{Failure, Method};
 
 /// Measures planes that disagree with theory by the other method, and compares photons, the other
 /// method and theory.

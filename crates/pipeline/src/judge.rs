@@ -6,8 +6,7 @@ use crate::method::judge_of;
 use crate::reporter::Reporter;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_store::Failure;
-use etendue_store::Method;
+use etendue_store::{Failure, Method};
 
 /// A measurement of some planes of a scene by one method.
 #[derive(Debug)]
@@ -28,22 +27,21 @@ impl Judge {
         reporter: &dyn Reporter,
     ) -> Result<Vec<Self>, Failure> {
         let methods = [Method::Photons, Method::Backward, Method::Even];
-        let judged = methods.map(|judge| {
+        let mut judges = Vec::new();
+        for judge in methods {
             let is_judge = |i: &usize| judge_of(method, scene, &scene.planes[*i]) == judge;
-            (judge, planes.iter().copied().filter(is_judge).collect())
-        });
-        let judged = judged.into_iter();
-        let judged = judged.filter(|(_, planes): &(_, Vec<usize>)| !planes.is_empty());
-        let judge = |(method, planes): (Method, Vec<usize>)| {
+            let planes: Vec<usize> = planes.iter().copied().filter(is_judge).collect();
+            if planes.is_empty() {
+                continue;
+            }
             let scene = scene.seen_at(&planes);
-            let measurement = measured(&scene, method, 0..scene.run.batches, reporter)?;
-            Ok(Self {
-                method,
-                measurement,
+            judges.push(Self {
+                method: judge,
+                measurement: measured(&scene, judge, 0..scene.run.batches, reporter)?,
                 planes,
-            })
-        };
-        judged.map(judge).collect()
+            });
+        }
+        Ok(judges)
     }
 
     /// Returns the independent measurement of a plane of the scene, and the index of the plane in

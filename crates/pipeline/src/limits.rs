@@ -4,8 +4,7 @@
 use etendue_field::Light;
 use etendue_predict::{Applicability, Memory, too_much_work};
 use etendue_scene::Scene;
-use etendue_store::Failure;
-use etendue_store::machine;
+use etendue_store::{Failure, machine};
 
 /// Fails if a run of the scene on `threads` threads would take too long, or would not fit into the
 /// memory of this machine. `theories` has the theory that applies to each plane of the scene.

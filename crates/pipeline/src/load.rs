@@ -1,11 +1,8 @@
 //! Reads and resolves scene files, and creates folders for the results of a stage.
 
-use etendue_scene::{
-    Color, RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
-};
-use etendue_store::machine;
+use etendue_scene::{Color, RunFile, Scene, SceneFile, limits, read_below, read_file, resolve};
 use etendue_store::stored::copy_of;
-use etendue_store::{ArgumentStyle, Failure, Plan, Results};
+use etendue_store::{ArgumentStyle, Failure, Plan, Results, machine};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -86,33 +83,31 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     file.run.color = source.color.unwrap_or(file.run.color);
     let photons = file.run.photons;
     options(&mut file.run);
-    let set = source.set.iter();
-    let set = set.map(|(path, value)| (path.clone(), arguments.set(path, value)));
-    let mut set: Vec<(String, String)> = set.collect();
+    let mut set: Vec<(String, String)> = source
+        .set
+        .iter()
+        .map(|(path, value)| (path.clone(), arguments.set(path, value)))
+        .collect();
     if file.run.photons != photons {
         let option = arguments.with("photons", file.run.photons);
         set.push(("run.photons".to_owned(), option));
     }
     let memory = machine::available_memory();
-    let scene = resolve(&source.name(), file, source.folder(), memory);
-    // If the scene is a text without a file, messages do not state line numbers.
-    let text = source.text.is_none().then_some(&*text);
-    scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
-}
-
-/// Returns the faults of a scene, one line each, with the position in the text or the argument
-/// that set the faulty value.
-fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
-    let lines = error.in_text(text, set);
-    let lines = lines.lines().map(|line| format!("{shown}: {line}"));
-    Failure::of_scene(error, lines.collect::<Vec<_>>().join("\n"))
+    resolve(&source.name(), file, source.folder(), memory).map_err(|error| {
+        // If the scene is a text without a file, messages do not state line numbers.
+        let text = source.text.is_none().then_some(&*text).unwrap_or_default();
+        // One line for each fault, with the position in the text or the argument that set the
+        // faulty value.
+        let faults = error.in_text(text, &set);
+        let lines = faults.lines().map(|line| format!("{shown}: {line}"));
+        Failure::of_scene(&error, lines.collect::<Vec<_>>().join("\n"))
+    })
 }
 
 /// Returns the scene file, if there is one, and all files that it names.
 pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     let file = source.text.is_none().then(|| source.path.clone());
-    let named = scene.inputs.keys();
-    let named = named.map(|name| source.folder().join(name));
+    let named = scene.inputs.keys().map(|name| source.folder().join(name));
     named.chain(file).collect()
 }
 

@@ -6,9 +6,8 @@ use crate::case::MeasuredScene;
 use crate::method::source;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
-use etendue_store::Failure;
-use etendue_store::Results;
 use etendue_store::sealed::json;
+use etendue_store::{Failure, Results};
 use file::{Content, Rays};
 use serde::Serialize;
 use std::io;
@@ -48,11 +47,8 @@ const INDEX: &str = "photons.json";
 /// Returns the file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
-    file_of(save)
-        .map(|(name, ..)| name)
-        .into_iter()
-        .chain(index)
-        .collect()
+    let name = file_of(save).map(|(name, ..)| name);
+    name.into_iter().chain(index).collect()
 }
 
 /// Describes the file with the photons of a plane: returns its name, the name of its format in
@@ -105,11 +101,6 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
     };
     let source = source(&case.scene, case.method)?;
     for (plane, at) in case.scene.planes.iter().enumerate() {
-        let of_plane = OfPlane {
-            case,
-            source: &*source,
-            plane,
-        };
         let rows = case.measurement.tally(plane).crossed;
         let name = format!("{}/{name}", at.name);
         let Some(rays) = Rays::of(case, plane) else {
@@ -121,16 +112,18 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
                 Save::Mcpl => Content::mcpl(&rays, rows),
                 Save::Tm25 => {
                     let mut flux = 0.0;
-                    of_plane.trace(&mut |crossings| {
+                    trace(case, &*source, plane, &mut |crossings| {
                         flux += crossings.iter().map(|c| rays.watts(c)).sum::<f64>();
                         Ok(())
                     })?;
                     Content::tm25(&rays, rows, flux)
                 }
-                Save::Photons | Save::Field | Save::Explorer => Content::npy(rows),
+                Save::Photons | Save::Field | Save::Explorer => Content::Npy(rows),
             };
             file.write_all(&content.begin())?;
-            offsets = of_plane.trace(&mut |crossings| file.write_all(&content.rows(crossings)?))?;
+            offsets = trace(case, &*source, plane, &mut |crossings| {
+                file.write_all(&content.rows(crossings)?)
+            })?;
             Ok(())
         })?;
         if save == Save::Photons {
@@ -145,31 +138,27 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
     Ok(())
 }
 
-/// The photons of a measurement that cross a plane.
-struct OfPlane<'a> {
-    case: &'a MeasuredScene,
-    source: &'a dyn PhotonSource,
+/// Calls `take` with the photons that cross a plane, block by block in the order of batches. Returns
+/// the number of photons before each batch, and the total.
+fn trace(
+    case: &MeasuredScene,
+    source: &dyn PhotonSource,
     plane: usize,
-}
-
-impl OfPlane<'_> {
-    /// Calls `take` with the photons, block by block in the order of batches. Returns the number
-    /// of photons before each batch, and the total.
-    fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
-        let mut offsets = vec![0];
-        let mut done = 0;
-        for batch in self.case.measurement.batches() {
-            let mut outcome = Ok(());
-            let mut record = |at: usize, crossings: &[Crossing]| {
-                if at == self.plane && outcome.is_ok() {
-                    done += crossings.len() as u64;
-                    outcome = take(crossings);
-                }
-            };
-            self.source.emit(batch.index, &mut record, &|_| ());
-            outcome?;
-            offsets.push(done);
-        }
-        Ok(offsets)
+    take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>,
+) -> io::Result<Vec<u64>> {
+    let mut offsets = vec![0];
+    let mut done = 0;
+    for batch in case.measurement.batches() {
+        let mut outcome = Ok(());
+        let mut record = |at: usize, crossings: &[Crossing]| {
+            if at == plane && outcome.is_ok() {
+                done += crossings.len() as u64;
+                outcome = take(crossings);
+            }
+        };
+        source.emit(batch.index, &mut record, &|_| ());
+        outcome?;
+        offsets.push(done);
     }
+    Ok(offsets)
 }

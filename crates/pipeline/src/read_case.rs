@@ -21,10 +21,10 @@ pub fn read_case(
     measured: &[PathBuf],
     predicted: &Path,
 ) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
-    let shards: Vec<Stored<Held>> = measured
+    let shards = measured
         .iter()
         .map(|folder| Stored::read(folder, MEASUREMENT))
-        .collect::<Result<_, _>>()?;
+        .collect::<Result<Vec<Stored<Held>>, _>>()?;
     let predicted = Stored::read(predicted, PREDICTION)?;
     let first = &shards[0];
     for shard in &shards[1..] {
@@ -39,8 +39,8 @@ pub fn read_case(
     let inputs = shards
         .iter()
         .flat_map(Stored::paths)
-        .chain(predicted.paths());
-    let inputs = inputs.collect();
+        .chain(predicted.paths())
+        .collect();
     let theories = Applicability::of_planes(&scene);
     let classes: Vec<_> = theories.iter().map(Applicability::class).collect();
     let case = MeasuredScene {

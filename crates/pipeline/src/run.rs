@@ -2,22 +2,20 @@
 
 use crate::case::MeasuredScene;
 use crate::checkpoint::{self, Checkpointing};
+use crate::judge::Judge;
 use crate::judged::Judged;
 use crate::load::SceneSource;
 use crate::measure::measured;
 use crate::method::{self, source};
-use crate::predict::predicted;
-use crate::reporter::{Reporter, Silent};
+use crate::reporter::{Reporter, Silent, Work};
 use crate::workers::{Leader, Packing};
 use crate::{limits, load, target};
-use etendue_compare::Prediction;
-use etendue_field::PhotonSource;
-use etendue_predict::{Applicability, predict};
+use etendue_compare::{Class, Prediction};
+use etendue_predict::{Applicability, predict, predict_reference};
 use etendue_scene::{RunFile, Scene};
-use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
-use etendue_store::Failure;
-use etendue_store::Method;
-use etendue_store::predictions;
+use etendue_spectrum::{Measurement, PartialBatch, Watch, measure_watched};
+use etendue_store::{Failure, Method, predictions};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A scene, and how to measure it.
@@ -116,42 +114,13 @@ impl Run {
         Ok(self.with(measurement, predictions))
     }
 
-    /// Returns the source of the photons of the scene.
-    ///
-    /// # Errors
-    /// When the method of measurement finds no light.
-    pub fn source(&self) -> Result<Box<dyn PhotonSource>, Failure> {
-        source(&self.scene, self.method)
-    }
-
     /// Returns the format in which batches are sent to another process.
-    pub(crate) fn packing(&self) -> Packing<'_> {
+    #[must_use]
+    pub fn packing(&self) -> Packing<'_> {
         Packing {
             scene: &self.scene,
             method: self.method,
         }
-    }
-
-    /// Returns a batch as bytes, for another process.
-    ///
-    /// # Errors
-    /// When there is not enough memory for the bytes.
-    pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
-        self.packing().packed(batch)
-    }
-
-    /// Returns the batch with this number, decoded from the bytes of [`Self::packed`]. The batch
-    /// is identical to the batch that `source` emits.
-    ///
-    /// # Errors
-    /// When the bytes belong to another scene, seed or number of photons.
-    pub fn unpacked(
-        &self,
-        source: &dyn PhotonSource,
-        number: u32,
-        bytes: &[u8],
-    ) -> Result<Batch, Failure> {
-        self.packing().unpacked(source, number, bytes)
     }
 
     /// Returns the prediction of a plane to which a theory applies, as bytes for another process.
@@ -164,17 +133,11 @@ impl Run {
     }
 
     /// Fails if a run would take too long, or would not fit into the memory of this machine.
-    ///
-    /// # Errors
-    /// When a run would take too long, or would not fit into the memory of this machine.
     pub fn check_limits(&self) -> Result<(), Failure> {
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())
     }
 
     /// Fails if the measurement would not fit into the memory of this machine.
-    ///
-    /// # Errors
-    /// When the measurement would not fit into the memory of this machine.
     pub fn check_memory(&self) -> Result<(), Failure> {
         limits::check_memory(&self.scene, &self.theories, rayon::current_num_threads())
     }
@@ -190,7 +153,8 @@ impl Run {
     }
 
     /// Predicts all planes, on the threads of the current pool and by other processes, if there
-    /// are any.
+    /// are any. If no theory applies to a plane, a measurement by another method replaces the
+    /// prediction.
     ///
     /// # Errors
     /// When another method of measurement replaces theory at a plane, and finds no light.
@@ -199,7 +163,49 @@ impl Run {
         workers: Option<&Leader<'_>>,
         reporter: &dyn Reporter,
     ) -> Result<Vec<Prediction>, Failure> {
-        predicted(&self.scene, &self.theories, self.method, workers, reporter)
+        let (scene, theories) = (&self.scene, &self.theories);
+        let is_referred = |i: &u32| theories[*i as usize].class() == Class::Reference;
+        let (referred, told): (Vec<u32>, Vec<u32>) =
+            (0..).zip(theories).map(|(i, _)| i).partition(is_referred);
+        let referred: Vec<usize> = referred.into_iter().map(|i| i as usize).collect();
+        let judges = Judge::all(scene, &referred, self.method, reporter)?;
+        let bar = reporter.begin(Work::Steps {
+            verb: "predicting",
+            total: scene.planes.len(),
+            things: "planes",
+        });
+        let own = |plane: u32| {
+            let at = &scene.planes[plane as usize];
+            bar.name(&at.name);
+            let prediction = predict(scene, at, &theories[plane as usize]);
+            bar.advance(1);
+            Ok(prediction)
+        };
+        let mut told: BTreeMap<u32, Prediction> = match workers {
+            None => told
+                .iter()
+                .map(|i| Ok((*i, own(*i)?)))
+                .collect::<Result<_, Failure>>()?,
+            Some(workers) => workers.predict(scene, &told, &own, &|plane, bytes| {
+                bar.advance(1);
+                predictions::unpacked(&scene.planes[plane as usize], bytes)
+            })?,
+        };
+        (0_u32..)
+            .zip(theories)
+            .map(|(number, theory)| {
+                let i = number as usize;
+                let Some((judge, at)) = Judge::of(&judges, i) else {
+                    let missing = || Failure::cannot_run("a plane was not predicted");
+                    return told.remove(&number).ok_or_else(missing);
+                };
+                bar.advance(1);
+                let mut prediction = predict_reference(scene, i, theory, &judge.measurement, at)
+                    .map_err(Failure::cannot_run)?;
+                prediction.steps.push(method::step(judge.method));
+                Ok(prediction)
+            })
+            .collect()
     }
 
     /// Compares the measurement with the predictions.

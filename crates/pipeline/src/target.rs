@@ -5,8 +5,7 @@ use crate::reporter::Reporter;
 use etendue_field::{grouped, percent, tidy};
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, estimate};
-use etendue_store::Failure;
-use etendue_store::Method;
+use etendue_store::{Failure, Method};
 use std::time::Instant;
 
 /// Number of photons of the first measurement.

@@ -14,4 +14,4 @@ mod packing;
 pub use leader::Leader;
 pub use link::{Workers, key};
 pub(crate) use message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
-pub(crate) use packing::Packing;
+pub use packing::Packing;

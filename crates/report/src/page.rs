@@ -8,8 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub use data::data;
 use etendue_scene::read_file;
-use etendue_store::Failure;
-use etendue_store::SUMMARY;
+use etendue_store::{Failure, SUMMARY};
 use serde::de::IgnoredAny;
 use std::path::Path;
 

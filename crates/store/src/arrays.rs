@@ -1,9 +1,8 @@
 //! Writes the array files of one plane: `slices.npz`, `radial.npz` and `radial.exr`.
 
-use crate::Failure;
-use crate::Results;
 use crate::exr::{Part, exr};
 use crate::npz::{Npz, azimuths};
+use crate::{Failure, Results};
 use etendue_compare::PlaneComparison;
 use etendue_field::Complex;
 use ndarray::{Array1, Array2, Array3};

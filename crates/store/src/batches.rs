@@ -1,11 +1,9 @@
 //! Stores the batches of a measurement in files: one `ledger.npz`, and a `batches.npz` for each
 //! plane.
 
-use crate::Failure;
-use crate::Method;
-use crate::Results;
 use crate::npz::{Npz, NpzFile, Number};
 use crate::stored::Stored;
+use crate::{Failure, Method, Results};
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};

@@ -7,13 +7,12 @@
 //! lock, and a process that dies does not delay the others. The sum of the first parts of an
 //! unfinished batch is also stored as a file, which a later sum replaces.
 
-use crate::Failure;
-use crate::Method;
 use crate::batches::{Held, files, read_files};
 use crate::machine::available_memory;
 use crate::npz::NpzFile;
 use crate::results::{LINKED, inside, make_folders, remove_folders};
 use crate::version::VERSION;
+use crate::{Failure, Method};
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};
 use etendue_spectrum::{Batch, Measurement, PartialBatch};

@@ -1,11 +1,9 @@
 //! Stores predictions as files, which are named `prediction.npz` for each plane.
 
-use crate::Failure;
-use crate::Method;
-use crate::Results;
 use crate::framing::{joined, split};
 use crate::npz::{Npz, NpzFile};
 use crate::stored::Stored;
+use crate::{Failure, Method, Results};
 use etendue_compare::{Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction};
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;

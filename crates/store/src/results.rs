@@ -11,8 +11,7 @@ mod commit;
 
 use crate::file_seal::SealKind;
 use crate::lock::Lock;
-use crate::{ArgumentStyle, Failure};
-use crate::{lock, sealed, unfinished};
+use crate::{ArgumentStyle, Failure, lock, sealed, unfinished};
 use etendue_scene::read_file;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};

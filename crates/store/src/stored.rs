@@ -1,15 +1,13 @@
 //! Stores the results of a stage in a folder, from which a later stage reads them. The folder holds
 //! arrays, and an index that lists them.
 
-use crate::Method;
 use crate::fields::{FieldChange, difference};
-use crate::machine;
 use crate::npz::NpzFile;
-use crate::sealed;
 use crate::sealed::json;
 use crate::version::VERSION;
-use crate::{ArgumentStyle, Failure};
-use crate::{Finished, MAX_INDEX_BYTES, Results, SUMMARY};
+use crate::{
+    ArgumentStyle, Failure, Finished, MAX_INDEX_BYTES, Method, Results, SUMMARY, machine, sealed,
+};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -10,10 +10,11 @@ use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Run, Work, load};
 use etendue_report::pictures::PictureFiles;
 use etendue_scene::{Scene, SceneFile, read_file};
-use etendue_store::VERSION;
 use etendue_store::sealed::json;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{Failure, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, below, unfinished};
+use etendue_store::{
+    Failure, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, VERSION, below, unfinished,
+};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

@@ -48,17 +48,13 @@ impl Rays {
 
 /// The header of a photon file, and the format in which the file stores a photon.
 pub(super) enum Content<'a> {
+    /// An f64 array [rows, 5], in coordinates of the plane.
     Npy(u64),
     Mcpl(&'a Rays, Box<mcpl::McplHeader>, u64),
     Tm25(&'a Rays, Box<tm25::Tm25Header>, u64),
 }
 
 impl<'a> Content<'a> {
-    /// Returns the content of an NPY file: an f64 array [rows, 5], in coordinates of the plane.
-    pub(super) fn npy(rows: u64) -> Self {
-        Self::Npy(rows)
-    }
-
     /// Returns the content of an MCPL file: photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];

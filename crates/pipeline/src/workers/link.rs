@@ -28,8 +28,9 @@ pub trait Workers: Sync {
 /// Returns a key that identifies the scenes and the version of the program. All processes must
 /// have the same key, so that all of them work on the same scenes.
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
-    let scenes = scenes.into_iter();
-    let words = scenes.map(|scene| format!(" {} {}", scene.hash(), scene.run.seed));
-    let words: String = words.collect();
+    let words: String = scenes
+        .into_iter()
+        .map(|scene| format!(" {} {}", scene.hash(), scene.run.seed))
+        .collect();
     format!("{VERSION} {}", blake3::hash(words.as_bytes()).to_hex())
 }

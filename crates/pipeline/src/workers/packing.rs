@@ -9,20 +9,23 @@ use etendue_store::{Failure, Method, checkpoints};
 
 /// Encodes batches of a scene, measured by a method, as bytes, and decodes them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Packing<'a> {
-    pub(crate) scene: &'a Scene,
-    pub(crate) method: Method,
+pub struct Packing<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The method of measurement.
+    pub method: Method,
 }
 
 impl Packing<'_> {
-    /// Returns a batch as bytes.
-    pub(crate) fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
+    /// Returns a batch as bytes. Fails if there is not enough memory for the bytes.
+    pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
     /// Returns the batch with this number, decoded from the bytes of [`Self::packed`]. The batch
-    /// is identical to the batch that `source` emits.
-    pub(crate) fn unpacked(
+    /// is identical to the batch that `source` emits. Fails if the bytes belong to another scene,
+    /// seed or number of photons.
+    pub fn unpacked(
         &self,
         source: &dyn PhotonSource,
         number: u32,

@@ -3,10 +3,9 @@
 use etendue_compare::{Estimate, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use etendue_scene::{Color, read_below};
-use etendue_store::Failure;
 use etendue_store::npz::NpzFile;
 use etendue_store::stored::listed_bytes;
-use etendue_store::{MAX_INDEX_BYTES, SUMMARY, sealed};
+use etendue_store::{Failure, MAX_INDEX_BYTES, SUMMARY, sealed};
 use ndarray::{Array1, Array3, Axis};
 use serde::Deserialize;
 use serde_json::Value;

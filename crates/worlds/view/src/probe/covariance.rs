@@ -3,7 +3,7 @@
 
 use super::scene::{BATCHES, FREQUENCIES, ProbeRequest, budget, seed_at};
 use etendue_paths::{BackwardProbe, Probe};
-use etendue_pipeline::moments::{check_memory, fitting};
+use etendue_pipeline::covariance::{check_memory, fitting_options};
 use etendue_pipeline::{Reporter, Work};
 use etendue_predict::AXES;
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
@@ -77,7 +77,7 @@ pub(super) fn measured(
         let probe = probe.at_plane(index);
         let budget = budget(request.rays, seed_at(request.seed, index));
         let source = BackwardProbe::new(&probe, budget);
-        let options = fitting(plane);
+        let options = fitting_options(plane);
         let rays = budget.each * u64::from(BATCHES);
         let photons = if options.keep { rays } else { 2 * rays };
         let bar = reporter.begin(Work::Photons(photons));
