@@ -38,7 +38,7 @@ pub(crate) fn variance(
         let found = study.run(live)?.ok_or_else(|| study.constant())?;
         let index = serde_json::to_string(&study.index((&run.scene, run.method), &found));
         let index = index.map_err(Failure::cannot_run)?;
-        Ok((index, variance_table::text(&found, study.options())))
+        Ok((index, variance_table::text(&found, &study.options)))
     })
 }
 

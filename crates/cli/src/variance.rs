@@ -54,7 +54,7 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
         Ok((results, found.ok_or_else(|| study.constant())?))
     })?;
     if !args.work.quiet {
-        deliver(&variance_table::text(&found, study.options()))?;
+        deliver(&variance_table::text(&found, &study.options))?;
     }
     let figure = variance::drawn(&scene.name, &found)?;
     PictureFiles::new("variance".to_owned(), figure)?.write(&mut results)?;

@@ -8,7 +8,7 @@ use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_predict::{Theory, predict_field, test_each};
 use etendue_scene::Scene;
-use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
+use etendue_spectrum::field::{Aliasing, FieldMeasurement, FieldOptions, measure_field};
 use etendue_store::npz::{Npz, write_npy};
 use etendue_store::sealed::json;
 use etendue_store::{Failure, Method, Results, machine};
@@ -33,18 +33,7 @@ struct FieldIndex {
     /// The relative difference ‖4D − slices‖/‖slices‖ between the 4D spectrum and the slices of the
     /// same photons, and the values with which it is compared. The norms are over shared
     /// frequencies up to half of Nyquist.
-    aliasing: Option<AliasingNumbers>,
-}
-
-#[derive(Serialize)]
-struct AliasingNumbers {
-    frequencies: usize,
-    difference: f64,
-    /// The expected difference, if the spectrum beyond Nyquist is as strong as the spectrum just
-    /// below Nyquist.
-    expected: f64,
-    /// The upper bound of the difference, which holds for any photons.
-    bound: f64,
+    aliasing: Option<Aliasing>,
 }
 
 /// Fails, before any photon is traced, if the grid of a plane does not fit into memory.
@@ -97,17 +86,16 @@ impl Field {
         };
         // The prediction is divided into the same number of groups as the measurement.
         let groups = options.groups.min(case.measurement.batches().len());
-        let needed = grid.bytes().saturating_mul(groups as u64);
-        let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
+        let needed = grid
+            .bytes()
+            .saturating_mul(groups as u64)
+            .saturating_add(options.bytes(&grid, rayon::current_num_threads()));
         if needed > machine::available_memory() {
-            let measured = on_grid(
-                (case, case.method),
-                index,
-                &FieldOptions::default(),
-                reporter,
-            )?;
-            let compared = None;
-            return Ok(Self { measured, compared });
+            let options = FieldOptions::default();
+            return Ok(Self {
+                measured: on_grid((case, case.method), index, &options, reporter)?,
+                compared: None,
+            });
         }
         let mut measured = on_grid((case, case.method), index, &options, reporter)?;
         let theory = &case.theories[index];
@@ -205,18 +193,10 @@ fn write(
         width: [0, 1, 2, 3].map(|axis| grid.cell_width(axis)),
         window: plane.window,
         assignment: measured.spectrum.assignment,
-        aliasing: measured
-            .spectrum
-            .aliasing(slices, COMPARED)
-            .map(|a| AliasingNumbers {
-                frequencies: a.compared,
-                difference: a.difference,
-                expected: a.expected,
-                bound: a.bound,
-            }),
+        aliasing: measured.spectrum.aliasing(slices, COMPARED),
     };
     results.write(&format!("{name}/field.json"), &json(&index))?;
-    let mut npz = Npz::new().add("power", &full_radial.power)?;
+    let mut npz = Npz::default().add("power", &full_radial.power)?;
     if let Some(compared) = compared {
         npz = npz
             .add("predicted_power", &compared.predicted)?

@@ -17,9 +17,13 @@ pub(crate) fn inquire(
     planes: &[PlaneComparison],
     reporter: &dyn Reporter,
 ) -> Result<Vec<Inquiry>, Failure> {
-    let failed: Vec<usize> = (0..planes.len())
-        .filter(|i| disagrees_with_theory(&planes[*i].report))
-        .collect();
+    // A plane of the class `reference` has no theory. A plane may also disagree only with its
+    // first-order chain of affine maps.
+    let disagrees_with_theory = |i: &usize| {
+        let report = &planes[*i].report;
+        report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
+    };
+    let failed: Vec<usize> = (0..planes.len()).filter(disagrees_with_theory).collect();
     let judges = Judge::all(&case.scene, &failed, case.method, reporter)?;
     let test = test_of(&case.scene);
     let judged = |i: usize| {
@@ -28,12 +32,6 @@ pub(crate) fn inquire(
         Some(inquiry.map_err(Failure::cannot_run))
     };
     failed.into_iter().filter_map(judged).collect()
-}
-
-/// Checks whether a plane disagrees with its prediction, and not only with its first-order chain of
-/// affine maps.
-fn disagrees_with_theory(report: &PlaneReport) -> bool {
-    report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
 
 /// The minimum size of a disagreement, in standard errors, that a test at the level of 1 %
@@ -140,8 +138,10 @@ fn both_pass(
 /// therefore be able to detect the smaller of the two squared distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
-    let tested = failed.chi2_per_dof.zip(failed.noise_limit);
-    let tested = tested.map(|(chi2, noise)| (chi2 - 1.0) * noise * noise);
+    let tested = failed
+        .chi2_per_dof
+        .zip(failed.noise_limit)
+        .map(|(chi2, noise)| (chi2 - 1.0) * noise * noise);
     [alike, tested].map(|square| square.unwrap_or(0.0))
 }
 

@@ -43,4 +43,4 @@ pub use read_case::read_case;
 pub use reporter::{Progress, Reporter, Silent, Work};
 pub use run::{Outcome, Run, Tracing};
 pub use summary::{Inquiry, Stopwatch, Summary};
-pub use workers::{Leader, Packing, Workers, key};
+pub use workers::{Leader, Packing, Task, Workers, key};

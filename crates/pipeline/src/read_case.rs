@@ -5,7 +5,7 @@ use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::batches::{self, Held};
-use etendue_store::stored::Stored;
+use etendue_store::stored::{Index, Stored};
 use etendue_store::{Failure, MEASUREMENT, PREDICTION, predictions};
 use serde_json::json;
 use std::ops::Range;
@@ -27,8 +27,11 @@ pub fn read_case(
         .collect::<Result<Vec<Stored<Held>>, _>>()?;
     let predicted = Stored::read(predicted, PREDICTION)?;
     let first = &shards[0];
+    let experiment = |Index { scene, content, .. }: &Index<Held>| json!({"scene": scene, "method": content.method});
     for shard in &shards[1..] {
-        same_experiment(first, shard)?;
+        // Batches of different experiments are not replicates of each other.
+        first.check_scene(shard, true)?;
+        first.check_same(shard, &experiment(&first.index), &experiment(&shard.index))?;
     }
     first.check_scene(&predicted, false)?;
     shards[1..].iter().try_for_each(Stored::check_inputs)?;
@@ -51,17 +54,6 @@ pub fn read_case(
         scene,
     };
     Ok((case, inputs))
-}
-
-/// Checks that batches belong to the same experiment, because batches of different experiments
-/// are not replicates of each other.
-fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
-    first.check_scene(shard, true)?;
-    let words = |stored: &Stored<Held>| {
-        let index = &stored.index;
-        json!({"scene": index.scene, "method": index.content.method})
-    };
-    first.check_same(shard, &words(first), &words(shard))
 }
 
 fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure> {

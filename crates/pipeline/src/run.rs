@@ -8,7 +8,7 @@ use crate::load::SceneSource;
 use crate::measure::measured;
 use crate::method::{self, source};
 use crate::reporter::{Reporter, Silent, Work};
-use crate::workers::{Leader, Packing};
+use crate::workers::{Leader, Packing, Task};
 use crate::{limits, load, target};
 use etendue_compare::{Class, Prediction};
 use etendue_predict::{Applicability, predict, predict_reference};
@@ -17,6 +17,7 @@ use etendue_spectrum::{Measurement, PartialBatch, Watch, measure_watched};
 use etendue_store::{Failure, Method, predictions};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::slice;
 
 /// A scene, and how to measure it.
 #[derive(Clone, Debug)]
@@ -186,10 +187,16 @@ impl Run {
                 .iter()
                 .map(|i| Ok((*i, own(*i)?)))
                 .collect::<Result<_, Failure>>()?,
-            Some(workers) => workers.predict(scene, &told, &own, &|plane, bytes| {
-                bar.advance(1);
-                predictions::unpacked(&scene.planes[plane as usize], bytes)
-            })?,
+            Some(workers) => workers.pieces(
+                Task::Planes,
+                slice::from_ref(scene),
+                &told,
+                &own,
+                &|plane, bytes| {
+                    bar.advance(1);
+                    predictions::unpacked(&scene.planes[plane as usize], bytes)
+                },
+            )?,
         };
         (0_u32..)
             .zip(theories)

@@ -55,7 +55,8 @@ impl std::fmt::Debug for WindowLight<'_> {
 #[derive(Debug)]
 pub struct VarianceStudy<'a> {
     light: WindowLight<'a>,
-    options: VarianceOptions,
+    /// What is measured, predicted and found.
+    pub options: VarianceOptions,
 }
 
 /// What is measured, predicted and found.
@@ -147,9 +148,11 @@ impl<'a> VarianceStudy<'a> {
         limits::check_one_light(scene, "a prediction of Monte Carlo errors")?;
         let plane = planes::chosen(scene, plane, options.arguments)?;
         let mut scene = with_box_window(scene, plane, options.frequencies);
-        let points = options.light_points;
-        let points = points.then(|| LightPoints::new(&scene, options.frequencies));
-        let points = points.transpose().map_err(failure)?;
+        let points = options
+            .light_points
+            .then(|| LightPoints::new(&scene, options.frequencies))
+            .transpose()
+            .map_err(failure)?;
         if let Some(points) = &points {
             scene.planes = vec![points.seen.clone()];
         }
@@ -175,28 +178,24 @@ impl<'a> VarianceStudy<'a> {
         Ok(Self { light, options })
     }
 
-    /// Returns the window of the plane, as half-widths along (x, u, y, v).
-    fn half_widths(&self) -> [f64; 4] {
-        let window = self.light.plane.window;
-        [window.x, window.u, window.y, window.v].map(|p| p.half_width())
-    }
-
     /// Fails if the grids of all groups of photons do not fit into memory.
     pub fn check_memory(&self) -> Result<(), Failure> {
-        let options = field_options();
-        let grid = options.grid(&self.light.plane);
-        let arguments = self.options.arguments;
-        let argument = arguments.with("frequencies", self.options.frequencies);
-        let name = format!("{argument}: the grid");
+        let Self { light, options } = self;
+        let argument = options.arguments.with("frequencies", options.frequencies);
         // Grids of groups are kept, and then their spectra are.
-        check_grid(&name, &grid, &options)
+        let kept = field_options();
+        check_grid(
+            &format!("{argument}: the grid"),
+            &kept.grid(&light.plane),
+            &kept,
+        )
     }
 
     /// Measures the plane, and predicts and finds the variances of each sampler. Returns `None` if
     /// the radiance is the same over the whole window.
     pub fn run(&self, reporter: &dyn Reporter) -> Result<Option<PlaneVariance>, Failure> {
         let Self { light, options } = self;
-        let (plane, seed) = (&light.plane, light.seed);
+        let (plane, window, seed) = (&light.plane, light.plane.window, light.seed);
         let photons = (&*light.source, light.batches);
         let bar = reporter.begin(Work::Photons(light.photons));
         let power = MeasuredPower::measure(plane, photons, options.frequencies, &|photons| {
@@ -233,7 +232,7 @@ impl<'a> VarianceStudy<'a> {
             plane: plane.name.clone(),
             seed,
             photons: light.photons,
-            half_widths: self.half_widths(),
+            half_widths: [window.x, window.u, window.y, window.v].map(|p| p.half_width()),
             mean_by_photons: power.mean,
             inside: power.spectrum.total() / moments.variance.value,
             has_last_octave: power.spectrum.has_last_octave(),
@@ -278,12 +277,6 @@ impl<'a> VarianceStudy<'a> {
             .iter()
             .map(|s| s.counts(counts.all()).len() * curves(s));
         sets.sum::<usize>() * *shifts as usize
-    }
-
-    /// Returns what is measured, predicted and found.
-    #[must_use]
-    pub fn options(&self) -> &VarianceOptions {
-        &self.options
     }
 
     /// Returns the content of the index of a scene, without its list of files. `scene` is the scene

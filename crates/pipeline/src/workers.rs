@@ -13,5 +13,6 @@ mod packing;
 
 pub use leader::Leader;
 pub use link::{Workers, key};
-pub(crate) use message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
+pub use message::Task;
+pub(crate) use message::{Order, Packed, Piece, WorkerMessage, packed, unpack};
 pub use packing::Packing;

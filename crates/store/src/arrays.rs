@@ -66,7 +66,7 @@ impl SliceArrays {
 
 fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let arrays = SliceArrays::of(plane);
-    let npz = Npz::new()
+    let npz = Npz::default()
         .add("azimuth", &arrays.azimuth)?
         .add("measured", &arrays.measured)?
         .add("predicted", &arrays.predicted)?
@@ -81,7 +81,7 @@ fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
 
 fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let grid = plane.measured.grid;
-    Npz::new()
+    Npz::default()
         .add("power", &plane.radial.power)?
         .add("predicted_power", &plane.predicted_radial)?
         .add("sigma", &plane.radial.sigma)?

@@ -38,9 +38,9 @@ pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
 /// Writes all batches of a measurement.
 pub fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
     let batches: Vec<&Batch> = measurement.batches().collect();
-    let files = files(measurement.planes(), &batches)?;
-    let mut files = files.into_iter();
-    files.try_for_each(|(name, bytes)| results.write(&name, &bytes))
+    files(measurement.planes(), &batches)?
+        .into_iter()
+        .try_for_each(|(name, bytes)| results.write(&name, &bytes))
 }
 
 /// Returns the files of some batches at `planes`: name and content of each.
@@ -69,7 +69,9 @@ pub fn files(
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
-    Npz::new().add("batch", &numbers)?.add("emitted", &emitted)
+    Npz::default()
+        .add("batch", &numbers)?
+        .add("emitted", &emitted)
 }
 
 fn at_plane(plane: &VirtualPlane, batches: &[&Batch], index: usize) -> Result<Vec<u8>, Failure> {

@@ -66,12 +66,8 @@ impl CheckpointStore {
 
     /// Returns the progress of a batch; `None` if it is not begun.
     pub fn progress(&self, batch: u32) -> Option<BatchProgress> {
-        let furthest = self.furthest().remove(&batch)?;
-        Some(
-            furthest
-                .parts
-                .map_or(BatchProgress::Done, BatchProgress::Parts),
-        )
+        let parts = self.furthest().remove(&batch)?.parts;
+        Some(parts.map_or(BatchProgress::Done, BatchProgress::Parts))
     }
 
     /// Returns the file with the most parts for each batch.

@@ -15,10 +15,14 @@ pub fn available_memory() -> u64 {
         limit("Max address space").zip(kilobytes("/proc/self/status", "VmSize:")),
         limit("Max data size").zip(kilobytes("/proc/self/status", "VmData:")),
     ];
-    let limits = limits.into_iter().flatten();
-    let limits = limits.map(|(limit, used)| limit.saturating_sub(used));
-    let all = limits.chain(machine).chain(control_groups());
-    all.min().unwrap_or(u64::MAX)
+    limits
+        .into_iter()
+        .flatten()
+        .map(|(limit, used)| limit.saturating_sub(used))
+        .chain(machine)
+        .chain(control_groups())
+        .min()
+        .unwrap_or(u64::MAX)
 }
 
 /// Resolves a scene file for this machine. The meshes of the scene are in `folder`, and messages

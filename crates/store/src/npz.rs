@@ -92,27 +92,17 @@ where
 }
 
 /// A file of named arrays that is being written.
+#[derive(Debug)]
 pub struct Npz(ZipWriter<Cursor<Vec<u8>>>);
 
-impl fmt::Debug for Npz {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Npz").finish_non_exhaustive()
-    }
-}
-
 impl Default for Npz {
+    /// Returns a file without arrays.
     fn default() -> Self {
-        Self::new()
+        Self(ZipWriter::new(Cursor::new(Vec::new())))
     }
 }
 
 impl Npz {
-    /// Returns a file without arrays.
-    #[must_use]
-    pub fn new() -> Self {
-        Self(ZipWriter::new(Cursor::new(Vec::new())))
-    }
-
     /// Adds an array by its name.
     pub fn add<A, S, D>(mut self, name: &str, array: &ArrayBase<S, D>) -> Result<Self, Failure>
     where
@@ -166,9 +156,8 @@ pub struct NpzFile {
 
 impl fmt::Debug for NpzFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let path = &self.path;
         f.debug_struct("NpzFile")
-            .field("path", path)
+            .field("path", &self.path)
             .finish_non_exhaustive()
     }
 }
@@ -180,14 +169,13 @@ impl NpzFile {
     /// Returns the file with these bytes. Messages name the file as `path`.
     pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
-        match ZipArchive::new(Cursor::new(bytes)) {
-            Ok(archive) => Ok(Self {
-                path,
-                archive,
-                length,
-            }),
-            Err(e) => Err(Failure::bad_input(format!("{}: {e}", path.display()))),
-        }
+        let archive = ZipArchive::new(Cursor::new(bytes))
+            .map_err(|e| Failure::bad_input(format!("{}: {e}", path.display())))?;
+        Ok(Self {
+            path,
+            archive,
+            length,
+        })
     }
 
     /// Returns the array `name`, in C order. The array must have the given shape and hold finite
@@ -303,17 +291,16 @@ impl NpzFile {
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();
-        let read = match self.archive.by_name(&format!("{name}.npy")) {
-            Ok(file) => file
-                .take(u64::try_from(limit).unwrap_or(u64::MAX))
-                .read_to_end(&mut bytes)
-                .map_err(|e| e.to_string()),
-            Err(e) => Err(e.to_string()),
-        };
-        match read {
-            Ok(_) => Ok(bytes),
-            Err(e) => Err(self.fault(name, e)),
-        }
+        let limit = u64::try_from(limit).unwrap_or(u64::MAX);
+        self.archive
+            .by_name(&format!("{name}.npy"))
+            .map_err(|e| e.to_string())
+            .and_then(|file| {
+                let read = file.take(limit).read_to_end(&mut bytes);
+                read.map_err(|e| e.to_string())
+            })
+            .map_err(|e| self.fault(name, e))?;
+        Ok(bytes)
     }
 }
 

@@ -106,32 +106,26 @@ fn stored(
         depth,
     } = prediction;
     let values: Array1<f64> = parameters.iter().map(|p| p.value).collect();
-    let [azimuths, rho, nu] = slices.grid.half_shape();
-    let mut derivatives = Array4::<Complex>::zeros([parameters.len(), azimuths, rho, nu]);
-    for (mut row, parameter) in derivatives.outer_iter_mut().zip(parameters) {
-        row.assign(&parameter.derivative.half);
-    }
-    let linear = first_order
+    let grid = &slices.grid;
+    let linear_replicates = first_order
         .as_ref()
-        .map(|f| std::slice::from_ref(&f.slices));
-    let linear_replicates = first_order.as_ref().map(|f| f.replicates.as_slice());
-    let linear_replicates = linear_replicates.unwrap_or_default();
-    let bytes = Npz::new()
+        .map_or(&[][..], |chain| &chain.replicates);
+    let bytes = Npz::default()
         .add("slices", &slices.half)?
         .add(
             "first_order",
-            &stacked(&slices.grid, linear.unwrap_or_default()),
+            &stacked(grid, first_order.iter().map(|chain| &chain.slices)),
         )?
         .add("projection", &projection.values)?
         .add("unblocked", &arr0(*unblocked))?
         .add("values", &values)?
-        .add("derivatives", &derivatives)?
-        .add("replicates", &stacked(&slices.grid, replicates))?
         .add(
-            "first_order_replicates",
-            &stacked(&slices.grid, linear_replicates),
+            "derivatives",
+            &stacked(grid, parameters.iter().map(|p| &p.derivative)),
         )?
-        .add_half_axes(&slices.grid)?
+        .add("replicates", &stacked(grid, replicates))?
+        .add("first_order_replicates", &stacked(grid, linear_replicates))?
+        .add_half_axes(grid)?
         .bytes()?;
     let words = PredictedPlane {
         name: plane.name.clone(),
@@ -153,7 +147,11 @@ fn stored(
 }
 
 /// Returns slices as one array, [slices, azimuth, ρ ≥ 0, ν].
-fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
+fn stacked<'a>(
+    grid: &SliceGrid,
+    all: impl IntoIterator<Item = &'a Slices, IntoIter: ExactSizeIterator>,
+) -> Array4<Complex> {
+    let all = all.into_iter();
     let [azimuths, rho, nu] = grid.half_shape();
     let mut stacked = Array4::zeros([all.len(), azimuths, rho, nu]);
     for (mut row, slices) in stacked.outer_iter_mut().zip(all) {

@@ -236,12 +236,12 @@ pub fn check_earlier(
     force: bool,
     arguments: ArgumentStyle,
 ) -> Result<(), Failure> {
-    let path = folder.join(index);
-    let earlier = read_file(&path, MAX_INDEX_BYTES).ok();
-    let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let Some(mut earlier) =
-        earlier.and_then(|mut earlier| Some(earlier.get_mut("scene_file")?.take()))
-    else {
+    let earlier = || {
+        let bytes = read_file(&folder.join(index), MAX_INDEX_BYTES).ok()?;
+        let mut earlier: Value = serde_json::from_slice(&bytes).ok()?;
+        Some(earlier.get_mut("scene_file")?.take())
+    };
+    let Some(mut earlier) = earlier() else {
         return Ok(());
     };
     let mut now = serde_json::to_value(&scene.file).unwrap_or_default();

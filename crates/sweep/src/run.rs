@@ -7,7 +7,7 @@ use crate::request::SweepRequest;
 use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::values::{Sweep, SweepPoint, short, shown};
 use etendue_field::{decimals, fixed, tidy, uncertain};
-use etendue_pipeline::{Leader, Reporter, Run, Work, load};
+use etendue_pipeline::{Leader, Reporter, Run, Task, Work, load};
 use etendue_report::pictures::PictureFiles;
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::sealed::json;
@@ -92,9 +92,9 @@ fn check_fields(request: &SweepRequest, folder: &Path, sweeps: &[Sweep]) -> Resu
 }
 
 fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
-    let pictures = pictures::NAMES.iter();
-    let pictures =
-        pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
+    let pictures = pictures::NAMES
+        .iter()
+        .flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
     Plan {
         index: SWEEP,
         files: pictures.chain([TABLE.to_owned()]).collect(),
@@ -144,33 +144,39 @@ fn run_all(
         kept(results, &all.summary(point, &Unshown(&*bar))?)
     };
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
-    let missing = (0..).zip(&summaries);
-    let missing = missing.filter(|(_, summary)| summary.is_none());
-    let missing: Vec<u32> = missing.map(|(point, _)| point).collect();
+    let missing: Vec<u32> = (0..)
+        .zip(&summaries)
+        .filter(|(_, summary)| summary.is_none())
+        .map(|(point, _)| point)
+        .collect();
     bar.set((names.len() - missing.len()) as u64);
     let found: BTreeMap<u32, Value> = match workers {
         None => missing
             .iter()
             .map(|i| Ok((*i, own(*i)?)))
             .collect::<Result<_, Failure>>()?,
-        Some(workers) => workers.run(&all.scenes, &missing, &own, &|point, summary| {
-            kept(claimed(point)?, summary)
-        })?,
+        Some(workers) => workers.pieces(
+            Task::Points,
+            &all.scenes,
+            &missing,
+            &own,
+            &|point, summary| kept(claimed(point)?, summary),
+        )?,
     };
     drop(bar);
     for (point, summary) in found {
         summaries[point as usize] = Some(summary);
     }
     let points = all.points.iter().zip(names).zip(summaries);
-    let found = points.map(|((point, folder), summary)| {
-        let summary = summary.ok_or_else(|| Failure::cannot_run("a point was not run"))?;
-        Ok(PointResult {
-            point: point.clone(),
-            folder,
-            summary,
+    points
+        .map(|((point, folder), summary)| {
+            Ok(PointResult {
+                point: point.clone(),
+                folder,
+                summary: summary.ok_or_else(|| Failure::cannot_run("a point was not run"))?,
+            })
         })
-    });
-    found.collect()
+        .collect()
 }
 
 /// Returns the folders of the points. The function checks that these folders are inside the folder

@@ -4,7 +4,6 @@
 use super::link::{Workers, key};
 use super::message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
 use super::packing::Packing;
-use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, PartialBatch, Watch, measure_watched};
@@ -123,35 +122,13 @@ impl<'a> Leader<'a> {
         Ok((all, begun.into_values().chain(stopped).collect()))
     }
 
-    /// Predicts planes of a scene: `own` predicts a plane in this process, and `unpacked` decodes
-    /// a prediction that another process has sent.
-    pub fn predict(
+    /// Processes pieces of work on `scenes` that are handled one by one. Each piece is a plane to
+    /// predict or a point of a sweep. `own` processes a piece in this process, and `unpacked`
+    /// decodes or stores a piece that another process has sent.
+    pub fn pieces<T: Send>(
         &self,
-        scene: &Scene,
-        planes: &[u32],
-        own: &dyn Fn(u32) -> Result<Prediction, Failure>,
-        unpacked: &Unpacked<'_, Prediction>,
-    ) -> Result<BTreeMap<u32, Prediction>, Failure> {
-        self.pieces(&key([scene]), Task::Planes, planes, own, unpacked)
-    }
-
-    /// Runs the points of a sweep over these scenes: `own` runs a point in this process, and
-    /// `unpacked` stores a point that another process has sent.
-    pub fn run<T: Send>(
-        &self,
-        scenes: &[Scene],
-        points: &[u32],
-        own: &dyn Fn(u32) -> Result<T, Failure>,
-        unpacked: &Unpacked<'_, T>,
-    ) -> Result<BTreeMap<u32, T>, Failure> {
-        self.pieces(&key(scenes), Task::Points, points, own, unpacked)
-    }
-
-    /// Processes pieces of work that are handled one by one.
-    fn pieces<T: Send>(
-        &self,
-        key: &str,
         task: Task,
+        scenes: &[Scene],
         numbers: &[u32],
         own: &dyn Fn(u32) -> Result<T, Failure>,
         unpacked: &Unpacked<'_, T>,
@@ -175,7 +152,7 @@ impl<'a> Leader<'a> {
             Ok(())
         };
         let exchange = (&give as &Given<'_>, &mut take as &mut Taken<'_>);
-        let mut all: BTreeMap<u32, T> = self.share(key, task, &left, all_own, exchange)?;
+        let mut all: BTreeMap<u32, T> = self.share(&key(scenes), task, &left, all_own, exchange)?;
         all.append(&mut others);
         Ok(all)
     }

@@ -16,7 +16,7 @@ pub(crate) enum WorkerMessage {
 
 /// The kind of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Task {
+pub enum Task {
     /// Batches to measure.
     Batches,
     /// Planes to predict.

@@ -3,14 +3,16 @@
 use super::spectrum::FieldSpectrum;
 use super::spline::mean_square_alias;
 use etendue_field::{Complex, FrequencyAxis, Slices};
+use serde::Serialize;
 
 /// A comparison of a 4D spectrum with the alias-free slices of the same photons, at the frequencies
 /// that both have.
 ///
 /// All values are norms over the shared frequencies, divided by the norm of the slices.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Aliasing {
     /// Number of frequencies compared; only one frequency of each conjugate pair counts.
+    #[serde(rename = "frequencies")]
     pub compared: usize,
     /// The difference between the spectrum and the slices. It includes the error of the slices,
     /// which is below 2·10⁻⁷ Σw at each frequency.

@@ -16,7 +16,7 @@ pub(crate) fn write_exr<'a>(
     made_from: &Value,
 ) -> Result<Npz, Failure> {
     let mut parts = Vec::new();
-    let mut npz = Npz::new();
+    let mut npz = Npz::default();
     for (name, values) in layers {
         #[expect(
             clippy::cast_possible_truncation,
