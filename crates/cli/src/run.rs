@@ -8,11 +8,11 @@ use crate::report;
 use crate::threads::on_threads;
 use crate::warnings;
 use etendue_compare::Verdict;
-use etendue_pipeline::photons::{self, Save};
+use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Checkpointing, Leader, Run, Stopwatch, Tracing, field};
 use etendue_report::page::NAME;
 use etendue_report::table::word;
-use etendue_report::{OutputOptions, check_explorer, plan};
+use etendue_report::{OutputOptions, announcement, check_explorer, plan};
 use etendue_scene::{Color, Scene};
 use etendue_store::Failure;
 use etendue_store::checkpoints::CheckpointStore;
@@ -156,9 +156,12 @@ fn announce(args: &RunArgs, scene: &Scene) {
     if args.is_quiet() {
         return;
     }
-    let saved = args.save.iter();
-    for announcement in saved.filter_map(|save| photons::announcement(scene, *save)) {
-        say(&announcement);
+    for text in args
+        .save
+        .iter()
+        .filter_map(|save| announcement(scene, *save))
+    {
+        say(&text);
     }
 }
 

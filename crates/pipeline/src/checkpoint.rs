@@ -99,12 +99,6 @@ pub(crate) fn measured(
     Ok(Some(all))
 }
 
-/// Returns the approximate number of photons of a batch that have been traced.
-fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
-    let parts = u64::from(source.parts(batch.index));
-    source.emitted(batch.index) / parts * u64::from(batch.parts)
-}
-
 /// Returns the error of a run that exceeded its time limit; the error states which batches are
 /// stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
@@ -154,7 +148,11 @@ impl Keeper<'_> {
                     path.display()
                 ));
             }
-            let photons = begun.values().map(|batch| photons_of(source, batch));
+            // The number of photons in the finished parts of a batch is approximate.
+            let photons = begun.values().map(|batch| {
+                let parts = u64::from(source.parts(batch.index));
+                source.emitted(batch.index) / parts * u64::from(batch.parts)
+            });
             self.bar.set(all.emitted() + photons.sum::<u64>());
         }
         let mut missing: Vec<PartialBatch> = lit

@@ -106,11 +106,10 @@ fn of_plane(
     let passes = if options.keep { 1 } else { 2 };
     let bar = reporter.begin(Work::Photons(passes * measurement.emitted()));
     let batches = 0..u32::try_from(measurement.batches().len()).unwrap_or(u32::MAX);
-    let field = measure_field(source, index, plane, batches, &options, &|photons| {
-        bar.advance(photons);
-    });
+    let progress = |photons| bar.advance(photons);
+    let field = measure_field(source, index, plane, batches, &options, &progress)
+        .map_err(Failure::cannot_run)?;
     drop(bar);
-    let field = field.map_err(Failure::cannot_run)?;
     let Some(covariance) = &field.covariance else {
         return Err(Failure::cannot_run(
             "a plane has no covariance: this is a bug in etendue",

@@ -166,11 +166,11 @@ fn hidden_from_photons(
 /// plane.
 fn reached(mut alone: Scene, method: Method, photons: u64) -> Result<u64, Failure> {
     alone.run.photons = photons;
-    let window = &alone.planes[0].window;
+    let source = source(&alone, method)?;
     Ok(inside(
-        &*source(&alone, method)?,
+        &*source,
         0,
-        window,
+        &alone.planes[0].window,
         alone.run.batches,
     ))
 }

@@ -2,7 +2,9 @@
 
 use crate::method;
 use crate::run::Run;
-use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
+use crate::workers::{
+    Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack, whole,
+};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::{PartialBatch, Watch, measure_watched};
@@ -54,16 +56,6 @@ pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
     let _ = workers.receive();
 }
 
-/// Returns a finished piece of work with its bytes.
-fn whole(number: u32, bytes: Vec<u8>) -> Packed {
-    let piece = Piece {
-        number,
-        parts: None,
-        length: bytes.len(),
-    };
-    (piece, bytes)
-}
-
 /// Measures batches until the time when they must be sent back.
 fn measured(
     run: &Run,
@@ -96,14 +88,12 @@ impl Watch for Until {
     }
 }
 
-/// The results of an order, with their bytes.
-type Done = Result<Vec<Packed>, Failure>;
-
-/// Carries out each order by calling `done`, until an empty order arrives.
+/// Carries out each order by calling `done`, which returns the results of the order with their
+/// bytes. Returns when an empty order arrives.
 fn serve(
     workers: &dyn Workers,
     key: &str,
-    done: &mut dyn FnMut(&Order, &[u8]) -> Done,
+    done: &mut dyn FnMut(&Order, &[u8]) -> Result<Vec<Packed>, Failure>,
 ) -> Result<(), Failure> {
     let ready = WorkerMessage::Ready {
         key: key.to_owned(),

@@ -45,11 +45,11 @@ impl Judged {
 
 /// Returns the comparison of each plane, with its verdict.
 pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
-    let each = case.predictions.par_iter().enumerate();
-    let compared = each.map(|(i, prediction)| {
+    let compared = |(i, prediction)| {
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
-    });
-    let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
+    };
+    let each = case.predictions.par_iter().enumerate();
+    let mut planes = each.map(compared).collect::<Result<Vec<_>, _>>()?;
     enough_photons::leave_open(case, &mut planes)?;
     enough_photons::leave_hidden_lights_open(case, &mut planes)?;
     enough_photons::name_other_method(case, &mut planes);

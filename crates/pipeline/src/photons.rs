@@ -5,7 +5,6 @@ mod file;
 use crate::case::MeasuredScene;
 use crate::method::source;
 use etendue_field::{Crossing, PhotonSource};
-use etendue_scene::Scene;
 use etendue_store::sealed::json;
 use etendue_store::{Failure, Results};
 use file::{Content, Rays};
@@ -47,17 +46,18 @@ const INDEX: &str = "photons.json";
 /// Returns the file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
-    let name = file_of(save).map(|(name, ..)| name);
+    let name = file_of(save).map(|(name, _)| name);
     name.into_iter().chain(index).collect()
 }
 
-/// Describes the file with the photons of a plane: returns its name, the name of its format in
-/// commands, and its number of bytes per photon.
-fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
+/// Describes the file with the photons of a plane: returns its name, and its number of bytes per
+/// photon.
+#[must_use]
+pub fn file_of(save: Save) -> Option<(&'static str, u64)> {
     match save {
-        Save::Photons => Some(("photons.npy", "photons", 40)),
-        Save::Mcpl => Some(("photons.mcpl", "mcpl", 64)),
-        Save::Tm25 => Some(("photons.tm25ray", "tm25", 28)),
+        Save::Photons => Some(("photons.npy", 40)),
+        Save::Mcpl => Some(("photons.mcpl", 64)),
+        Save::Tm25 => Some(("photons.tm25ray", 28)),
         Save::Field | Save::Explorer => None,
     }
 }
@@ -72,31 +72,11 @@ struct PhotonsIndex {
     emitted: Vec<u64>,
 }
 
-/// Describes the largest possible size of the files, which is reached if every photon crosses
-/// every plane.
-pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
-    let (_, option, row) = file_of(save)?;
-    let planes = scene.planes.len();
-    let each = row * scene.run.photons;
-    let [all, each] = [each * planes as u64, each].map(size);
-    Some(format!(
-        "--save {option}: at most {all} on disk, {each} for each of {planes} planes"
-    ))
-}
-
-fn size(bytes: u64) -> String {
-    let mut units = ["MB", "GB", "TB", "PB"].iter().zip([1e6, 1e9, 1e12, 1e15]);
-    let bytes = bytes as f64;
-    let found = units.rfind(|(_, unit)| bytes >= *unit);
-    let (name, unit) = found.unwrap_or((&"MB", 1e6));
-    format!("{:.1} {name}", bytes / unit)
-}
-
 /// Traces the same photons again, plane by plane, and streams them to disk, so that memory holds
 /// only one block of photons. A TM-25 file begins with the flux of the photons, so the photons
 /// are traced once more to compute this flux.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
-    let Some((name, ..)) = file_of(save) else {
+    let Some((name, _)) = file_of(save) else {
         return Ok(());
     };
     let source = source(&case.scene, case.method)?;

@@ -80,10 +80,7 @@ impl Summary {
             ..
         } = case;
         let reports: Vec<PlaneReport> = planes.iter().map(|p| p.report.clone()).collect();
-        let any = |verdict| reports.iter().any(|plane| plane.verdict == verdict);
-        let worst = [Verdict::Fail, Verdict::Undecided]
-            .into_iter()
-            .find(|v| any(*v));
+        let verdicts = reports.iter().map(|plane| plane.verdict);
         let sums = method.keeps_ledger().then(|| measurement.ledger());
         let photons = measurement.emitted();
         Self {
@@ -98,7 +95,7 @@ impl Summary {
             batches: measurement.batches().len(),
             ledger: sums.map(|sums| sums.scaled(1.0 / photons as f64)),
             ledger_imbalance: sums.map(|sums| sums.imbalance()),
-            verdict: worst.unwrap_or(Verdict::Pass),
+            verdict: verdicts.fold(Verdict::Pass, Verdict::and),
             alpha: scene.run.alpha,
             planes: reports,
             inquiries,

@@ -14,5 +14,5 @@ mod packing;
 pub use leader::Leader;
 pub use link::{Workers, key};
 pub use message::Task;
-pub(crate) use message::{Order, Packed, Piece, WorkerMessage, packed, unpack};
+pub(crate) use message::{Order, Packed, Piece, WorkerMessage, packed, unpack, whole};
 pub use packing::Packing;

@@ -22,4 +22,4 @@ pub mod variance_table;
 mod write_result;
 
 pub use shell::shell_word;
-pub use write_result::{OutputOptions, check_explorer, plan, save, write_result};
+pub use write_result::{OutputOptions, announcement, check_explorer, plan, save, write_result};

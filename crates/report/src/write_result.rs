@@ -69,6 +69,27 @@ pub fn plan(
     }
 }
 
+/// Describes the largest possible size of the files, which is reached if every photon crosses
+/// every plane.
+pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
+    let (_, row) = photons::file_of(save)?;
+    let planes = scene.planes.len();
+    let each = row * scene.run.photons;
+    let [all, each] = [each * planes as u64, each].map(size);
+    Some(format!(
+        "--save {}: at most {all} on disk, {each} for each of {planes} planes",
+        save.name()
+    ))
+}
+
+fn size(bytes: u64) -> String {
+    let mut units = ["MB", "GB", "TB", "PB"].iter().zip([1e6, 1e9, 1e12, 1e15]);
+    let bytes = bytes as f64;
+    let found = units.rfind(|(_, unit)| bytes >= *unit);
+    let (name, unit) = found.unwrap_or((&"MB", 1e6));
+    format!("{:.1} {name}", bytes / unit)
+}
+
 /// Writes all files, with the summary last.
 pub fn write_result(
     case: &MeasuredScene,

@@ -20,10 +20,8 @@ pub fn write(
     let name = &plane.report.name;
     results.write(&format!("{name}/slices.npz"), &slices(plane)?)?;
     results.write(&format!("{name}/radial.npz"), &radial(plane)?)?;
-    results.write(
-        &format!("{name}/radial.exr"),
-        &radial_exr(made_from, plane)?,
-    )
+    let exr = radial_exr(made_from, plane)?;
+    results.write(&format!("{name}/radial.exr"), &exr)
 }
 
 /// The slices of a plane, as in `slices.npz`.
@@ -122,9 +120,8 @@ fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, 
     ];
     let (width, height) = power.dim();
     let parts = parts.map(|(name, values)| {
-        let pixels = (0..height)
-            .rev()
-            .flat_map(|j| (0..width).map(move |i| (i, j)));
+        let rows = (0..height).rev();
+        let pixels = rows.flat_map(|j| (0..width).map(move |i| (i, j)));
         #[expect(
             clippy::cast_possible_truncation,
             reason = "EXR viewers expect 32-bit numbers"

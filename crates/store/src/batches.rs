@@ -59,9 +59,12 @@ pub fn files(
     });
     let flux = Array2::from(flux.collect::<Vec<_>>());
     let ledger = numbered(batches)?.add("ledger", &flux)?.bytes()?;
-    let each = planes.iter().enumerate();
-    let each = each.map(|(i, plane)| Ok((file_of(plane), at_plane(plane, batches, i)?)));
-    each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
+    planes
+        .iter()
+        .enumerate()
+        .map(|(i, plane)| Ok((file_of(plane), at_plane(plane, batches, i)?)))
+        .chain([Ok((LEDGER.to_owned(), ledger))])
+        .collect()
 }
 
 /// Returns a new file with an array of the numbers of the batches. Each row of later arrays belongs
@@ -87,11 +90,8 @@ fn at_plane(plane: &VirtualPlane, batches: &[&Batch], index: usize) -> Result<Ve
     let tally = Array2::from(tally.collect::<Vec<_>>());
     let npz = numbered(batches)?.add("tally", &tally)?;
     let npz = add_stacked(npz, "slices", each().map(|b| b.slices.half.view()))?;
-    let npz = add_stacked(
-        npz,
-        "projection",
-        each().map(|b| b.projection.values.view()),
-    )?;
+    let projections = each().map(|b| b.projection.values.view());
+    let npz = add_stacked(npz, "projection", projections)?;
     let moments = each().map(|batch| batch.moments.0);
     let moments = Array2::from(moments.collect::<Vec<_>>());
     npz.add("moments", &moments)?

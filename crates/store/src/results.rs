@@ -314,9 +314,11 @@ impl Drop for Results {
 /// Creates a folder and the folders above it. Returns those that were not there, the innermost
 /// first.
 pub(crate) fn make_folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let above = folder.ancestors();
-    let missing = above.take_while(|path| *path != Path::new("") && !path.exists());
-    let missing = missing.map(Path::to_owned).collect();
+    let missing = folder
+        .ancestors()
+        .take_while(|path| *path != Path::new("") && !path.exists())
+        .map(Path::to_owned)
+        .collect();
     fs::create_dir_all(folder).inspect_err(|_| remove_folders(&missing))?;
     Ok(missing)
 }
@@ -364,9 +366,11 @@ pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
-    let files = tree["files"].as_object()?.iter();
-    let files = files.map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned())));
-    files.collect()
+    tree["files"]
+        .as_object()?
+        .iter()
+        .map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned())))
+        .collect()
 }
 
 /// Returns the hash of a file, as listed in the index of a complete result.

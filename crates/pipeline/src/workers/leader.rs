@@ -2,7 +2,7 @@
 //! receives their results.
 
 use super::link::{Workers, key};
-use super::message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
+use super::message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack, whole};
 use super::packing::Packing;
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
@@ -139,14 +139,7 @@ impl<'a> Leader<'a> {
             let taken = std::iter::from_fn(|| left.next());
             taken.map(|number| Ok((number, own(number)?))).collect()
         };
-        let give = |number| {
-            let piece = Piece {
-                number,
-                parts: None,
-                length: 0,
-            };
-            Ok((piece, Vec::new()))
-        };
+        let give = |number| Ok(whole(number, Vec::new()));
         let mut take = |piece: &Piece, bytes: &[u8]| {
             others.insert(piece.number, unpacked(piece.number, bytes)?);
             Ok(())

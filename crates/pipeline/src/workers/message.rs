@@ -48,6 +48,16 @@ pub(crate) struct Order {
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
+/// Returns a piece that is complete or not begun, with its bytes.
+pub(crate) fn whole(number: u32, bytes: Vec<u8>) -> Packed {
+    let piece = Piece {
+        number,
+        parts: None,
+        length: bytes.len(),
+    };
+    (piece, bytes)
+}
+
 /// Returns the bytes of a message: the bytes of `words`, which describes the pieces, followed by
 /// the bytes of the pieces.
 pub(crate) fn packed<T: Serialize>(
