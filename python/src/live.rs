@@ -97,10 +97,6 @@ impl Live {
 }
 
 impl Reporter for Live {
-    fn note(&self, _text: &str) {}
-
-    fn warn(&self, _text: &str) {}
-
     fn begin(&self, work: Work) -> Box<dyn Progress + '_> {
         self.check();
         let (verb, things, total) = match work {
@@ -143,8 +139,6 @@ impl Progress for Bar<'_> {
             counted.done.store(steps, Ordering::Relaxed);
         }
     }
-
-    fn name(&self, _step: &str) {}
 }
 
 impl Drop for Bar<'_> {

@@ -1,6 +1,6 @@
 //! Checks that the photons and rays of a failed plane are enough for its verdict.
 
-use crate::case::MeasuredScene;
+use crate::measure::MeasuredScene;
 use crate::method::{judge_of, source};
 use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
 use etendue_field::{Crossing, PhotonSource, Window, percent};

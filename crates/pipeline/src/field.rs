@@ -1,7 +1,7 @@
 //! `--save field`: the light field of each plane on a 4D grid, and its full radial spectrum.
 
-use crate::case::MeasuredScene;
 use crate::limits;
+use crate::measure::MeasuredScene;
 use crate::method::{judge_of, source};
 use crate::reporter::{Reporter, Work};
 use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField};

@@ -23,12 +23,11 @@ pub fn follow_run(workers: &dyn Workers, run: &Run) -> Result<(), Failure> {
             order.pieces.iter().map(predicted).collect()
         }
         _ => {
-            if source.is_none() {
-                source = Some(method::source(&run.scene, run.method)?);
-            }
-            source
-                .as_deref()
-                .map_or(Ok(Vec::new()), |source| measured(run, source, order, bytes))
+            let source = match &mut source {
+                Some(source) => source,
+                none => none.insert(method::source(&run.scene, run.method)?),
+            };
+            measured(run, &**source, order, bytes)
         }
     };
     serve(workers, &key([&run.scene]), &mut done)

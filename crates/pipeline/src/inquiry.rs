@@ -1,7 +1,7 @@
 //! Investigates planes that fail, by measuring them with another tracer.
 
-use crate::case::MeasuredScene;
 use crate::judge::Judge;
+use crate::measure::MeasuredScene;
 use crate::reporter::Reporter;
 use crate::summary::Inquiry;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Test, Verdict, compare};

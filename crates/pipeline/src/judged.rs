@@ -1,7 +1,7 @@
 //! Collects the results of a scene that has been measured and predicted.
 
-use crate::case::MeasuredScene;
 use crate::inquiry::inquire;
+use crate::measure::MeasuredScene;
 use crate::reporter::{Reporter, Work};
 use crate::summary::Summary;
 use crate::{enough_photons, field};

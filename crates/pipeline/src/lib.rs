@@ -10,7 +10,6 @@
     reason = "a Failure holds the complete message for the user"
 )]
 
-mod case;
 mod checkpoint;
 pub mod covariance;
 mod enough_photons;
@@ -34,11 +33,10 @@ mod target;
 pub mod variance;
 mod workers;
 
-pub use case::MeasuredScene;
 pub use checkpoint::Checkpointing;
 pub use follower::{follow_points, follow_run, report_failure};
 pub use judged::{Judged, judged};
-pub use measure::measured;
+pub use measure::{MeasuredScene, measured};
 pub use read_case::read_case;
 pub use reporter::{Progress, Reporter, Silent, Work};
 pub use run::{Outcome, Run, Tracing};

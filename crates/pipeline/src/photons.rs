@@ -2,7 +2,7 @@
 
 mod file;
 
-use crate::case::MeasuredScene;
+use crate::measure::MeasuredScene;
 use crate::method::source;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_store::sealed::json;

@@ -1,6 +1,6 @@
 //! Reads a measurement, in one or several parts, and a prediction from their folders.
 
-use crate::case::MeasuredScene;
+use crate::measure::MeasuredScene;
 use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;

@@ -3,16 +3,16 @@
 use std::time::Duration;
 
 /// A receiver of the progress reports of a run: a command prints the reports, and a library may
-/// ignore them. The methods of a reporter are called from any thread.
+/// ignore them, as the default methods do. The methods of a reporter are called from any thread.
 pub trait Reporter: Sync {
     /// Reports what the run will do next, or what it has found.
-    fn note(&self, text: &str);
+    fn note(&self, _text: &str) {}
 
     /// Reports the next step of a run with several steps, and about how long it takes.
     fn note_step(&self, _text: &str, _time: Duration) {}
 
     /// Reports a warning that the user should read before trusting the result.
-    fn warn(&self, text: &str);
+    fn warn(&self, _text: &str) {}
 
     /// Reports that a piece of work begins.
     fn begin(&self, work: Work) -> Box<dyn Progress + '_>;
@@ -43,13 +43,13 @@ pub enum Work {
 pub trait Progress: Send + Sync {
     /// Reports that `steps` further photons or items are done; the number zero only shows that
     /// the work continues.
-    fn advance(&self, steps: u64);
+    fn advance(&self, _steps: u64) {}
 
     /// Reports that a total of `steps` photons or items are done.
-    fn set(&self, steps: u64);
+    fn set(&self, _steps: u64) {}
 
     /// Reports the name of the item that is being processed.
-    fn name(&self, step: &str);
+    fn name(&self, _step: &str) {}
 }
 
 /// Ignores all reports.
@@ -57,19 +57,9 @@ pub trait Progress: Send + Sync {
 pub struct Silent;
 
 impl Reporter for Silent {
-    fn note(&self, _text: &str) {}
-
-    fn warn(&self, _text: &str) {}
-
     fn begin(&self, _work: Work) -> Box<dyn Progress + '_> {
         Box::new(Self)
     }
 }
 
-impl Progress for Silent {
-    fn advance(&self, _steps: u64) {}
-
-    fn set(&self, _steps: u64) {}
-
-    fn name(&self, _step: &str) {}
-}
+impl Progress for Silent {}

@@ -1,10 +1,10 @@
 //! Étendue as a library: measures, predicts and compares a scene in memory, as `etendue run` does.
 
-use crate::case::MeasuredScene;
 use crate::checkpoint::{self, Checkpointing};
 use crate::judge::Judge;
 use crate::judged::Judged;
 use crate::load::SceneSource;
+use crate::measure::MeasuredScene;
 use crate::measure::measured;
 use crate::method::{self, source};
 use crate::reporter::{Reporter, Silent, Work};

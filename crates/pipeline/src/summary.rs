@@ -1,6 +1,6 @@
 //! Defines the content of `summary.json`, and measures the seconds of each stage.
 
-use crate::case::MeasuredScene;
+use crate::measure::MeasuredScene;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
 use etendue_scene::{Emission, SceneFile};
@@ -121,7 +121,7 @@ impl Summary {
 #[derive(Debug)]
 pub struct Stopwatch {
     last: Instant,
-    seconds: Vec<(&'static str, f64)>,
+    seconds: BTreeMap<&'static str, f64>,
 }
 
 impl Stopwatch {
@@ -129,32 +129,31 @@ impl Stopwatch {
     pub fn start() -> Self {
         Self {
             last: Instant::now(),
-            seconds: Vec::new(),
+            seconds: BTreeMap::new(),
         }
     }
 
     /// Ends a stage.
     pub fn lap(&mut self, stage: &'static str) {
         self.seconds
-            .push((stage, self.last.elapsed().as_secs_f64()));
+            .insert(stage, self.last.elapsed().as_secs_f64());
         self.last = Instant::now();
     }
 
     /// Returns the seconds that a stage took.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
-        let mut stages = self.seconds.iter();
-        stages.find(|(name, _)| *name == stage).map(|(_, s)| *s)
+        self.seconds.get(stage).copied()
     }
 
     /// Returns the content of `timing.json`.
     pub fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
-        struct Timing {
+        struct Timing<'a> {
             /// The commit of the program.
             commit: Option<&'static str>,
             /// The command line.
             command: Vec<String>,
-            seconds: BTreeMap<&'static str, f64>,
+            seconds: &'a BTreeMap<&'static str, f64>,
             threads: usize,
             /// Number of emitted photons per second of tracing and transforming.
             photons_per_second: Option<f64>,
@@ -164,7 +163,7 @@ impl Stopwatch {
         json(&Timing {
             commit: COMMIT.get().copied().filter(|commit| !commit.is_empty()),
             command: words.collect(),
-            seconds: self.seconds.iter().copied().collect(),
+            seconds: &self.seconds,
             threads: rayon::current_num_threads(),
             photons_per_second: self
                 .seconds("trace")

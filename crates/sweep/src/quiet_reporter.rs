@@ -8,10 +8,6 @@ use etendue_pipeline::{Progress, Reporter, Work};
 pub(crate) struct Unshown<'a>(pub(crate) &'a dyn Progress);
 
 impl Reporter for Unshown<'_> {
-    fn note(&self, _text: &str) {}
-
-    fn warn(&self, _text: &str) {}
-
     fn begin(&self, _work: Work) -> Box<dyn Progress + '_> {
         self.0.advance(0);
         Box::new(Unshown(self.0))
@@ -22,8 +18,4 @@ impl Progress for Unshown<'_> {
     fn advance(&self, _steps: u64) {
         self.0.advance(0);
     }
-
-    fn set(&self, _steps: u64) {}
-
-    fn name(&self, _step: &str) {}
 }

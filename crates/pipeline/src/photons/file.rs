@@ -1,6 +1,6 @@
 //! Writes photons in the formats of `--save`.
 
-use crate::case::MeasuredScene;
+use crate::measure::MeasuredScene;
 use etendue_field::{Crossing, VirtualPlane};
 use etendue_rayfile::mcpl::{self, PHOTON, Particle, WATTS, stat_sum_comment};
 use etendue_rayfile::{NpyHeader, tm25};
