@@ -132,14 +132,10 @@ fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         .map(|(shot, plane)| Seen::at(shot, plane))
         .collect::<Result<_, _>>()?;
     let heads = taken.shots.iter().map(|shot| spaced(&shot.scene.name));
-    let photons: Vec<String> = taken
-        .shots
-        .iter()
-        .map(|shot| grouped(shot.photons))
-        .collect();
+    let photons = taken.shots.iter().map(|shot| grouped(shot.photons));
     let note = format!(
         "{} photons; spectra are {}.",
-        joined(&photons),
+        joined(&photons.collect::<Vec<_>>()),
         spectra_are(seen.iter().map(|seen| seen.plane))
     );
     taken.plate(&Plate {

@@ -87,12 +87,14 @@ impl Watch for Until {
     }
 }
 
-/// Carries out each order by calling `done`, which returns the results of the order with their
-/// bytes. Returns when an empty order arrives.
+/// The results of an order, with their bytes.
+type Done = Result<Vec<Packed>, Failure>;
+
+/// Carries out each order by calling `done`, until an empty order arrives.
 fn serve(
     workers: &dyn Workers,
     key: &str,
-    done: &mut dyn FnMut(&Order, &[u8]) -> Result<Vec<Packed>, Failure>,
+    done: &mut dyn FnMut(&Order, &[u8]) -> Done,
 ) -> Result<(), Failure> {
     let ready = WorkerMessage::Ready {
         key: key.to_owned(),

@@ -40,5 +40,5 @@ pub use measure::{MeasuredScene, measured};
 pub use read_case::read_case;
 pub use reporter::{Progress, Reporter, Silent, Work};
 pub use run::{Outcome, Run, Tracing};
-pub use summary::{Inquiry, Stopwatch, Summary};
+pub use summary::{Inquiry, Summary};
 pub use workers::{Leader, Packing, Task, Workers, key};

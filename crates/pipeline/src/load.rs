@@ -95,7 +95,7 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     let memory = machine::available_memory();
     resolve(&source.name(), file, source.folder(), memory).map_err(|error| {
         // If the scene is a text without a file, messages do not state line numbers.
-        let text = source.text.is_none().then_some(&*text).unwrap_or_default();
+        let text = if source.text.is_none() { &*text } else { "" };
         // One line for each fault, with the position in the text or the argument that set the
         // faulty value.
         let faults = error.in_text(text, &set);

@@ -17,9 +17,11 @@ pub mod pictures;
 pub mod ray_file;
 mod shell;
 pub mod table;
+mod timing;
 pub mod variance;
 pub mod variance_table;
 mod write_result;
 
 pub use shell::shell_word;
+pub use timing::Stopwatch;
 pub use write_result::{OutputOptions, announcement, check_explorer, plan, save, write_result};

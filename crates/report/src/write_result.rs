@@ -1,9 +1,9 @@
 //! Writes the result of a run: arrays, pictures and the page, and then the summary.
 
-use crate::{explorer, page, pictures};
+use crate::{Stopwatch, explorer, page, pictures};
 use etendue_field::VirtualPlane;
 use etendue_pipeline::photons::Save;
-use etendue_pipeline::{Judged, MeasuredScene, Outcome, Stopwatch, field, photons};
+use etendue_pipeline::{Judged, MeasuredScene, Outcome, field, photons};
 use etendue_scene::Scene;
 use etendue_store::stored::check_earlier;
 use etendue_store::{ArgumentStyle, Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};

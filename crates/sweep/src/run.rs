@@ -127,9 +127,7 @@ fn run_all(
         let plan = Plan {
             index: SUMMARY,
             files: Vec::new(),
-            inputs: inputs.to_vec(),
-            force: request.force,
-            arguments: request.scene.arguments,
+            ..plan(request, inputs)
         };
         Results::claim_below(folder, &names[point as usize], plan)
     };
@@ -144,11 +142,8 @@ fn run_all(
         kept(results, &all.summary(point, &Unshown(&*bar))?)
     };
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
-    let missing: Vec<u32> = (0..)
-        .zip(&summaries)
-        .filter(|(_, summary)| summary.is_none())
-        .map(|(point, _)| point)
-        .collect();
+    let is_missing = |point: &u32| summaries[*point as usize].is_none();
+    let missing: Vec<u32> = (0..).take(names.len()).filter(is_missing).collect();
     bar.set((names.len() - missing.len()) as u64);
     let found: BTreeMap<u32, Value> = match workers {
         None => missing
