@@ -8,9 +8,8 @@ use crate::progress::{self, Terminal};
 use crate::threads::on_threads;
 use etendue_pipeline::read_case;
 use etendue_report::{OutputOptions, Stopwatch, plan};
-use etendue_store::Failure;
 use etendue_store::stored::check_earlier;
-use etendue_store::{ArgumentStyle, Results, SUMMARY};
+use etendue_store::{ArgumentStyle, Failure, Results, SUMMARY};
 
 /// Runs `etendue compare`; returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {

@@ -6,12 +6,10 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
 use etendue_field::grouped;
-use etendue_pipeline::load;
-use etendue_pipeline::measured;
-use etendue_store::Failure;
-use etendue_store::MEASUREMENT;
+use etendue_pipeline::{load, measured};
 use etendue_store::batches::{self, Held};
 use etendue_store::stored::Index;
+use etendue_store::{Failure, MEASUREMENT};
 
 /// Runs `etendue measure`; returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {

@@ -5,12 +5,9 @@ use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_pipeline::Leader;
-use etendue_pipeline::load;
-use etendue_store::Failure;
-use etendue_store::PREDICTION;
-use etendue_store::predictions;
+use etendue_pipeline::{Leader, load};
 use etendue_store::stored::Index;
+use etendue_store::{Failure, PREDICTION, predictions};
 
 /// Runs `etendue predict`; returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {

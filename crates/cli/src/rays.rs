@@ -5,9 +5,8 @@ use crate::print::{deliver, say};
 use etendue_rayfile::{Format, MEMORY, MEMORY_FREE, RayFile, convert, gz};
 use etendue_report::ray_file;
 use etendue_scene::read_file;
-use etendue_store::Failure;
-use etendue_store::machine;
 use etendue_store::output::OutputFile;
+use etendue_store::{Failure, machine};
 use std::path::Path;
 
 /// The largest size of a ray file, in bytes.

@@ -1,22 +1,19 @@
 //! Makes a figure: runs its scenes, draws it, and writes it with data and recipe.
 
-use crate::data;
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
 use crate::request::{FigureRequest, Wanted};
 use crate::scene_run::Shot;
-use crate::style;
 use crate::subject::{FigureData, Subject};
-use crate::user_figures;
+use crate::{data, style, user_figures};
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::Style;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::table::word;
 use etendue_report::{Stopwatch, shell_word};
 use etendue_scene::{Scene, SceneFile};
-use etendue_store::VERSION;
 use etendue_store::sealed::json;
-use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results};
+use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results, VERSION};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

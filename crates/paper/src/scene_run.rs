@@ -6,9 +6,7 @@ use etendue_field::FrequencyAxis;
 use etendue_pipeline::{Reporter, Run, field, judged};
 use etendue_predict::{Applicability, test_each};
 use etendue_scene::{Scene, SceneFile};
-use etendue_store::Failure;
-use etendue_store::Method;
-use etendue_store::machine;
+use etendue_store::{Failure, Method, machine};
 use std::path::Path;
 
 /// A scene that was measured, predicted and compared, at finer frequencies than it specifies.

@@ -3,8 +3,7 @@
 
 use crate::request::{FigureRequest, Wanted};
 use crate::rows::{Seen, compared, feet};
-use crate::subject::FigureData;
-use crate::subject::Subject;
+use crate::subject::{FigureData, Subject};
 use etendue_field::grouped;
 use etendue_figures::{Figure, Plate};
 use etendue_pipeline::limits;

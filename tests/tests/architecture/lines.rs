@@ -13,7 +13,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4166,
+        4157,
         "`--save explorer`, and the words on noise that pipeline had",
     ),
     ("compare", 2927, 2927, ""),
@@ -29,7 +29,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("fuzz", 125, 125, ""),
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3478, "flatland came from theory"),
-    ("pipeline", 5436, 3425, ""),
+    ("pipeline", 5436, 3426, ""),
     (
         "predict",
         2917,
@@ -56,7 +56,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "errors of bandwidths hold where noise is strong; aliasing writes itself as JSON",
     ),
     ("store", 3185, 3167, ""),
-    ("sweep", 1238, 1237, ""),
+    ("sweep", 1238, 1232, ""),
     (
         "theory",
         15390,
