@@ -26,8 +26,8 @@ pub fn description(file: &RayFile, packed: bool) -> Vec<String> {
         RayFile::Mcpl(file) => rows.extend(of_mcpl(file)),
         RayFile::Npy(_) => {}
     }
-    let width = rows.iter().map(|(name, _)| name.chars().count()).max();
-    let width = width.unwrap_or(0);
+    let lengths = rows.iter().map(|(name, _)| name.chars().count());
+    let width = lengths.max().unwrap_or(0);
     rows.into_iter()
         .map(|(name, value)| format!("{name:<width$}  {value}"))
         .collect()
@@ -145,8 +145,8 @@ fn of_tm25(file: &Tm25File) -> Vec<(&'static str, String)> {
     }
     if !header.extra_columns.is_empty() {
         let names = header.extra_columns.iter().take(MOST_TEXTS);
-        let names: Vec<String> = names.map(|name| text(name.as_bytes())).collect();
-        rows.push(("more columns", names.join(", ")));
+        let names = names.map(|name| text(name.as_bytes()));
+        rows.push(("more columns", names.collect::<Vec<_>>().join(", ")));
     }
     rows.extend(file.notes().iter().map(|note| ("note", note.clone())));
     rows
@@ -163,8 +163,8 @@ fn of_mcpl(file: &McplFile) -> Vec<(&'static str, String)> {
         let value = sum.value.map_or("not known".to_owned(), |v| v.to_string());
         rows.push(("sum", format!("{} = {value}", sum.key)));
     }
-    let comments = header.comments.iter();
-    let comments = comments.filter(|c| !c.starts_with(b"stat:sum:"));
+    let is_comment = |c: &&Vec<u8>| !c.starts_with(b"stat:sum:");
+    let comments = header.comments.iter().filter(is_comment);
     rows.extend(comments.take(MOST_TEXTS).map(|c| ("comment", text(c))));
     for (key, data) in header.blobs.iter().take(MOST_TEXTS) {
         rows.push(("blob", format!("{}, {} bytes", text(key), data.len())));

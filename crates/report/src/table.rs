@@ -1,8 +1,6 @@
 //! Formats the tables of a run's results.
 
-use etendue_compare::{
-    FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, TESTS, Verdict, sidak,
-};
+use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, TESTS, Verdict, sidak};
 use etendue_field::{brief, decimals, fixed, grouped, uncertain};
 use etendue_pipeline::Summary;
 
@@ -192,21 +190,20 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
         "noise alone",
         "aliasing [σ]",
     ];
-    let planes = summary.planes.iter();
-    let planes = planes.filter_map(|plane| Some((&plane.name, plane.full_radial?)));
-    let row = |(name, found): (&String, FullRadialReport)| {
-        vec![
-            name.clone(),
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    rows.extend(summary.planes.iter().filter_map(|plane| {
+        let found = plane.full_radial?;
+        Some(vec![
+            plane.name.clone(),
             found.power.bins.to_string(),
             number(found.power.chi2_per_bin, 3),
             number(found.power.p_value, 5),
             percent(found.power.relative_error),
             percent(found.power.noise_limit),
             number(found.aliasing, 2),
-        ]
-    };
-    let header = header.map(str::to_owned).to_vec();
-    std::iter::once(header).chain(planes.map(row)).collect()
+        ])
+    }));
+    rows
 }
 
 /// Returns a name with its unit in brackets.

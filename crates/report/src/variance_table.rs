@@ -130,10 +130,10 @@ fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
         "found",
         "tail",
     ];
-    let rows = curve.counts.iter().map(|count| row(count, mean).to_vec());
-    let header = header.map(str::to_owned).to_vec();
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    rows.extend(curve.counts.iter().map(|count| row(count, mean).to_vec()));
     let mut lines = vec![format!("{name}{slope}")];
-    lines.extend(aligned(std::iter::once(header).chain(rows).collect()));
+    lines.extend(aligned(rows));
     if curve.counts.iter().any(|count| count.is_undecided) {
         lines.push(
             "undecided: more than 20 % of the prediction is tail, and a fixed set may have peaks there"

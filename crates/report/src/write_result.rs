@@ -47,9 +47,8 @@ pub fn plan(
         if save.contains(&Save::Field) {
             names.extend(field::NAMES);
         }
-        let names = names.into_iter();
-        let names = names.map(|name| format!("{}/{name}", plane.name));
-        names.collect::<Vec<_>>()
+        let path = |name| format!("{}/{name}", plane.name);
+        names.into_iter().map(path).collect::<Vec<_>>()
     };
     let beside = pictures::PATH_NAMES
         .into_iter()

@@ -41,7 +41,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "report",
         2599,
-        4387,
+        4382,
         "tables, texts, times of stages and `diff` came from pipeline",
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),

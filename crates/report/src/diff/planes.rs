@@ -150,8 +150,8 @@ pub(super) fn of_results(
         Ok(PlaneDiff { name, found })
     });
     let mut planes: Vec<PlaneDiff> = common.collect::<Result<_, Failure>>()?;
-    let added = b.index.planes.iter();
-    let added = added.filter(|plane| a.plane(&plane.name).is_none());
+    let is_added = |plane: &&StoredPlane| a.plane(&plane.name).is_none();
+    let added = b.index.planes.iter().filter(is_added);
     planes.extend(added.map(|plane| PlaneDiff {
         name: plane.name.clone(),
         found: PlaneDifference::Missing(0),

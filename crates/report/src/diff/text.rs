@@ -178,8 +178,7 @@ fn verdict(diff: &Diff) -> String {
                 let what = plane.compared()?.differing(level);
                 (!what.is_empty()).then(|| format!("{} at {}", what.join(", "), plane.name))
             });
-            let differing: Vec<String> = differing.collect();
-            let differing = differing.join("; ");
+            let differing = differing.collect::<Vec<String>>().join("; ");
             format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e})")
         }
         Verdict::Undecided => {
