@@ -2,7 +2,8 @@
 //! time out of proportion to the bytes.
 
 use etendue_import::Options;
-use etendue_scene::{Mesh, SceneFile, read_channels, resolve};
+use etendue_meshfile::Mesh;
+use etendue_scene::{SceneFile, read_channels, resolve};
 use std::path::{Path, PathBuf};
 
 /// The largest memory, in bytes, for which a scene may ask.

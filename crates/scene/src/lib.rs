@@ -22,7 +22,6 @@
 //! ```
 
 mod curvature;
-mod mesh;
 mod mistakes;
 mod picture;
 mod read;
@@ -39,7 +38,6 @@ pub use etendue_scenefile::{
     SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, dotted, limits, nearest, page,
     schema, shown, unit,
 };
-pub use mesh::{DetailedMesh, Mesh, MeshAttribute, ObjFile, ObjPart};
 pub use picture::{Channels, PictureSize, Samples, read_channels};
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;

@@ -2,10 +2,8 @@
 
 mod book;
 mod colors;
-mod detailed;
 mod json;
 mod limits;
-mod mesh;
 mod meshes_refused;
 mod other_lights;
 mod pictures;

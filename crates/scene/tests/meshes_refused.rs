@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_scene::{DetailedMesh, Mesh, Scene, SceneError, SceneFile, resolve};
+use etendue_scene::{Scene, SceneError, SceneFile, resolve};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -149,37 +149,6 @@ fn the_side_of_a_hit_is_that_of_its_own_triangle() {
     assert_eq!(both.path.legs[1].frame, alone.path.legs[1].frame);
 }
 
-#[test]
-fn a_header_of_any_length_is_read_in_proportion() {
-    let header = |n: u32, line: &dyn Fn(u32) -> String| {
-        let lines: String = (0..n).map(line).collect();
-        format!("ply\nformat ascii 1.0\nelement vertex 3\n{lines}end_header\n")
-    };
-    // The shortest of some times, since others may use the machine.
-    let seconds = |text: &str| {
-        let time = |_| {
-            let start = std::time::Instant::now();
-            let fault = Mesh::parse("a.ply".as_ref(), text.as_bytes()).unwrap_err();
-            assert!(fault.to_string().len() < 500, "{fault}");
-            start.elapsed().as_secs_f64()
-        };
-        (0..5).map(time).fold(f64::INFINITY, f64::min)
-    };
-    // Sixteen times as many names take 16 times as long, and some times more since they leave the
-    // cache; if each is compared with all previous ones, 256 times.
-    let property = |i: u32| format!("property int p{i}\n");
-    let element = |i: u32| format!("element e{i} 1\nproperty int p\n");
-    for line in [&property as &dyn Fn(u32) -> String, &element] {
-        let [few, many] = [20_000, 320_000].map(|n| seconds(&header(n, line)));
-        assert!(many < 100.0 * few, "{few} s, {many} s");
-    }
-    let long = header(1, &|_| format!("property int {}\n", "p".repeat(101)));
-    let told = Mesh::parse("a.ply".as_ref(), long.as_bytes())
-        .unwrap_err()
-        .to_string();
-    assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
-}
-
 /// With boxes padded for the distance of the light, the hierarchy took sixty times as long.
 #[test]
 fn a_light_that_is_too_far_is_refused_as_fast_as_a_scene_is_read() {
@@ -220,30 +189,4 @@ fn coarse_smooth_meshes_are_warned_of() {
         "{coarse:?}"
     );
     assert_eq!(warned(32), Vec::<String>::new());
-}
-
-#[test]
-fn faces_of_too_many_corners_are_refused() {
-    let polygon = |count: usize| {
-        let angle = |i: usize| std::f64::consts::TAU * i as f64 / count as f64;
-        let vertices = (0..count).map(|i| format!("v {} {} 0\n", angle(i).cos(), angle(i).sin()));
-        let corners = (1..=count).map(|i| format!(" {i}"));
-        format!(
-            "{}f{}",
-            vertices.collect::<String>(),
-            corners.collect::<String>()
-        )
-    };
-    let file = Path::new("a.obj");
-    assert!(DetailedMesh::parse(file, polygon(4096).as_bytes()).is_ok());
-    for told in [
-        Mesh::parse(file, polygon(4097).as_bytes()).map(drop),
-        DetailedMesh::parse(file, polygon(4097).as_bytes()).map(drop),
-    ] {
-        let told = told.unwrap_err().to_string();
-        assert_eq!(
-            told,
-            "line 4098, face 1, number of corners is 4097; allowed: 3 to 4096"
-        );
-    }
 }

@@ -6,7 +6,7 @@ use super::dice::Dice;
 use super::folder::Folder;
 use super::scenes::{SCENE, on_scene};
 use super::{bytes, text};
-use etendue_scene::{Fault, Mesh};
+use etendue_meshfile::{Fault, Mesh};
 
 /// Tokens of the formats OBJ and PLY.
 const WORDS: &str = "v | f | vn | vt | l | p | o | g | usemtl | cstype | curv | -1 | 1/1/1 | // | \

@@ -27,6 +27,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("figures", 4650, 4650, ""),
     ("fuzz", 125, 125, ""),
+    ("meshfile", 1631, 1631, ""),
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3478, "flatland came from theory"),
     ("pipeline", 5436, 3426, ""),
@@ -46,7 +47,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),
     ("scatter", 1291, 1291, ""),
-    ("scene", 6450, 6450, ""),
+    ("scene", 4796, 4796, ""),
     ("scenefile", 3036, 3036, ""),
     ("scenes", 52, 52, ""),
     (

@@ -3,11 +3,10 @@
 use super::Resolver;
 use super::faults::show;
 use super::triangles::MeshPlacement;
-use crate::Mesh;
 use crate::scene::{MeshObject, SmoothMesh};
 use crate::triangles::Triangles;
 use etendue_field::Frame;
-use etendue_scenefile::Fault;
+use etendue_meshfile::{Fault, Mesh};
 use etendue_scenefile::limits::MAX_NUMBER;
 use etendue_scenefile::{
     BlockersFile, EventFile, FormFile, LightFile, MeshSource, SceneFile, SurfaceFile,

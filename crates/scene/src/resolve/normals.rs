@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::triangles::{MeshPlacement, others};
-use crate::Mesh;
+use etendue_meshfile::Mesh;
 use glam::DVec3;
 
 /// The smallest allowed cosine of the angle between the normal of a vertex and the normals of the

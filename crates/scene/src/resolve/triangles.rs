@@ -2,7 +2,7 @@
 //! thick enough to be distinguished from lines.
 
 use super::Resolver;
-use crate::Mesh;
+use etendue_meshfile::Mesh;
 use etendue_scenefile::MeshSource;
 use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;

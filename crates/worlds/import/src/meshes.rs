@@ -1,6 +1,6 @@
 //! Conversion of meshes of any scene format to meshes of a world.
 
-use etendue_scene::DetailedMesh;
+use etendue_meshfile::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DMat3, DVec2, DVec3};
 

@@ -19,7 +19,7 @@ pub(crate) use ply::import as import_ply;
 
 use crate::main_file::MainFile;
 use crate::{Imported, Options, Refused};
-use etendue_scene::ObjFile;
+use etendue_meshfile::ObjFile;
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {

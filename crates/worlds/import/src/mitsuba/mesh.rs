@@ -6,7 +6,7 @@ use super::reader::MitsubaReader;
 use super::serialized;
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::quoted;
-use etendue_scene::DetailedMesh;
+use etendue_meshfile::DetailedMesh;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;

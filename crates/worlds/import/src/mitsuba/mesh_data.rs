@@ -1,6 +1,6 @@
 //! Meshes with their attributes.
 
-use etendue_scene::{DetailedMesh, MeshAttribute};
+use etendue_meshfile::{DetailedMesh, MeshAttribute};
 use etendue_world::Triangles;
 use std::path::PathBuf;
 use std::rc::Rc;

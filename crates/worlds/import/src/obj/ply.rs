@@ -3,7 +3,7 @@
 use crate::main_file::MainFile;
 use crate::meshes::{MENDED, MeshParts};
 use crate::{Imported, Options, Refused};
-use etendue_scene::DetailedMesh;
+use etendue_meshfile::DetailedMesh;
 use etendue_world::{Geometry, Material, Shape, Texture, World};
 use glam::DAffine3;
 use std::path::Path;

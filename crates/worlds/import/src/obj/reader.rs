@@ -6,7 +6,7 @@ use crate::files::Files;
 use crate::main_file::MainFile;
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::{Report, SourcePlace, quoted};
-use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
+use etendue_meshfile::{DetailedMesh, ObjFile, ObjPart};
 use etendue_world::{Geometry, Shape, World};
 use glam::DAffine3;
 use std::collections::HashMap;

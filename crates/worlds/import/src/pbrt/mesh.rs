@@ -7,7 +7,7 @@ use super::scene::PbrtShape;
 use crate::files::has_extension;
 use crate::meshes::{MeshParts, NO_AREA};
 use crate::report::quoted;
-use etendue_scene::DetailedMesh;
+use etendue_meshfile::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
 use std::path::Path;

@@ -6,12 +6,11 @@
 //! form an attribute with the name of the prefix, if their characters are the first ones of `xyzw`,
 //! `rgba`, `0123` or `1234`. After `rgba`, the name ends in `_color`.
 
-use super::super::attribute::MeshAttribute;
-use super::super::shared::check_coordinates;
 use super::body::PlyRow;
-use super::columns;
 use super::header::PlyElement;
-use etendue_scenefile::Fault;
+use crate::detailed::MeshAttribute;
+use crate::fault::Fault;
+use crate::mesh::check_coordinates;
 
 /// Names of the properties of a colour without a prefix.
 const COLORS: [[&str; 4]; 2] = [["r", "g", "b", "a"], ["red", "green", "blue", "alpha"]];
@@ -97,8 +96,8 @@ impl AttributeReader {
 fn all(element: &PlyElement) -> Vec<AttributeColumns> {
     let mut found = Vec::new();
     let color = COLORS.iter().find_map(|[r, g, b, a]| {
-        let mut color = columns(element, [*r, *g, *b])?.to_vec();
-        color.extend(columns(element, [*a]).into_iter().flatten());
+        let mut color = element.columns([*r, *g, *b])?.to_vec();
+        color.extend(element.column(a));
         Some((color, *r == "red"))
     });
     let is_long = color.as_ref().is_some_and(|(_, is_long)| *is_long);

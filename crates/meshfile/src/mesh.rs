@@ -1,8 +1,12 @@
 //! Defines a mesh of triangles with shared vertices, and its limits.
 
-use etendue_scenefile::limits::MAX_NUMBER;
-use etendue_scenefile::{Fault, fault};
+use crate::fault::{Fault, fault};
 use glam::{DAffine3, DVec3};
+
+/// The names of the coordinates in messages.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+/// The largest coordinate, which is also the largest number of a scene.
+const MAX_COORDINATE: f64 = 1e9;
 
 /// Triangles with shared vertices, in the file's units and frame.
 ///
@@ -12,8 +16,8 @@ use glam::{DAffine3, DVec3};
 /// Unused vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    pub(super) vertices: Vec<DVec3>,
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
@@ -28,9 +32,9 @@ impl Mesh {
         let count = u32::try_from(vertices.len())
             .map_err(|_| fault("vertices", vertices.len(), format!("at most {}", u32::MAX)))?;
         for (i, vertex) in vertices.iter().enumerate() {
-            for (axis, value) in ["x", "y", "z"].into_iter().zip(vertex.to_array()) {
-                check_coordinate(value, || format!("vertex {i}, {axis}"))?;
-            }
+            check_coordinates(vertex.to_array(), |axis| {
+                format!("vertex {i}, {}", AXES[axis])
+            })?;
         }
         for (i, corners) in triangles.iter().enumerate() {
             if let Some(corner) = corners.iter().find(|corner| **corner >= count) {
@@ -100,31 +104,31 @@ fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
 const MAX_CORNERS: usize = 4096;
 
 /// Checks the number of corners of a face.
-pub(super) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Result<(), Fault> {
+pub(crate) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Result<(), Fault> {
     match (3..=MAX_CORNERS).contains(&count) {
         true => Ok(()),
         false => Err(fault(place(), count, format!("3 to {MAX_CORNERS}"))),
     }
 }
 
-/// Checks that a coordinate is within the range of a scene.
-pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
-    if value.abs() <= MAX_NUMBER {
+/// Checks that a coordinate is within the range of coordinates.
+pub(crate) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
+    if value.abs() <= MAX_COORDINATE {
         Ok(value)
     } else {
-        let allowed = format!("{:?} to {MAX_NUMBER:?}", -MAX_NUMBER);
+        let allowed = format!("{:?} to {MAX_COORDINATE:?}", -MAX_COORDINATE);
         Err(fault(place(), format!("{value:?}"), allowed))
     }
 }
 
 /// Returns the triangles of a face as a fan about the face's first corner.
-pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }
 
 /// Checks that numbers are within the range of coordinates.
-pub(super) fn check_coordinates<const N: usize>(
+pub(crate) fn check_coordinates<const N: usize>(
     values: [f64; N],
     place: impl Fn(usize) -> String,
 ) -> Result<[f64; N], Fault> {

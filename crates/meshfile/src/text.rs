@@ -4,15 +4,15 @@
 ///
 /// Every line ends in the same way as the first line. It ends at a line feed, which may follow a
 /// carriage return, or at a carriage return alone (old Macintosh files).
-pub(super) struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     /// The bytes after the last line returned.
-    pub(super) rest: &'a [u8],
+    pub(crate) rest: &'a [u8],
     end: u8,
     number: usize,
 }
 
 impl<'a> Lines<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         let first_end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r'));
         let end = match first_end.map(|i| &bytes[i..]) {
             Some([b'\r', b'\n', ..]) | None => b'\n',
@@ -46,7 +46,7 @@ impl<'a> Iterator for Lines<'a> {
 
 /// Words of a line.
 #[derive(Clone, Default)]
-pub(super) struct LineWords<'a>(pub(super) &'a [u8]);
+pub(crate) struct LineWords<'a>(pub(crate) &'a [u8]);
 
 impl<'a> Iterator for LineWords<'a> {
     type Item = &'a [u8];
@@ -62,12 +62,12 @@ impl<'a> Iterator for LineWords<'a> {
 
 /// Returns the number that a word represents. The number is decimal with an optional exponent,
 /// infinite, or NaN.
-pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
+pub(crate) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
 /// Returns the first few bytes of a word, for a message.
-pub(super) fn quoted(bytes: &[u8]) -> String {
+pub(crate) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);
     let more = if bytes.len() > LONGEST { "..." } else { "" };

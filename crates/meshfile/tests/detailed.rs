@@ -1,6 +1,6 @@
 //! Tests meshes with normals and texture coordinates.
 
-use etendue_scene::{DetailedMesh, Mesh};
+use etendue_meshfile::{DetailedMesh, Mesh};
 use glam::{DVec2, DVec3};
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0.5\nvt 0.25\nvn 0 0 2\nvn 0 1 0\n\

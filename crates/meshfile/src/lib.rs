@@ -1,4 +1,5 @@
-//! Triangle meshes: reading OBJ and PLY files, generating and writing.
+//! Triangle meshes: reads OBJ and PLY files, generates surfaces, and writes PLY files. It knows
+//! bytes, files and triangles, but no scene.
 //!
 //! The readers of OBJ and PLY files are written for this project instead of taken from a library.
 //! The library tobj 4.0.5 reads an `l` line of three points as a triangle. The library tobj
@@ -9,18 +10,17 @@
 //! element without properties. The tests use tobj and ply-rs-bw as independent readers of valid
 //! files.
 
-mod attribute;
 mod detailed;
-mod extension;
+mod fault;
 mod files;
+mod mesh;
 mod obj;
 mod paraboloid;
 mod ply;
-mod shared;
 mod star;
 mod text;
 
-pub use attribute::MeshAttribute;
-pub use detailed::DetailedMesh;
+pub use detailed::{DetailedMesh, MeshAttribute};
+pub use fault::Fault;
+pub use mesh::Mesh;
 pub use obj::parts::{ObjFile, ObjPart};
-pub use shared::Mesh;

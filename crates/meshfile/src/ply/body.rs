@@ -1,8 +1,8 @@
 //! Reads the data of a PLY file.
 
-use super::super::text::{LineWords, Lines, number, quoted};
 use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
-use etendue_scenefile::{Fault, fault};
+use crate::fault::{Fault, fault};
+use crate::text::{LineWords, Lines, number, quoted};
 
 /// The data after the header of a PLY file, read in sequence. ASCII files hold one row per line;
 /// blank lines are ignored.

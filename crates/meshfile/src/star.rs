@@ -1,7 +1,7 @@
 //! Generates the mesh of a sphere with a relief.
 
-use super::shared::Mesh;
-use etendue_scenefile::{Fault, fault};
+use crate::fault::{Fault, fault};
+use crate::mesh::Mesh;
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -1,9 +1,9 @@
 //! Reads OBJ files as scenes: triangles with their materials.
 
-use super::super::detailed::DetailedMesh;
-use super::super::text::LineWords;
-use super::{detailed, statements, without_mark};
-use etendue_scenefile::Fault;
+use super::{read_detailed, statements, without_mark};
+use crate::detailed::DetailedMesh;
+use crate::fault::Fault;
+use crate::text::LineWords;
 use std::ops::Range;
 
 /// Statements of OBJ files that affect the appearance but are ignored.
@@ -52,7 +52,7 @@ impl ObjFile {
     /// # Errors
     /// The first fault found.
     pub fn parse(bytes: &[u8]) -> Result<Self, Fault> {
-        let mesh = detailed::read(bytes)?;
+        let mesh = read_detailed(bytes)?;
         let has_normals = mesh.normals.is_some();
         let mut file = Self {
             mesh,

@@ -1,7 +1,7 @@
 //! Generates the mesh of a paraboloid.
 
-use super::shared::Mesh;
-use etendue_scenefile::Fault;
+use crate::fault::Fault;
+use crate::mesh::Mesh;
 use glam::DVec3;
 
 impl Mesh {

@@ -1,7 +1,7 @@
 //! Reads the header of a PLY file.
 
-use super::super::text::{LineWords, Lines, number, quoted};
-use etendue_scenefile::{Fault, fault};
+use crate::fault::{Fault, fault};
+use crate::text::{LineWords, Lines, number, quoted};
 use std::collections::HashSet;
 
 /// The description of the data in a PLY file.
@@ -150,6 +150,25 @@ impl PlyHeader {
             return Err(fault("number of bytes after the header", length, allowed));
         }
         Ok(())
+    }
+}
+
+impl PlyElement {
+    /// Returns the position of the property with a name; `None` unless it is present as a single
+    /// number.
+    pub(super) fn column(&self, name: &str) -> Option<usize> {
+        let mut properties = self.properties.iter();
+        properties.position(|p| p.name == name && p.length.is_none())
+    }
+
+    /// Returns the positions of the properties with the given names; `None` unless all of these
+    /// properties are present as single numbers.
+    pub(super) fn columns<const N: usize>(&self, names: [&str; N]) -> Option<[usize; N]> {
+        let found = names.map(|name| self.column(name));
+        found
+            .iter()
+            .all(Option::is_some)
+            .then(|| found.map(Option::unwrap_or_default))
     }
 }
 

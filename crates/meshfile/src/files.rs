@@ -1,10 +1,9 @@
 //! Reads meshes from files and writes them to files.
 
-use super::detailed::DetailedMesh;
-use super::extension::by_extension;
-use super::shared::Mesh;
-use super::{obj, ply};
-use etendue_scenefile::Fault;
+use crate::detailed::DetailedMesh;
+use crate::fault::{Fault, fault};
+use crate::mesh::Mesh;
+use crate::{obj, ply, text};
 use std::path::Path;
 
 impl Mesh {
@@ -26,7 +25,7 @@ impl Mesh {
     /// files, as these formats do. Lines and corners are always counted from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
-            let mesh = ply::detailed::read(bytes, false, &[])?;
+            let mesh = ply::read(bytes, false, &[])?;
             Self::new(mesh.vertices, mesh.triangles)
         })
     }
@@ -40,7 +39,7 @@ impl Mesh {
 }
 
 impl DetailedMesh {
-    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, but
+    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`] does, but
     /// with normals and texture coordinates. Normals are `vn` in OBJ files, and nx, ny and nz in
     /// PLY files. Texture coordinates are `vt` in OBJ files. In PLY files, texture coordinates are
     /// u and v, s and t, or `texture_u` and `texture_v`.
@@ -59,8 +58,28 @@ impl DetailedMesh {
     /// # Errors
     /// The first fault found. An attribute that is missing is not a fault.
     pub fn parse_with(file: &Path, bytes: &[u8], wanted: &[String]) -> Result<Self, Fault> {
-        by_extension(file, bytes, obj::detailed::read, |bytes| {
-            ply::detailed::read(bytes, true, wanted)
+        by_extension(file, bytes, obj::read_detailed, |bytes| {
+            ply::read(bytes, true, wanted)
         })
+    }
+}
+
+/// Reads bytes in the format to which the extension of `file` belongs.
+fn by_extension<T>(
+    file: &Path,
+    bytes: &[u8],
+    obj: fn(&[u8]) -> Result<T, Fault>,
+    ply: impl FnOnce(&[u8]) -> Result<T, Fault>,
+) -> Result<T, Fault> {
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    match extension.to_ascii_lowercase().as_str() {
+        "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
+        "obj" => obj(bytes),
+        "ply" => ply(bytes),
+        _ => Err(fault(
+            "the extension",
+            text::quoted(extension.as_bytes()),
+            "obj, ply",
+        )),
     }
 }

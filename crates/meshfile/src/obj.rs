@@ -1,13 +1,15 @@
-//! OBJ files (Wavefront, Advanced Visualizer manual, appendix B1): vertices and faces.
+//! OBJ files (Wavefront, Advanced Visualizer manual, appendix B1): vertices and faces, with normals and
+//! texture coordinates.
 
-pub(super) mod detailed;
-pub(super) mod parts;
+pub(crate) mod parts;
 
-use super::shared::{Mesh, check_coordinate, check_corners, fan};
-use super::text::{LineWords, Lines, number, quoted};
-use etendue_scenefile::{Fault, fault};
-use glam::DVec3;
+use crate::detailed::DetailedMesh;
+use crate::fault::{Fault, fault};
+use crate::mesh::{AXES, Mesh, check_coordinate, check_coordinates, check_corners, fan};
+use crate::text::{LineWords, Lines, number, quoted};
+use glam::{DVec2, DVec3};
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// Statements of OBJ files that do not affect the triangles.
 const PASSED_OVER: [&[u8]; 19] = [
@@ -32,7 +34,7 @@ const PASSED_OVER: [&[u8]; 19] = [
     b"trace_obj",
 ];
 
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let bytes = without_mark(bytes);
     let vertices = vertices(bytes)?;
     // Faces may refer to vertices that follow them in the file, so faces are read after all
@@ -41,6 +43,39 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
         corner(word, before, vertices.len())
     })?;
     Mesh::new(vertices, triangles)
+}
+
+/// Reads a mesh with its normals and texture coordinates.
+pub(crate) fn read_detailed(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
+    let bytes = without_mark(bytes);
+    let places = vertices(bytes)?;
+    let uvs: Vec<[f64; 2]> = rows(bytes, b"vt")?;
+    let normals: Vec<[f64; 3]> = rows(bytes, b"vn")?;
+    let counts = [places.len(), uvs.len(), normals.len()];
+    let mut known: HashMap<CornerKey, u32> = HashMap::new();
+    let mut keys = Vec::new();
+    // Each distinct corner becomes a vertex.
+    let triangles = triangles(bytes, |word, before| {
+        let key = key(word, before, counts)?;
+        // A file that fits into memory has fewer distinct corners than the largest u32.
+        let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
+        let index = *known.entry(key).or_insert(next);
+        if index == next {
+            keys.push(key);
+        }
+        Ok(index)
+    })?;
+    let uv = |i: Option<u32>| i.map_or(DVec2::ZERO, |i| uvs[i as usize].into());
+    let normal = |i: Option<u32>| i.map_or(DVec3::ZERO, |i| normals[i as usize].into());
+    Ok(DetailedMesh {
+        vertices: keys.iter().map(|key| places[key.0 as usize]).collect(),
+        triangles,
+        normals: (keys.iter().any(|key| key.2.is_some()))
+            .then(|| keys.iter().map(|key| normal(key.2)).collect()),
+        uvs: (keys.iter().any(|key| key.1.is_some()))
+            .then(|| keys.iter().map(|key| uv(key.1)).collect()),
+        ..DetailedMesh::default()
+    })
 }
 
 /// Removes the byte order mark with which Windows editors begin UTF-8 files.
@@ -97,7 +132,7 @@ fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
 fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, Fault> {
     let mut point = DVec3::ZERO;
     for axis in 0..3 {
-        let place = || place(line, &format!("vertex {index}, {}", ["x", "y", "z"][axis]));
+        let place = || place(line, &format!("vertex {index}, {}", AXES[axis]));
         let Some(word) = words.next() else {
             return Err(fault(place(), "missing", "a number"));
         };
@@ -145,6 +180,47 @@ fn triangles(
         false => Ok(triangles),
     }
 }
+
+/// Returns the numbers on each line whose first word is `word`. A `vt` line may omit its second
+/// number.
+fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
+    let mut rows = Vec::new();
+    for (line, statement) in statements(bytes) {
+        let mut words = LineWords(&statement);
+        if words.next() != Some(word) {
+            continue;
+        }
+        let name = String::from_utf8_lossy(word);
+        let what = |i: usize| place(line, &format!("number {} of {name}", i + 1));
+        let mut values = [0.0; N];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = match words.next() {
+                Some(word) => {
+                    number(word).ok_or_else(|| fault(what(i), quoted(word), "a number"))?
+                }
+                None if N == 2 && i == 1 => 0.0,
+                None => return Err(fault(what(i), "missing", "a number")),
+            };
+        }
+        rows.push(check_coordinates(values, what)?);
+    }
+    Ok(rows)
+}
+
+/// Returns the indices of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
+fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, CornerFault> {
+    let first = corner(word, before[0], counts[0])?;
+    let mut others = word.split(|b| *b == b'/').skip(1);
+    let mut other = |i: usize| match others.next() {
+        None | Some(b"") => Ok(None),
+        Some(part) => corner(part, before[i], counts[i]).map(Some),
+    };
+    Ok((first, other(1)?, other(2)?))
+}
+
+/// The indices of the position, the texture coordinates and the normal of a corner, as in the
+/// file.
+type CornerKey = (u32, Option<u32>, Option<u32>);
 
 /// The text of a faulty corner, and a description of the values that are allowed.
 type CornerFault = (String, String);

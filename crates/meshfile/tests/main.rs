@@ -1,0 +1,4 @@
+//! The tests of `etendue-meshfile`, as one program.
+
+mod detailed;
+mod mesh;
