@@ -46,17 +46,32 @@ pub(crate) fn bvh(
     bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
 ) -> Bvh2 {
     let boxed = |i: &u32| space.padded(bounds(*i as usize));
-    let numbers = 0..number(count);
+    let order = in_parts(count, PART, space, &bounds);
     if count <= PART {
-        return built(numbers.collect(), kind, boxed);
+        return built(order, kind, boxed);
+    }
+    let part = |part: &[u32]| built(part.to_vec(), kind, boxed);
+    let parts = order.par_chunks(PART).map(part).collect();
+    drop(order);
+    joined(parts, kind)
+}
+
+/// Returns the numbers of boxes. If they are built in parts of `part` boxes, they are in the order
+/// of a space-filling curve.
+pub(crate) fn in_parts(
+    count: usize,
+    part: usize,
+    space: &Space,
+    bounds: &(impl Fn(usize) -> [DVec3; 2] + Sync),
+) -> Vec<u32> {
+    let numbers = 0..number(count);
+    if count <= part {
+        return numbers.collect();
     }
     let place = |i| (space.place(bounds(i as usize)), i);
     let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
     order.par_sort_unstable();
-    let part = |part: &[(u64, u32)]| built(part.iter().map(|(_, i)| *i).collect(), kind, boxed);
-    let parts = order.par_chunks(PART).map(part).collect();
-    drop(order);
-    joined(parts, kind)
+    order.into_iter().map(|(_, i)| i).collect()
 }
 
 /// Builds the tree over some of the boxes.

@@ -2,18 +2,11 @@
 //! as possible.
 
 use crate::leaf::MAX_LEAF;
-use crate::wide::{Node, WIDTH, Wide};
+use crate::wide::{Node, WIDTH};
 use obvhs::bvh2::Bvh2;
 
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
-
-/// A binary tree with the [`costs`] of its nodes. The costs decide which nodes become boxes of an
-/// eight-wide node.
-struct Collapse<'a> {
-    bvh: &'a Bvh2,
-    costs: Vec<[f32; WIDTH]>,
-}
 
 /// The parts of an eight-wide tree.
 pub(crate) struct Collapsed {
@@ -24,25 +17,12 @@ pub(crate) struct Collapsed {
     pub(crate) depth: usize,
 }
 
-/// Returns the eight-wide tree made from a binary tree, with its leaves. A leaf is given by its
-/// first box and the number of its boxes.
-pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    let Collapsed {
-        mut nodes,
-        mut leaves,
-        depth,
-    } = collapsed_parts(bvh);
-    nodes.shrink_to_fit();
-    leaves.shrink_to_fit();
-    (Wide::new(nodes, depth), leaves)
-}
-
 /// Returns the parts of the eight-wide tree made from a binary tree.
 ///
 /// # Panics
 ///
 /// Panics if a leaf has more than [`MAX_LEAF`] boxes.
-pub(crate) fn collapsed_parts(bvh: &Bvh2) -> Collapsed {
+pub(crate) fn collapsed(bvh: &Bvh2) -> Collapsed {
     // Usually, a tenth of the binary tree's nodes become nodes.
     let mut nodes = Vec::with_capacity(bvh.nodes.len() / 8 + 1);
     let mut leaves = Vec::with_capacity(bvh.nodes.len() / 2 + 1);
@@ -53,13 +33,16 @@ pub(crate) fn collapsed_parts(bvh: &Bvh2) -> Collapsed {
     if !bvh.nodes.is_empty() {
         todo.push((0, 0, 1));
     }
-    let collapse = Collapse {
-        costs: costs(bvh),
-        bvh,
-    };
+    let costs = costs(bvh);
+    let mut children = Vec::with_capacity(WIDTH);
     while let Some((root, place, depth)) = todo.pop() {
         deepest = deepest.max(depth);
-        for (i, child) in collapse.children(root).into_iter().enumerate() {
+        if bvh.nodes[root].is_leaf() {
+            children.push(root);
+        } else {
+            share(bvh, &costs, root, WIDTH, &mut children);
+        }
+        for (i, child) in children.drain(..).enumerate() {
             let of = &bvh.nodes[child];
             let number = if of.is_leaf() {
                 assert!(
@@ -134,32 +117,21 @@ fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
     best
 }
 
-impl Collapse<'_> {
-    /// Returns the nodes of the binary tree that become the boxes of an eight-wide node.
-    fn children(&self, root: usize) -> Vec<usize> {
-        let mut children = Vec::with_capacity(WIDTH);
-        if self.bvh.nodes[root].is_leaf() {
-            children.push(root);
-        } else {
-            self.share(root, WIDTH, &mut children);
+/// Adds the nodes below `node` that become at most `boxes` boxes of an eight-wide node. The
+/// [`costs`] decide which nodes become boxes.
+fn share(bvh: &Bvh2, costs: &[[f32; WIDTH]], node: usize, boxes: usize, children: &mut Vec<usize>) {
+    let first = bvh.nodes[node].first_index as usize;
+    let (of_first, _) = shared(&[costs[first], costs[first + 1]], boxes);
+    for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
+        let own = &costs[child];
+        // At equal cost, fewer boxes are used.
+        while boxes > 1 && own[boxes - 1] >= own[boxes - 2] {
+            boxes -= 1;
         }
-        children
-    }
-
-    fn share(&self, node: usize, boxes: usize, children: &mut Vec<usize>) {
-        let first = self.bvh.nodes[node].first_index as usize;
-        let (of_first, _) = shared(&[self.costs[first], self.costs[first + 1]], boxes);
-        for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
-            let costs = &self.costs[child];
-            // At equal cost, fewer boxes are used.
-            while boxes > 1 && costs[boxes - 1] >= costs[boxes - 2] {
-                boxes -= 1;
-            }
-            if boxes == 1 {
-                children.push(child);
-            } else {
-                self.share(child, boxes, children);
-            }
+        if boxes == 1 {
+            children.push(child);
+        } else {
+            share(bvh, costs, child, boxes, children);
         }
     }
 }

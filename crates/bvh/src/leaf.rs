@@ -5,7 +5,7 @@
 //! only if the ray is on different sides of the triangle's edges by more than all rounding
 //! errors. A box in a leaf is a triangle with NaN corners, which is never rejected.
 
-use crate::single::single;
+use crate::space::single;
 use crate::wide::Visit;
 use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};

@@ -17,7 +17,6 @@ mod collapse;
 mod leaf;
 mod mesh_hierarchy;
 mod parts;
-mod single;
 mod space;
 mod wide;
 mod wide_hierarchy;

@@ -5,8 +5,8 @@
 
 use crate::parts;
 use crate::space::Space;
-use crate::wide::{AnyVisit, NodeRay, Visit, Wide};
-use fearless_simd::{Level, Simd, dispatch};
+use crate::wide::{NodeRay, Wide};
+use fearless_simd::{Level, dispatch};
 use glam::DVec3;
 use std::fmt;
 
@@ -49,7 +49,7 @@ impl MeshHierarchy {
     ) {
         let stretch = self.space.stretch(start, direction, range);
         let ray = NodeRay::new(stretch, direction);
-        let visit = MeshBoxes(|i| self.space.limit(meet(i), stretch.begin));
+        let visit = |i: usize| self.space.limit(meet(i), stretch.begin);
         dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
     }
 
@@ -65,29 +65,8 @@ impl MeshHierarchy {
     ) -> bool {
         let range = [from, f64::INFINITY];
         let ray = NodeRay::new(self.space.stretch(start, direction, range), direction);
-        let visit = AnyBox(meets);
         let memory = &mut memory.0;
-        dispatch!(self.level, simd => self.tree.any(simd, &ray, memory, visit))
-    }
-}
-
-/// The leaves, each of which is passed to the caller.
-struct MeshBoxes<M>(M);
-
-impl<M: FnMut(usize) -> f32> Visit for MeshBoxes<M> {
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
-        (self.0)(leaf)
-    }
-}
-
-/// The leaves in a search for any hit.
-struct AnyBox<M>(M);
-
-impl<M: FnMut(usize) -> bool> AnyVisit for AnyBox<M> {
-    #[inline(always)]
-    fn is_hit(&mut self, leaf: usize) -> bool {
-        (self.0)(leaf)
+        dispatch!(self.level, simd => self.tree.any(simd, &ray, memory, meets))
     }
 }
 

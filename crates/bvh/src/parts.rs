@@ -1,8 +1,8 @@
 //! Builds a tree with eight boxes in a node from parts of a set of boxes, so that the binary tree
 //! of all boxes is never in memory.
 
-use crate::build::{TreeKind, built, number};
-use crate::collapse::{Collapsed, collapsed_parts};
+use crate::build::{TreeKind, built, in_parts, number};
+use crate::collapse::{Collapsed, collapsed};
 use crate::space::Space;
 use crate::wide::{Node, Wide};
 use glam::DVec3;
@@ -23,7 +23,7 @@ pub(crate) fn tree(
     bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
 ) -> Wide {
     let boxed = |i: &u32| space.padded(bounds(*i as usize));
-    let order = in_space(count, space, &bounds);
+    let order = in_parts(count, PART, space, &bounds);
     if count <= PART {
         let Collapsed { nodes, depth, .. } = part(&order, boxed);
         return Wide::new(nodes, depth);
@@ -61,35 +61,16 @@ pub(crate) fn tree(
     Wide::new(nodes, top.depth + depth)
 }
 
-/// Returns the numbers of boxes; if they are built in parts, in the order of a space-filling curve.
-fn in_space(
-    count: usize,
-    space: &Space,
-    bounds: &(impl Fn(usize) -> [DVec3; 2] + Sync),
-) -> Vec<u32> {
-    let numbers = 0..number(count);
-    if count <= PART {
-        return numbers.collect();
-    }
-    let place = |i| (space.place(bounds(i as usize)), i);
-    let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
-    order.par_sort_unstable();
-    order.into_iter().map(|(_, i)| i).collect()
-}
-
 /// Returns the tree over some of the boxes.
 fn part(numbers: &[u32], boxed: impl Fn(&u32) -> Aabb) -> Collapsed {
     let bvh = built(numbers.to_vec(), TreeKind::CollapsedSingle, boxed);
-    let mut collapsed = collapsed_parts(&bvh);
-    let boxes = collapsed.leaves.iter();
-    let boxes: Vec<u32> = boxes
-        .map(|[first, _]| bvh.primitive_indices[*first as usize])
-        .collect();
-    for node in &mut collapsed.nodes {
+    let mut part = collapsed(&bvh);
+    let of_leaf = |leaf: usize| bvh.primitive_indices[part.leaves[leaf][0] as usize];
+    for node in &mut part.nodes {
         node.map_children(|is_leaf, i| match is_leaf {
-            true => Node::leaf(boxes[i] as usize),
+            true => Node::leaf(of_leaf(i) as usize),
             false => Node::inner(i),
         });
     }
-    collapsed
+    part
 }

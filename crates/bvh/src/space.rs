@@ -1,6 +1,5 @@
 //! Converts boxes to f32, and pads them.
 
-use crate::single::single;
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::ploc::morton::morton_encode_u64_unorm;
@@ -135,4 +134,14 @@ fn is_sound(corners: &[DVec3; 2], largest: f64) -> bool {
 #[inline]
 pub(crate) fn vector(v: DVec3) -> Vec3A {
     Vec3A::new(single(v.x), single(v.y), single(v.z))
+}
+
+/// Returns a number in single precision, to find candidates.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "f32 is used only to find candidates, and padding covers its rounding errors"
+)]
+pub(crate) fn single(x: f64) -> f32 {
+    x as f32
 }

@@ -58,10 +58,11 @@ pub(crate) trait Visit {
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
-/// The operation on the leaves in a search for any hit.
-pub(crate) trait AnyVisit {
-    /// Checks whether the ray hits the content of a leaf.
-    fn is_hit(&mut self, leaf: usize) -> bool;
+impl<M: FnMut(usize) -> f32> Visit for M {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
+        self(leaf)
+    }
 }
 
 impl NodeRay {
@@ -104,14 +105,15 @@ impl Wide {
         }
     }
 
-    /// Checks whether a ray hits the content of any leaf. `waiting` is the memory of the search.
+    /// Checks whether `is_hit` returns true for any leaf whose box a ray meets. `waiting` is the
+    /// memory of the search.
     #[inline(always)]
     pub(crate) fn any<S: Simd>(
         &self,
         simd: S,
         ray: &NodeRay,
         waiting: &mut Vec<u32>,
-        mut visit: impl AnyVisit,
+        mut is_hit: impl FnMut(usize) -> bool,
     ) -> bool {
         waiting.resize(self.memory, 0);
         let mut count = 0;
@@ -132,7 +134,7 @@ impl Wide {
                 if child & LEAF == 0 {
                     break &self.nodes[child as usize];
                 }
-                if visit.is_hit((child ^ LEAF) as usize) {
+                if is_hit((child ^ LEAF) as usize) {
                     return true;
                 }
             };

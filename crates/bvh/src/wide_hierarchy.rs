@@ -1,10 +1,9 @@
 //! A hierarchy with eight boxes in a node, for many triangles and incoherent rays.
 
 use crate::build::{TreeKind, bvh};
-use crate::collapse;
+use crate::collapse::{Collapsed, collapsed};
 use crate::leaf::{self, Leaf, LeafRay};
-use crate::single::single;
-use crate::space::{Space, vector};
+use crate::space::{Space, single, vector};
 use crate::wide::{NodeRay, Wide};
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
@@ -63,7 +62,12 @@ impl WideHierarchy {
         let bounds = |i: usize| primitive(i).bounds();
         let space = Space::around((0..count).map(bounds), origins);
         let bvh = bvh(count, &space, TreeKind::Collapsed, bounds);
-        let (tree, leaves) = collapse::collapsed(&bvh);
+        let Collapsed {
+            mut nodes,
+            leaves,
+            depth,
+        } = collapsed(&bvh);
+        nodes.shrink_to_fit();
         let order = bvh.primitive_indices;
         let within = |[first, count]: &[u32; 2]| {
             let numbers = &order[*first as usize..(*first + *count) as usize];
@@ -73,7 +77,7 @@ impl WideHierarchy {
         Self {
             leaves: leaves.par_iter().map(within).collect(),
             order,
-            tree,
+            tree: Wide::new(nodes, depth),
             space,
             level: Level::new(),
         }
