@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 ///
 /// The second number may be lowered freely. Where a crate becomes smaller, it must be lowered.
 const LINES: &[(&str, usize, usize, &str)] = &[
-    ("bvh", 1261, 1261, ""),
+    ("bvh", 1261, 1211, ""),
     (
         "cli",
         4109,
@@ -26,8 +26,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "what triangles with interpolated normals do to radiance; `grouped` from pipeline",
     ),
     ("figures", 4650, 4650, ""),
-    ("fuzz", 125, 125, ""),
-    ("meshfile", 1631, 1631, ""),
+    ("fuzz", 125, 126, "meshes come from a crate of their own"),
+    ("meshfile", 1657, 1657, ""),
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3478, "flatland came from theory"),
     ("pipeline", 5436, 3426, ""),
@@ -76,8 +76,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_260,
-        "a roof, and the sky of the plain tracer",
+        69_261,
+        "a roof, the sky of the plain tracer, and an import of meshes",
     ),
 ];
 
