@@ -5,6 +5,7 @@ use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
 use etendue_compare::{PlaneReport, Verdict, compare};
+use etendue_field::tidy;
 use etendue_predict::test_of;
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::estimate;
@@ -38,11 +39,11 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
             let cells = vec![
                 plane.name.clone(),
                 p.name.clone(),
-                p.scene.to_string(),
+                tidy(p.scene),
                 format!("{:.7}", p.measured),
                 format!("{:.7}", p.error),
                 format!("{off:+.2}"),
-                format!("{:.4} %", 100.0 * p.detectable / p.scene),
+                format!("{:.4} %", 100.0 * p.detectable / p.scene.abs()),
             ];
             let reason = "1 % for the largest of ten normal numbers";
             let check = Check::new("off by", off.abs(), Below(bound)).because(reason);

@@ -76,8 +76,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_261,
-        "a roof, the sky of the plain tracer, and an import of meshes",
+        69_262,
+        "a roof, the sky of the plain tracer, and two imports",
     ),
 ];
 
