@@ -125,22 +125,54 @@ fn the_edge_that_moved_is_named() {
         "Rectangle(center:(-0.1,0),size:(0.08,0.1)),",
         "Rectangle(center:(0.1,0),size:(0.08,0.2))"
     );
-    for (shapes, [from, to], named) in [
-        (slit, ["edge:0.05", "edge:0.053"], "edge 2 of slit"),
-        (two, ["0.08,0.2", "0.08,0.215"], "side y of shape 2 of slit"),
+    let shapes =
+        |shapes: &str| format!(r#"Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:[{shapes}])"#);
+    let corners = "[(-0.2,-0.2),(-0.2,0.2),(0.2,0.2),(0.2,-0.2)]";
+    let polygon =
+        format!(r#"Aperture(name:"slit",center:(0.1,0.2,1.3),hole:Polygon(corners:{corners}))"#);
+    let mirror = concat!(
+        r#"--set surfaces=[Smooth(name:"m",center:(0.1,0.2,2.2),facing:(0,0.6,-0.8),"#,
+        r#"form:Sphere(-0.25),aperture:1,event:Mirror)] --set path.visits=["m"] "#,
+        r#"--set planes=[(name:"far",at:Distance(2.4))] --set window.u=Hann(0.5)"#,
+    );
+    for (mask, [from, to], named, rest) in [
         (
-            two,
-            ["(0.1,0)", "(0.107,0)"],
+            shapes(slit),
+            ["edge:0.05", "edge:0.056"],
+            "edge 2 of slit",
+            "",
+        ),
+        (
+            shapes(slit),
+            ["edge:0.05", "edge:0.056"],
+            "edge 2 of slit",
+            mirror,
+        ),
+        (
+            shapes(two),
+            ["0.08,0.2", "0.08,0.215"],
+            "side y of shape 2 of slit",
+            "",
+        ),
+        (
+            shapes(two),
+            ["(0.1,0)", "(0.113,0)"],
             "position x of shape 2 of slit",
+            mirror,
+        ),
+        (
+            polygon,
+            ["(0.2,0.2)", "(0.22,0.2)"],
+            "x of corner 3 of slit",
+            "",
         ),
     ] {
-        let run = |shapes: &str, options: &str| {
-            let mask = format!(r#"Shapes(name:"slit",center:(0.1,0.2,1.3),shapes:[{shapes}])"#);
-            format!("--set blockers=[{mask}] --photons 2^17 {options}")
+        let run = |mask: &str, options: &str| {
+            format!("--set blockers=[{mask}] {rest} --photons 2^18 {options}")
         };
         let folder = runs(&[
-            &run(shapes, "--seed 1 --out a"),
-            &run(&shapes.replace(from, to), "--seed 2 --out b"),
+            &run(&mask, "--seed 1 --out a"),
+            &run(&mask.replace(from, to), "--seed 2 --out b"),
         ]);
         let (code, text) = diff(folder.path(), "a b");
         assert_eq!(code, Some(1), "{text}");

@@ -8,7 +8,7 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
     Side, SliceGrid,
 };
-use etendue_theory::path::{Interaction, PathSurface, PathSystem};
+use etendue_theory::path::{Interaction, PathMask, PathSurface, PathSystem};
 use etendue_theory::{Model, Observed, Over, Plane, Predicted, RayBudget};
 use glam::DVec3;
 
@@ -55,15 +55,18 @@ pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     Some(Observed { system, plane }.predict(&[], over, BUDGET))
 }
 
-fn masks(setup: &Setup) -> Vec<(f64, Mask)> {
+fn masks(setup: &Setup) -> Vec<PathMask> {
     if setup.get(SettingKey::Fill) <= 0.0 {
         return Vec::new();
     }
-    let mask = Mask::Opaque {
-        shapes: shapes(setup),
-        half_planes: Vec::new(),
-    };
-    vec![(setup.get(SettingKey::Distance), mask)]
+    vec![PathMask {
+        name: "blockers".into(),
+        distance: setup.get(SettingKey::Distance),
+        mask: Mask::Opaque {
+            shapes: shapes(setup),
+            half_planes: Vec::new(),
+        },
+    }]
 }
 
 /// Returns the receiver in the frame at the light, facing the light.

@@ -8,6 +8,9 @@ use serde::Serialize;
 pub struct ConvexPolygon {
     /// Corners (x, y), in metres, counter-clockwise if X points to the right and Y up.
     corners: Vec<[f64; 2]>,
+    /// Whether the corners were given clockwise.
+    #[serde(skip)]
+    is_reversed: bool,
 }
 
 impl ConvexPolygon {
@@ -16,10 +19,14 @@ impl ConvexPolygon {
     #[must_use]
     pub fn new(mut corners: Vec<[f64; 2]>) -> Option<Self> {
         let area = moments(&corners).area;
-        if area < 0.0 {
+        let is_reversed = area < 0.0;
+        if is_reversed {
             corners.reverse();
         }
-        let polygon = Self { corners };
+        let polygon = Self {
+            corners,
+            is_reversed,
+        };
         let others_inside = |(i, [a, b]): (usize, [[f64; 2]; 2])| {
             let count = polygon.corners.len();
             (2..count).all(|k| turn(a, b, polygon.corners[(i + k) % count]) > 0.0)
@@ -35,6 +42,16 @@ impl ConvexPolygon {
     #[must_use]
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.corners
+    }
+
+    /// Returns the corners in the order in which [`new`](Self::new) received them, in metres.
+    #[must_use]
+    pub fn in_given_order(&self) -> Vec<[f64; 2]> {
+        let mut corners = self.corners.clone();
+        if self.is_reversed {
+            corners.reverse();
+        }
+        corners
     }
 
     /// Returns the two ends of each edge.
@@ -190,6 +207,7 @@ impl Hole {
             // A negative factor turns the plane by half a turn, which keeps the order of corners.
             Self::Polygon(polygon) => Self::Polygon(ConvexPolygon {
                 corners: polygon.corners.iter().map(|p| place(*p)).collect(),
+                ..*polygon
             }),
         }
     }

@@ -31,7 +31,7 @@ pub fn criterion(
     let surface = &chain.scatterers[0];
     let from_light = surface.frame.origin.z;
     let last = system.masks_before(from_light).next_back();
-    let last = last.map(|(distance, _)| *distance);
+    let last = last.map(|mask| mask.distance);
     let edge = if system.light.is_distant() {
         last
     } else {

@@ -1,10 +1,12 @@
 //! Derives the path of light to a plane from the scene.
 
 use crate::chain::stands_before;
-use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
+use etendue_field::{Light, Orientation, Patch, Side, Specular, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
-use etendue_theory::path::{Interaction, PatchExtent, PathSurface, PathSystem, reflections};
+use etendue_theory::path::{
+    Interaction, PatchExtent, PathMask, PathSurface, PathSystem, reflections,
+};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane, TriangleTree};
 use std::sync::Arc;
 
@@ -143,12 +145,17 @@ fn seen_from(event: Specular, back: bool) -> Specular {
 
 /// Returns the masks that light may cross before a plane, with their distances. Light that has not
 /// met a surface crosses no mask behind a plane that is orthogonal to it.
-fn masks(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
+fn masks(scene: &Scene, plane: &VirtualPlane) -> Vec<PathMask> {
     let is_straight = plane.leg == 0 && plane.orientation == Orientation::Orthogonal;
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| !is_straight || stands_before(layer.distance, scene, plane));
-    let mut masks: Vec<_> = layers.map(|l| (l.distance, l.mask.clone())).collect();
-    masks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let masks = layers.map(|layer| PathMask {
+        name: layer.name.clone(),
+        distance: layer.distance,
+        mask: layer.mask.clone(),
+    });
+    let mut masks: Vec<_> = masks.collect();
+    masks.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     masks
 }
 

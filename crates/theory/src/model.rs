@@ -59,6 +59,23 @@ pub trait Model: Clone {
         other.change(parameter, &mut |_| value)?;
         Some(other)
     }
+
+    /// Returns the step of a finite difference: `relative` times the scale of the parameter, but not
+    /// so large that the phases of the highest frequencies change by more than `turns` turns.
+    fn step(
+        &self,
+        parameter: Parameter,
+        (window, grid): (&Window, &SliceGrid),
+        [relative, turns]: [f64; 2],
+    ) -> Option<f64> {
+        let half_width = window.x.half_width();
+        let most = match self.unit(parameter) {
+            "m" => turns / grid.rho.max().max(1.0 / half_width),
+            "1/m" => turns / half_width,
+            _ => f64::INFINITY,
+        };
+        Some((relative * parameter.scale(self.value(parameter)?)).min(most))
+    }
 }
 
 /// A model with a parameter slightly increased and slightly decreased.
@@ -73,6 +90,15 @@ pub(crate) struct ShiftedModels<M> {
 /// The step of a finite-difference derivative, as a fraction of the parameter's scale.
 const STEP: f64 = 1e-3;
 
+/// The step of a parameter of a mask in [`Model::step`], if rays are followed. It is large enough for
+/// some rays to cross the edge of a shadow that moves, and small enough to change phases by at most
+/// a third of a radian.
+pub(crate) const STEPS_OF_EDGES: [f64; 2] = [5e-2, 0.05];
+
+/// The largest number of halvings of a step. Smaller steps of an edge would leave few rays between
+/// its positions.
+const MAX_HALVINGS: usize = 10;
+
 impl<M: Model> ShiftedModels<M> {
     /// Returns the models with a parameter increased and decreased by a small step.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
@@ -83,7 +109,8 @@ impl<M: Model> ShiftedModels<M> {
 
 impl<M> ShiftedModels<M> {
     /// Builds the models with a parameter increased and decreased by a step, and converts both
-    /// models by `into`.
+    /// models by `into`. The step is halved until both models exist: for example, a corner may move
+    /// only until the polygon is no longer convex.
     pub(crate) fn new<A: Model>(
         model: &A,
         parameter: Parameter,
@@ -92,9 +119,12 @@ impl<M> ShiftedModels<M> {
     ) -> Option<Self> {
         let value = model.value(parameter)?;
         let at = |value| Some(into(model.with(parameter, value)?));
-        Some(Self {
-            apart: 2.0 * step,
-            sides: [at(value + step)?, at(value - step)?],
+        let halved = std::iter::successors(Some(step), |step| Some(0.5 * step));
+        halved.take(MAX_HALVINGS).find_map(|step| {
+            Some(Self {
+                apart: 2.0 * step,
+                sides: [at(value + step)?, at(value - step)?],
+            })
         })
     }
 }

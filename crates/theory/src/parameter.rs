@@ -1,6 +1,6 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{Disc, Hole, Light, Mask, Patch, Rectangle, Shape};
+use etendue_field::{ConvexPolygon, Disc, Hole, Light, Mask, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// a surface of a path.
@@ -28,6 +28,10 @@ pub enum Parameter {
     /// A mask of more than four shapes has one position, which is the mean of the centres, and all
     /// shapes move together. Half-planes do not move.
     BlockerPosition(usize, usize, usize),
+    /// The position of a corner of a polygonal hole along X (0) or Y (1): the index of the mask, of
+    /// the corner in the scene's order, and of the axis. The other corners do not move. The corners
+    /// of a hole with more than eight corners are not parameters.
+    HoleCorner(usize, usize, usize),
     /// The edge of a half-plane of an opaque mask, with the index of the half-plane; the mask's
     /// other edges do not move.
     HalfPlaneEdge(usize, usize),
@@ -67,6 +71,19 @@ impl Parameter {
         }
     }
 
+    /// Returns the index of the mask to which the parameter belongs, or `None` for other parameters.
+    pub(crate) fn mask(self) -> Option<usize> {
+        match self {
+            Self::BlockerSide(i, ..)
+            | Self::BlockerPosition(i, ..)
+            | Self::HoleCorner(i, ..)
+            | Self::HalfPlaneEdge(i, _)
+            | Self::GratingFrequency(i)
+            | Self::GratingPhase(i) => Some(i),
+            _ => None,
+        }
+    }
+
     /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
@@ -79,6 +96,7 @@ impl Parameter {
             | Self::Travel(_)
             | Self::BlockerSide(..)
             | Self::BlockerPosition(..)
+            | Self::HoleCorner(..)
             | Self::HalfPlaneEdge(..)
             | Self::FocalLength(_) => "m",
         }
@@ -89,7 +107,7 @@ impl Parameter {
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             // The distance from the central ray tells nothing about how far an edge may move.
-            Self::BlockerPosition(..) | Self::HalfPlaneEdge(..) => 1.0,
+            Self::BlockerPosition(..) | Self::HoleCorner(..) | Self::HalfPlaneEdge(..) => 1.0,
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
                 value.abs().max(0.1)
             }
@@ -144,9 +162,16 @@ impl Parameter {
                 edges.map(|edge| Self::HalfPlaneEdge(index, edge)).collect()
             }
             Mask::Aperture(Hole::Shape(_)) => Vec::new(),
-            Mask::Aperture(Hole::Polygon(_)) => {
+            Mask::Aperture(Hole::Polygon(polygon)) => {
                 let [x, y] = [0, 1].map(|axis| Self::BlockerPosition(index, 0, axis));
-                vec![Self::BlockerSide(index, 0, 0), x, y]
+                let few = Some(polygon.corners().len()).filter(|count| *count <= MAX_CORNERS);
+                let corners = 0..few.unwrap_or(0);
+                let corners =
+                    corners.flat_map(|i| [0, 1].map(|axis| Self::HoleCorner(index, i, axis)));
+                [Self::BlockerSide(index, 0, 0), x, y]
+                    .into_iter()
+                    .chain(corners)
+                    .collect()
             }
             Mask::Grating(_) => vec![Self::GratingFrequency(index), Self::GratingPhase(index)],
         };
@@ -169,6 +194,9 @@ impl Parameter {
             }
             (Self::BlockerPosition(_, number, axis), _) => {
                 format!("position {} of {}", ["x", "y"][axis], of(number))
+            }
+            (Self::HoleCorner(_, corner, axis), _) => {
+                format!("{} of corner {} of {name}", ["x", "y"][axis], corner + 1)
             }
             (Self::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
                 let number = (half_planes.len() > 1).then(|| format!(" {}", edge + 1));
@@ -195,6 +223,12 @@ impl Parameter {
                 let mut shift = [0.0; 2];
                 shift[axis] = new(old) - old;
                 *hole = hole.mapped(1.0, shift);
+            }
+            (Self::HoleCorner(_, corner, axis), Mask::Aperture(Hole::Polygon(polygon))) => {
+                let mut corners = polygon.in_given_order();
+                let coordinate = corners.get_mut(corner)?.get_mut(axis)?;
+                *coordinate = new(*coordinate);
+                *polygon = ConvexPolygon::new(corners)?;
             }
             (Self::HalfPlaneEdge(_, edge), Mask::Opaque { half_planes, .. }) => {
                 let half = half_planes.get_mut(edge)?;
@@ -257,6 +291,9 @@ const MAX_SIDE: f64 = 1e9;
 
 /// The largest number of shapes of a mask that have parameters of their own.
 const MAX_SEPARATE: usize = 4;
+
+/// The largest number of corners of a polygonal hole that are parameters.
+const MAX_CORNERS: usize = 8;
 
 /// Returns the shapes of a mask or of its hole; none for a polygon or a grating.
 pub(crate) fn shapes_of(mask: &Mask) -> &[Shape] {

@@ -1,5 +1,6 @@
 //! Chains and windows for the tests of this crate.
 
+use crate::path::PathMask;
 use crate::{Chain, Operator, Source};
 use etendue_field::{
     ConvexPolygon, Disc, Grating, HalfPlane, Hole, Light, Mask, Profile, Rectangle, Shape, Window,
@@ -38,6 +39,15 @@ pub(crate) fn chain_of(
             light,
         },
         operators,
+    }
+}
+
+/// Builds a mask of a path. Its name is that of the first mask of [`chain_of`].
+pub(crate) fn mask_at(distance: f64, mask: Mask) -> PathMask {
+    PathMask {
+        name: "b".into(),
+        distance,
+        mask,
     }
 }
 

@@ -17,13 +17,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "`--save explorer`, and the words on noise that pipeline had",
     ),
     ("compare", 2927, 2927, ""),
-    ("explorer", 1050, 1050, ""),
+    ("explorer", 1050, 1053, "masks of a path have names"),
     ("export", 1413, 1415, "its head says what it leaves out"),
     (
         "field",
         3031,
-        3058,
-        "what triangles with interpolated normals do to radiance; `grouped` from pipeline",
+        3076,
+        "what triangles with interpolated normals do to radiance; `grouped` from pipeline; corners \
+         of a hole in the scene's order",
     ),
     ("figures", 4650, 4650, ""),
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
@@ -34,8 +35,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "predict",
         2917,
-        2943,
-        "a smooth mesh stops light on other legs",
+        2950,
+        "a smooth mesh stops light on other legs; masks of a path have names",
     ),
     ("python", 1640, 1640, ""),
     ("rayfile", 2394, 2394, ""),
@@ -61,8 +62,9 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "theory",
         15390,
-        15409,
-        "a ray finds the triangles of a mesh in its way by a tree",
+        15480,
+        "a ray finds the triangles of a mesh in its way by a tree; masks on paths and corners of \
+         holes are parameters",
     ),
     (
         "trace",
@@ -76,8 +78,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_262,
-        "a roof, the sky of the plain tracer, and two imports",
+        69_397,
+        "a roof, the sky of the plain tracer, two imports, and derivatives of masks on paths",
     ),
 ];
 

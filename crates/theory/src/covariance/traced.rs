@@ -5,7 +5,7 @@ use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
 use crate::parallel::{Chain, Operator};
 use crate::path::rays;
-use crate::path::{self, Observed, PathKind};
+use crate::path::{self, Observed, PathKind, PathMask};
 use crate::plane::Plane;
 use etendue_field::{
     Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
@@ -188,7 +188,7 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
 fn past_masks(view: &Observed, length: f64) -> Result<(SpectralCovariance, f64), Untraced> {
     let start = (of_light(&view.system.light)?, 0.0);
     let mut masks = view.system.masks_before(length);
-    masks.try_fold(start, |(light, at), (distance, mask)| {
+    masks.try_fold(start, |(light, at), PathMask { distance, mask, .. }| {
         let arriving = moved(&light, &AffineMap::travel(distance - at))?;
         Ok((masked(&arriving, mask)?, *distance))
     })

@@ -33,7 +33,7 @@ const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net by which derivatives are computed.
-const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
+const DERIVATIVE_NODES: [u32; 2] = [1 << 9, 1 << 15];
 /// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
 /// nodes of the prediction. Each node has two rays for each parameter.
 const FOR_DERIVATIVES: f64 = 0.5;

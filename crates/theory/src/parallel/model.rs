@@ -8,7 +8,7 @@ use crate::parameter::{New, Parameter};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
-use etendue_field::{Light, SliceGrid, Window};
+use etendue_field::{Light, Window};
 
 impl Model for Chain {
     fn light(&self) -> &Light {
@@ -151,23 +151,6 @@ impl Chain {
         }
     }
 
-    /// Returns the step of a finite difference: `relative` times the scale of the parameter, but not
-    /// so large that the phases of the highest frequencies change by more than `turns` turns.
-    pub(super) fn step(
-        &self,
-        parameter: Parameter,
-        (window, grid): (&Window, &SliceGrid),
-        [relative, turns]: [f64; 2],
-    ) -> Option<f64> {
-        let half_width = window.x.half_width();
-        let most = match self.unit(parameter) {
-            "m" => turns / grid.rho.max().max(1.0 / half_width),
-            "1/m" => turns / half_width,
-            _ => f64::INFINITY,
-        };
-        Some((relative * parameter.scale(self.value(parameter)?)).min(most))
-    }
-
     /// Returns ∫ L W, the light in the window if all occluders are removed.
     fn unblocked(&self, window: &Window) -> f64 {
         let mut open = self.clone();
@@ -182,13 +165,8 @@ impl Parameter {
     /// of the source.
     fn operator(self) -> Option<usize> {
         match self {
-            Self::Travel(i)
-            | Self::BlockerSide(i, ..)
-            | Self::BlockerPosition(i, ..)
-            | Self::HalfPlaneEdge(i, _)
-            | Self::GratingFrequency(i)
-            | Self::GratingPhase(i) => Some(i),
-            _ => None,
+            Self::Travel(i) => Some(i),
+            of_mask => of_mask.mask(),
         }
     }
 }
@@ -199,7 +177,7 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{
         ConvexPolygon, FrequencyAxis, HalfPlane, Hole, Mask, Profile, ProjectionGrid, Rectangle,
-        Shape,
+        Shape, SliceGrid,
     };
 
     #[test]

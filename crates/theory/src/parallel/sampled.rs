@@ -1,9 +1,9 @@
 //! Predictions by nets of rays. They are used for chains whose closed form takes too long or does
 //! not resolve a pattern.
 
-use crate::model::{Over, ShiftedModels};
+use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
 use crate::nets::RayBudget;
-use crate::path::{Interaction, Observed, PathSurface, PathSystem};
+use crate::path::{Interaction, Observed, PathMask, PathSurface, PathSystem};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
 use crate::{Chain, Parameter};
@@ -22,12 +22,8 @@ impl Chain {
         over: Over<'_>,
         budget: RayBudget,
     ) -> Predicted {
-        // Steps of parameters of masks move shadows. They are large enough for some rays to cross the
-        // shadow's edge, and small enough to change phases by at most a third of a radian.
-        const RELATIVE_STEP: f64 = 1e-2;
-        const TURNS: f64 = 0.05;
         let moved = |parameter: &Parameter| {
-            let step = self.step(*parameter, (over.0, over.1), [RELATIVE_STEP, TURNS])?;
+            let step = self.step(*parameter, (over.0, over.1), STEPS_OF_EDGES)?;
             ShiftedModels::new(self, *parameter, step, |chain| chain.followed(over.0))
         };
         let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
@@ -42,7 +38,11 @@ impl Chain {
         let distance = path.distance;
         let mut system = PathSystem::new(self.source.light.clone(), Vec::new());
         let masks = path.layers.iter();
-        let masks = masks.map(|layer| (distance - layer.distance, layer.mask.clone()));
+        let masks = masks.map(|layer| PathMask {
+            name: String::new(),
+            distance: distance - layer.distance,
+            mask: layer.mask.clone(),
+        });
         system.masks = masks.collect();
         let Some(reflection) = path.reflection else {
             let mut plane = Plane::orthogonal(Frame::IDENTITY.travelled(distance));

@@ -1,7 +1,7 @@
 //! The first-order chain of a path on which surfaces scatter light. It consists of affine maps
 //! between these surfaces and of their lobes.
 
-use super::{Interaction, Observed, PathSurface};
+use super::{Interaction, Observed, PathMask, PathSurface};
 use crate::geometry::{AffineMap, Matrix};
 use crate::obstacle::{LegRay, normal};
 use crate::path::rays::Incidence;
@@ -193,7 +193,7 @@ fn steps(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Vec<String
     let mut steps = Vec::new();
     let (mut name, mut travelled) = ("light", 0.0);
     let first_leg = visited.first()?.hit.z;
-    for (distance, mask) in system.masks_before(first_leg) {
+    for PathMask { distance, mask, .. } in system.masks_before(first_leg) {
         steps.push(words::travel(distance - travelled, name, "mask"));
         steps.push(words::mask("", mask));
         (name, travelled) = ("mask", *distance);

@@ -40,10 +40,10 @@ pub struct PathSystem {
     /// The light, which emits from the plane z = 0, along Z. A light that is a list of rays is not
     /// allowed.
     pub light: Light,
-    /// Masks in planes across the first leg, with their distances from the light in metres, in
-    /// ascending order. A mask attenuates light on every leg that crosses it. It may stand behind
-    /// the light, at a negative distance, or beyond the first surface.
-    pub masks: Vec<(f64, Mask)>,
+    /// Masks in planes across the first leg, in ascending order of distance. A mask attenuates light
+    /// on every leg that crosses it. It may stand behind the light, at a negative distance, or
+    /// beyond the first surface.
+    pub masks: Vec<PathMask>,
     /// Occluders beside the path.
     pub obstacles: Vec<Obstacle>,
     /// All surfaces of the path, in the order in which light meets them.
@@ -51,6 +51,17 @@ pub struct PathSystem {
     /// The number of surfaces that light has left before the plane. The next surface, if any, ends
     /// the last leg and does not occlude light on this leg.
     pub visited: usize,
+}
+
+/// A mask in a plane across the first leg.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathMask {
+    /// The name of the mask, which messages use.
+    pub name: String,
+    /// The distance from the light, in metres.
+    pub distance: f64,
+    /// What passes the plane.
+    pub mask: Mask,
 }
 
 /// A surface of the path.
@@ -141,9 +152,9 @@ impl PathSystem {
     }
 
     /// Returns the masks that the central ray crosses on its first leg of the given length.
-    pub fn masks_before(&self, length: f64) -> impl DoubleEndedIterator<Item = &(f64, Mask)> {
+    pub fn masks_before(&self, length: f64) -> impl DoubleEndedIterator<Item = &PathMask> {
         let masks = self.masks.iter();
-        masks.filter(move |(at, _)| 0.0 < *at && *at < length)
+        masks.filter(move |mask| 0.0 < mask.distance && mask.distance < length)
     }
 
     /// Returns the number of surfaces that scatter light before the plane.

@@ -2,9 +2,10 @@
 
 use super::rays::{self, CentralHit};
 use super::{
-    Interaction, Observed, PathKind, PathSurface, PathSystem, chain, reflections, scattering,
+    Interaction, Observed, PathKind, PathMask, PathSurface, PathSystem, chain, reflections,
+    scattering,
 };
-use crate::model::{Model, Over, ShiftedModels};
+use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, scale};
 use crate::predicted::Predicted;
@@ -29,6 +30,9 @@ impl Model for Observed {
 
     fn parameters(&self) -> Vec<Parameter> {
         let mut all = Parameter::of_light(&self.system.light);
+        let masks = self.system.masks.iter().enumerate();
+        let masks = masks.flat_map(|(i, one)| Parameter::of_mask(&one.mask, i));
+        all.extend(masks.filter(|parameter| self.is_parameter(*parameter)));
         let Some(last) = self.system.last_scatterer() else {
             all.extend(self.specular_parameters());
             all.retain(|parameter| self.is_parameter(*parameter));
@@ -65,8 +69,12 @@ impl Model for Observed {
             (Parameter::Index(i), _) => format!("index of {}", name(i)),
             (Parameter::FocalLength(i), _) => format!("focal length of {}", name(i)),
             _ => {
-                let of_light = parameter.name_of_light(self.light(), "light");
-                of_light.unwrap_or_else(|| panic!("this path has no parameter {parameter:?}"))
+                let mask = parameter.mask().and_then(|i| self.system.masks.get(i));
+                let named = match mask {
+                    Some(PathMask { name, mask, .. }) => parameter.name_of_mask(mask, name),
+                    None => parameter.name_of_light(self.light(), "light"),
+                };
+                named.unwrap_or_else(|| panic!("this path has no parameter {parameter:?}"))
             }
         }
     }
@@ -103,7 +111,10 @@ impl Model for Observed {
                 }
                 _ => return None,
             },
-            _ => parameter.change_light(&mut self.system.light, new)?,
+            _ => match parameter.mask() {
+                Some(i) => parameter.change_mask(&mut self.system.masks.get_mut(i)?.mask, new)?,
+                None => parameter.change_light(&mut self.system.light, new)?,
+            },
         }
         match parameter {
             Parameter::Incidence(i)
@@ -127,9 +138,14 @@ impl Model for Observed {
         let albedo = albedo.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others
-            .map(|other| ShiftedModels::nearby(self, *other))
-            .collect();
+        let shifted = |parameter: &Parameter| match parameter.mask() {
+            Some(_) => {
+                let step = self.step(*parameter, (over.0, over.1), STEPS_OF_EDGES)?;
+                ShiftedModels::new(self, *parameter, step, |moved| moved)
+            }
+            None => ShiftedModels::nearby(self, *parameter),
+        };
+        let moved: Option<Vec<_>> = others.map(shifted).collect();
         let moved = moved.expect("parameters of the path");
         let mut found = self.predicted(&moved, over, budget);
         let factor = parameters.iter().position(is_factor);
@@ -208,7 +224,7 @@ impl Observed {
             return false;
         }
         let value = self.value(parameter);
-        value.is_some_and(|value| value.abs() > ROUNDING_OF_ZERO)
+        value.is_some_and(|value| parameter.mask().is_some() || value.abs() > ROUNDING_OF_ZERO)
             && ShiftedModels::nearby(self, parameter).is_some()
     }
 

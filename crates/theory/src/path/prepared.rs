@@ -19,7 +19,7 @@ impl<'a> PreparedPath<'a> {
         let masks = system.masks.iter();
         Self {
             system,
-            masks: masks.map(|(at, mask)| Barrier::new(*at, mask)).collect(),
+            masks: masks.map(|m| Barrier::new(m.distance, &m.mask)).collect(),
         }
     }
 

@@ -5,13 +5,13 @@ use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::tests::covariance::{gaussian_window, power_spectrum};
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
 use crate::path::rays;
-use crate::path::{self, Interaction, PathSurface, PathSystem};
+use crate::path::{self, Interaction, PathMask, PathSurface, PathSystem};
 use crate::plane::Plane;
-use crate::testing::{chain_of, opaque};
+use crate::testing::{chain_of, mask_at, opaque};
 use crate::{Chain, Observed, Operator};
 use etendue_field::{
-    Brdf, Disc, Frame, Fresnel, Grating, Image, Light, Lobe, Mask, Patch, Pattern, Profile,
-    Reflectance, Shape, Specular, Window,
+    Brdf, Disc, Frame, Fresnel, Grating, Image, Light, Lobe, Patch, Pattern, Profile, Reflectance,
+    Shape, Specular, Window,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -109,8 +109,8 @@ fn beyond() -> Plane {
     Plane::orthogonal(frame.travelled(0.7))
 }
 
-fn masks() -> Vec<(f64, Mask)> {
-    vec![(0.4, opaque(vec![disc(-0.5, 0.2)]))]
+fn masks() -> Vec<PathMask> {
+    vec![mask_at(0.4, opaque(vec![disc(-0.5, 0.2)]))]
 }
 
 #[test]

@@ -3,8 +3,7 @@
 use super::central::{CentralHit, Incidence};
 use crate::geometry::{AffineMap, Edition, Matrix, SpectrumMap};
 use crate::obstacle::LegRay;
-use crate::path::Observed;
-use crate::path::{PathSurface, PathSystem};
+use crate::path::{Observed, PathMask, PathSurface, PathSystem};
 use crate::plane::Plane;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
@@ -133,7 +132,7 @@ impl Walk {
     /// Appends the steps through the masks of the first leg, and returns the distance of the last.
     fn cross(&mut self, system: &PathSystem, first_leg: f64) -> f64 {
         let mut travelled = 0.0;
-        for (distance, mask) in system.masks_before(first_leg) {
+        for PathMask { distance, mask, .. } in system.masks_before(first_leg) {
             self.travel(distance - travelled, "mask");
             self.steps.push(words::mask("", mask));
             travelled = *distance;

@@ -1,7 +1,7 @@
 //! The emission of a light.
 
 use crate::nets::LinearDensity;
-use crate::path::PathSystem;
+use crate::path::{PathMask, PathSystem};
 use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -45,7 +45,7 @@ impl PathSystem {
                 cycles[grating.axis] += grating.frequency.abs();
             }
         }
-        for (distance, mask) in &self.masks {
+        for PathMask { distance, mask, .. } in &self.masks {
             if let Some(grating) = mask.grating() {
                 let per_unit = if inner[0] == 0 { 1.0 } else { distance.abs() };
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;

@@ -7,7 +7,7 @@ use crate::geometry::{AffineMap, SpectrumMap};
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, NetPoints, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
-use crate::path::{Observed, PathSystem, PreparedPath};
+use crate::path::{Observed, PathMask, PathSystem, PreparedPath};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
@@ -330,7 +330,7 @@ fn summed(
     };
     let drawn = SampledField::new(field, &draw, window);
     let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
-    let is_grating = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Grating(_));
+    let is_grating = |one: &PathMask| matches!(one.mask, Mask::Grating(_));
     let is_open = system.masks.iter().all(is_grating) && system.obstacles.is_empty();
     if system.light.has_extent() || !is_open {
         return by_nets(grid, of_slices);

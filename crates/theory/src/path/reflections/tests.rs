@@ -5,7 +5,7 @@ use super::*;
 use crate::model::Over;
 use crate::obstacle::{Obstacle, ObstacleForm};
 use crate::path::{Interaction, PathSurface, PathSystem, chain, defect};
-use crate::testing::window;
+use crate::testing::{mask_at, window};
 use crate::{Model, Observed, Parameter, Plane, Predicted, RayBudget};
 use etendue_field::{
     Brdf, Environment, EnvironmentMap, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, LatLong,
@@ -159,7 +159,7 @@ fn one_surface_is_that_of_scattering() {
         let interaction = Interaction::Reflects(Box::new(reflectance(lobe)));
         let is_sky = matches!(light, Light::Environment { .. });
         let mut system = PathSystem::new(light, vec![surface(patch, interaction)]);
-        system.masks.push((0.5, mask));
+        system.masks.push(mask_at(0.5, mask));
         let [one, other] = [by_plane, predicted].map(|by| by(&system, &plane, &window));
         // These are the errors of 2·10⁶ paths; the error for a sky is larger, because the sky has a
         // narrow lobe.

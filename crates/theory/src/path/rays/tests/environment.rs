@@ -4,6 +4,7 @@ use super::super::draw::{RaySampler, RayStrategy};
 use super::super::region::neighbourhood;
 use super::*;
 use crate::nets::{DIMENSIONS, NetPoints};
+use crate::testing::mask_at;
 use etendue_field::{
     Environment, EnvironmentMap, Grating, LatLong, Mask, SphericalGaussian, TwoPlane,
 };
@@ -208,7 +209,7 @@ fn the_sky_past_a_grating() {
         phase: 0.4,
     };
     let mut system = under(&environment, vec![]);
-    system.masks = vec![(0.4, Mask::Grating(grating))];
+    system.masks = vec![mask_at(0.4, Mask::Grating(grating))];
     let tangent = on_sphere(0.3, Orientation::Tangent, Quantity::Radiance);
     for plane in [after(&system, 1.0), tangent] {
         let found = exact(&system, &plane, &window, &grid);

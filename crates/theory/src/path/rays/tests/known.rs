@@ -1,9 +1,12 @@
 //! Tests of predicted spectra against closed forms and Gauss rules.
 
 use super::*;
+use crate::Parameter;
 use crate::quadrature::gauss_legendre;
-use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, square};
-use etendue_field::{Grating, Mask, Shape};
+use crate::testing::{
+    chain_of, disc, half_plane, lambertian, mask_at, opaque, rectangles, spot, square,
+};
+use etendue_field::{ConvexPolygon, Grating, Hole, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// Relative error allowed for a midpoint rule: ten times the error at which refinement stops.
@@ -121,14 +124,14 @@ fn area_lights_agree_with_polygons() {
         let Some(Mask::Grating(grating)) = steps()[0].1 else {
             unreachable!()
         };
-        system.masks = vec![(0.6, Mask::Grating(grating))];
+        system.masks = vec![mask_at(0.6, Mask::Grating(grating))];
         let got = exact(&system, &after(&system, 1.5), &window, &grid);
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
         // A prediction for a grating that is one centimetre farther from the light differs
         // detectably.
-        system.masks = vec![(0.61, Mask::Grating(grating))];
+        system.masks = vec![mask_at(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);
         assert!(told > 3.0 * said, "{told}");
@@ -159,12 +162,99 @@ fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let steps = [(0.6, Some(mask.clone())), (0.9, None)];
     let expected = crate::slices(&chain_of(light.clone(), steps), &window, &grid);
     let mut system = PathSystem::new(light, vec![]);
-    system.masks = vec![(0.6, mask)];
+    system.masks = vec![mask_at(0.6, mask)];
     let got = exact(&system, &after(&system, 1.5), &window, &grid);
     (
         got.slices.relative_difference(&expected),
         got.error.unwrap(),
     )
+}
+
+/// Derivatives with respect to masks agree with those of closed forms.
+#[test]
+fn derivatives_of_masks_are_those_of_closed_forms() {
+    for mask in [
+        rectangles(&[square([0.05, 0.0], 0.1)]),
+        opaque(vec![disc([0.05, 0.0], 0.06)]),
+        half_plane(1, 0.12, true),
+        crate::testing::grating(0, 3.0, 0.4),
+        rectangular_hole(),
+    ] {
+        let known = by_closed_form(&mask);
+        assert!(!known.is_empty());
+        for (name, known) in known {
+            let off = by_rays(&mask, &[&name]).relative_difference(&known);
+            assert!(off < OF_DERIVATIVES, "{mask:?}, {name}: {off}");
+        }
+    }
+}
+
+/// Two corners of a polygon that move together move an edge of a rectangular hole. The side of the
+/// hole grows by as much, and its centre moves by half of it.
+#[test]
+fn corners_move_as_the_edge_between_them() {
+    let [x, y] = [0, 1].map(|axis| HOLE.extent(axis));
+    let mut corners = vec![[x[0], y[0]], [x[0], y[1]], [x[1], y[1]], [x[1], y[0]]];
+    let mut known = by_closed_form(&rectangular_hole()).into_iter();
+    let mut of = |part: &str| known.find(|(name, _)| name.starts_with(part)).unwrap().1;
+    let mut edge = of("side x");
+    edge.half += &(of("position x").half * Complex::from(0.5));
+    // Names follow the scene's order of corners, clockwise or not.
+    for names in [[3, 4], [1, 2]] {
+        let polygon = ConvexPolygon::new(corners.clone()).unwrap();
+        let mask = Mask::Aperture(Hole::Polygon(polygon));
+        let names = names.map(|number| format!("x of corner {number} of b"));
+        let off = by_rays(&mask, &[&names[0], &names[1]]).relative_difference(&edge);
+        assert!(off < OF_DERIVATIVES, "{names:?}: {off}");
+        corners.reverse();
+    }
+}
+
+/// Nets add nodes until derivatives have a relative error of 0.1; steps add less.
+const OF_DERIVATIVES: f64 = 0.15;
+
+const HOLE: Rectangle = Rectangle {
+    center: [0.05, 0.0],
+    size: [0.2; 2],
+};
+
+fn rectangular_hole() -> Mask {
+    Mask::Aperture(Hole::Shape(Shape::Rectangle(HOLE)))
+}
+
+fn light_above() -> Light {
+    spot(Shape::Rectangle(square([0.0, 0.05], 0.2)), 0.0)
+}
+
+fn by_closed_form(mask: &Mask) -> Vec<(String, Slices)> {
+    let steps = [(0.6, Some(mask.clone())), (0.9, None)];
+    let chain = chain_of(light_above(), steps);
+    let mut parameters = chain.parameters();
+    parameters.retain(|parameter| parameter.mask().is_some());
+    let names = parameters.iter().map(|parameter| chain.name(*parameter));
+    names.zip(derivatives(&chain, &parameters)).collect()
+}
+
+/// Returns the sum of the derivatives with respect to some parameters of a path's only mask.
+fn by_rays(mask: &Mask, names: &[&str]) -> Slices {
+    let mut system = PathSystem::new(light_above(), vec![]);
+    system.masks = vec![mask_at(0.6, mask.clone())];
+    let view = view(&system, &after(&system, 1.5));
+    let mut parameters = view.parameters();
+    parameters.retain(|parameter| names.contains(&view.name(*parameter).as_str()));
+    let each = derivatives(&view, &parameters).into_iter();
+    each.reduce(|sum, one| Slices {
+        half: sum.half + &one.half,
+        ..sum
+    })
+    .unwrap()
+}
+
+fn derivatives(model: &impl Model, parameters: &[Parameter]) -> Vec<Slices> {
+    let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
+    let grid = grid(2, [0.3, 0.3]);
+    let over = (&window, &grid, &ProjectionGrid::new(&window, 32));
+    model.predict(parameters, over, BUDGET).derivatives
 }
 
 #[test]
@@ -222,7 +312,7 @@ fn lens_images_a_slide() {
         lambertian(square([0.0; 2], 0.02)),
         vec![element("lens", patch, lens)],
     );
-    system.masks = vec![(1e-6, crate::testing::grating(0, 200.0, 0.0))];
+    system.masks = vec![mask_at(1e-6, crate::testing::grating(0, 200.0, 0.0))];
     let window = window(Profile::Hann(0.02), Profile::Hann(0.05));
     let rho = 200.0 * a / b;
     let axis = |spacing| FrequencyAxis { half: 1, spacing };

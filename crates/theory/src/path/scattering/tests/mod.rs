@@ -4,7 +4,7 @@ use super::*;
 use crate::RayBudget;
 use crate::geometry::AffineMap;
 use crate::path::{Interaction, PathChain, PathSurface, PathSystem, PreparedPath, chain};
-use crate::testing::{chain_of, opaque, window};
+use crate::testing::{chain_of, mask_at, opaque, window};
 use crate::{Model, Observed, Operator, Parameter, Plane, Predicted, slices};
 use etendue_field::{
     AngleTable, Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Grating, Image, LatLong,
@@ -191,7 +191,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     let grid = grid([0.2, 0.3]);
     let known = slices(&chain, &window, &grid);
     let mut system = system(area(0.3), 0.0, [0.0; 3], white(Lobe::Lambertian));
-    system.masks = vec![(0.6, opaque(blocker))];
+    system.masks = vec![mask_at(0.6, opaque(blocker))];
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
