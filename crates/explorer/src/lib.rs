@@ -9,6 +9,7 @@
 //!
 //! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 
+mod gloss;
 #[cfg(target_family = "wasm")]
 mod page;
 mod parts;

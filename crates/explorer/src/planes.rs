@@ -1,13 +1,12 @@
 //! Spectra and light fields at the planes along the path, computed by `etendue_theory`.
 
+use crate::gloss::{blurred_projection, blurred_slices};
 use crate::parts::{grid, lobe, shapes, square, window};
 use crate::plane::PathPlace;
 use crate::rays;
 use crate::setup::{SettingKey, Setup};
 use etendue_field::{Mask, Projection, ProjectionGrid, Slices};
-use etendue_theory::{
-    Chain, Operator, Source, blurred_projection, blurred_slices, projection, slices,
-};
+use etendue_theory::{Chain, Operator, Source, projection, slices};
 
 impl PathPlace {
     /// Returns the spectrum slice at azimuth 0.

@@ -76,8 +76,7 @@ pub use model::{Model, Over};
 pub use nets::{REPLICATES, RayBudget, RayNets};
 pub use obstacle::{Obstacle, ObstacleForm, TriangleTree};
 pub use parallel::{
-    Chain, Harmonics, Operator, Source, at, blurred_projection, blurred_slices, derivative,
-    projection, quadrature_error, slices,
+    Chain, Harmonics, Operator, Source, at, derivative, projection, quadrature_error, slices,
 };
 pub use parameter::Parameter;
 pub use path::{Observed, PathKind};

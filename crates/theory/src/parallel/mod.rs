@@ -25,7 +25,6 @@ mod disc;
 mod disc_resolution;
 mod error;
 pub(crate) mod expansion;
-mod gloss;
 mod harmonics;
 mod images;
 #[cfg(test)]
@@ -47,7 +46,6 @@ pub use at::at;
 pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
 pub use error::quadrature_error;
-pub use gloss::{blurred_projection, blurred_slices};
 pub use harmonics::Harmonics;
 pub use projection::projection;
 pub use slices::slices;

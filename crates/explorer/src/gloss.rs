@@ -15,12 +15,11 @@
 //! the field is the product of a function of (x, u) and a function of (y, v), as behind slats along
 //! y.
 
-use super::{projection, slices};
-use crate::Chain;
-use crate::shading::PlanarLobe;
 use etendue_field::{
     FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
 };
+use etendue_theory::shading::PlanarLobe;
+use etendue_theory::{Chain, projection, slices};
 use ndarray::Array2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -40,8 +39,7 @@ const MAX_FREQUENCIES: usize = 512;
 ///
 /// # Panics
 /// Panics if the grid has more than one azimuth.
-#[must_use]
-pub fn blurred_slices(
+pub(crate) fn blurred_slices(
     chain: &Chain,
     lobe: &PlanarLobe,
     window: &Window,
@@ -155,8 +153,7 @@ impl Blur {
 /// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. The
 /// lobe is treated as constant over a fraction of a cell, so the picture is accurate to this
 /// fraction of a cell.
-#[must_use]
-pub fn blurred_projection(
+pub(crate) fn blurred_projection(
     chain: &Chain,
     lobe: &PlanarLobe,
     window: &Window,
@@ -206,15 +203,65 @@ fn highest(reach: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::*;
-    use etendue_field::Complex;
+    use etendue_field::{Complex, Light, Mask, Rectangle, Shape};
+    use etendue_theory::{Operator, Source};
+
+    fn square(center: [f64; 2], side: f64) -> Shape {
+        Shape::Rectangle(Rectangle {
+            center,
+            size: [side; 2],
+        })
+    }
+
+    fn behind(shapes: Vec<Shape>) -> Chain {
+        let travel = |from: &str, to: &str| Operator::Travel {
+            from: from.into(),
+            to: to.into(),
+            distance: 0.5,
+        };
+        let mask = Mask::Opaque {
+            shapes,
+            half_planes: Vec::new(),
+        };
+        let blockers = Operator::Visibility {
+            name: "blockers".into(),
+            mask,
+        };
+        let light = Light::Area {
+            shape: square([0.0; 2], 0.2),
+            radiance: 1.0,
+            exponent: 0.0,
+        };
+        Chain {
+            source: Source {
+                name: "light".into(),
+                light,
+            },
+            operators: vec![
+                travel("light", "blockers"),
+                blockers,
+                travel("blockers", "end"),
+            ],
+        }
+    }
 
     fn behind_blockers() -> Chain {
-        chain(0.2, &[(0.5, blockers(3, 0.2, 0.1)), (0.5, vec![])])
+        let square_at = |i: usize, j: usize| {
+            let (i, j) = (i as f64, j as f64);
+            let jitter = [libm::sin(3.1 * i + 7.7 * j), libm::cos(5.3 * i - 2.9 * j)];
+            let center = [0.2 * (i - 1.0), 0.2 * (j - 1.0)];
+            square([0, 1].map(|k| center[k] + 0.05 * jitter[k]), 0.1)
+        };
+        behind((0..9).map(|k| square_at(k / 3, k % 3)).collect())
     }
 
     fn seen() -> Window {
-        window(Profile::Hann(0.3), Profile::Hann(0.3))
+        Window {
+            x: Profile::Hann(0.3),
+            y: Profile::Hann(0.3),
+            u: Profile::Hann(0.3),
+            v: Profile::Hann(0.3),
+        }
     }
 
     fn grid(half: usize, spacing: f64) -> SliceGrid {
@@ -251,7 +298,7 @@ mod tests {
 
     #[test]
     fn a_square_light_loses_as_much_along_y_as_along_x() {
-        let (chain, window, grid) = (chain(0.2, &[(1.0, vec![])]), seen(), grid(0, 1.0));
+        let (chain, window, grid) = (behind(Vec::new()), seen(), grid(0, 1.0));
         let lobe = PlanarLobe::Phong { exponent: 30.0 };
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
