@@ -3,12 +3,10 @@
 use crate::arguments::{Arguments, wrong};
 use crate::live::alive;
 use crate::run::Run;
-use etendue_pipeline::point_file;
-use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
-use etendue_report::variance_table;
 use etendue_store::{ArgumentStyle, Failure};
-use etendue_variance::{
-    FREQUENCIES, MAX_COUNTS, MAX_POINTS, PointCounts, PointFile, SETS, Sampler,
+use etendue_studies::variance::{
+    FREQUENCIES, MAX_COUNTS, MAX_POINTS, PointCounts, PointFile, SETS, Sampler, VarianceOptions,
+    VarianceStudy, point_file, table,
 };
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
@@ -38,7 +36,7 @@ pub(crate) fn variance(
         let found = study.run(live)?.ok_or_else(|| study.constant())?;
         let index = serde_json::to_string(&study.index((&run.scene, run.method), &found));
         let index = index.map_err(Failure::cannot_run)?;
-        Ok((index, variance_table::text(&found, &study.options)))
+        Ok((index, table::text(&found, &study.options)))
     })
 }
 

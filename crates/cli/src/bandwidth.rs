@@ -11,8 +11,8 @@ use etendue_report::table::aligned;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
-use etendue_sweep::values::{SweepPoint, points, shown};
-use etendue_sweep::{BandwidthRow, bandwidths, scene_at};
+use etendue_studies::sweep::values::{SweepPoint, points, shown};
+use etendue_studies::sweep::{BandwidthRow, bandwidths, scene_at};
 use std::path::PathBuf;
 
 /// Returns the scene at a point of the sweep, which must have one light.

@@ -8,7 +8,7 @@ use crate::warnings;
 use etendue_pipeline::Leader;
 use etendue_report::table::aligned;
 use etendue_store::Failure;
-use etendue_sweep::{FinishedSweep, SweepPoints, run};
+use etendue_studies::sweep::{FinishedSweep, SweepPoints, run};
 
 /// The maximum number of undecided planes whose reasons are printed.
 const MAX_REASONS: usize = 4;

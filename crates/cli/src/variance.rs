@@ -5,11 +5,10 @@ use crate::finish::finish;
 use crate::print::deliver;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
-use etendue_pipeline::variance::{VarianceOptions, VarianceStudy};
 use etendue_pipeline::{load, method};
 use etendue_report::pictures::PictureFiles;
-use etendue_report::{variance, variance_table};
 use etendue_store::{ArgumentStyle, Failure, PROBE, Plan, Results, VARIANCE};
+use etendue_studies::variance::{VarianceOptions, VarianceStudy, figure, table};
 
 /// The exit code if a prediction is undecided.
 const UNDECIDED: u8 = 4;
@@ -31,7 +30,7 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
     inputs.extend(files(&args.samplers).cloned());
     let plan = Plan {
         index: VARIANCE,
-        files: variance::NAMES.map(str::to_owned).to_vec(),
+        files: figure::NAMES.map(str::to_owned).to_vec(),
         inputs,
         force: args.work.force.force,
         arguments: ArgumentStyle::Command,
@@ -54,9 +53,9 @@ pub(crate) fn variance(args: &VarianceArgs) -> Result<u8, Failure> {
         Ok((results, found.ok_or_else(|| study.constant())?))
     })?;
     if !args.work.quiet {
-        deliver(&variance_table::text(&found, &study.options))?;
+        deliver(&table::text(&found, &study.options))?;
     }
-    let figure = variance::drawn(&scene.name, &found)?;
+    let figure = figure::drawn(&scene.name, &found)?;
     PictureFiles::new("variance".to_owned(), figure)?.write(&mut results)?;
     finish(
         results,

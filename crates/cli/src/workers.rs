@@ -6,7 +6,7 @@ use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
 use etendue_pipeline::{Leader, Silent, Workers, follow_points, follow_run, report_failure};
 use etendue_store::Failure;
-use etendue_sweep::SweepPoints;
+use etendue_studies::sweep::SweepPoints;
 use std::ffi::OsString;
 
 /// Runs a command line on a group of processes; returns the exit code. Only the commands `run`,

@@ -48,11 +48,7 @@ pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Fails if the grid `name`, measured with `options`, does not fit into memory.
-pub(crate) fn check_grid(
-    name: &str,
-    grid: &FieldGrid,
-    options: &FieldOptions,
-) -> Result<(), Failure> {
+pub fn check_grid(name: &str, grid: &FieldGrid, options: &FieldOptions) -> Result<(), Failure> {
     let memory = machine::available_memory();
     let bytes = options.bytes(grid, rayon::current_num_threads());
     if bytes > memory {

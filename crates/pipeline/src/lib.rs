@@ -24,13 +24,11 @@ mod measure;
 pub mod method;
 pub mod photons;
 pub mod planes;
-pub mod point_file;
 mod read_case;
 mod reporter;
 mod run;
 mod summary;
 mod target;
-pub mod variance;
 mod workers;
 
 pub use checkpoint::Checkpointing;

@@ -18,8 +18,6 @@ pub mod ray_file;
 mod shell;
 pub mod table;
 mod timing;
-pub mod variance;
-pub mod variance_table;
 mod write_result;
 
 pub use shell::shell_word;

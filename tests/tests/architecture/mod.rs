@@ -33,7 +33,6 @@ const MAY_USE: &[(&str, &str)] = &[
     ("scenefile", "field"),
     ("scene", "bvh field meshfile rayfile scenefile transform"),
     ("trace", "bvh field sampling scatter scene transform"),
-    ("variance", "field scene spectrum trace transform"),
     ("export", "field scene"),
     ("compare", "field spectrum theory transform"),
     ("predict", "compare field scene spectrum theory transform"),
@@ -46,20 +45,21 @@ const MAY_USE: &[(&str, &str)] = &[
     ("store", "compare field rayfile scene spectrum"),
     (
         "pipeline",
-        "compare field predict rayfile scene spectrum store trace variance",
+        "compare field predict rayfile scene spectrum store trace",
     ),
     (
         "report",
-        "compare explorer field figures pipeline predict rayfile scene spectrum store variance",
+        "compare explorer field figures pipeline predict rayfile scene spectrum store",
     ),
     (
-        "sweep",
-        "compare field figures pipeline predict report scene store theory",
+        "studies",
+        "compare field figures pipeline predict rayfile report scene spectrum store theory trace \
+         transform",
     ),
     (
         "view",
         "adaptive compare field figures import paths pipeline predict report spectrum store \
-         theory world",
+         studies theory world",
     ),
     (
         "paper",
@@ -69,7 +69,7 @@ const MAY_USE: &[(&str, &str)] = &[
     (
         "cli",
         "adaptive compare export field figures import paper pipeline predict rayfile report \
-         scene scenes spectrum store sweep theory variance view",
+         scene scenes spectrum store studies theory view",
     ),
 ];
 

@@ -4,8 +4,8 @@
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;
 use etendue_pipeline::load::SceneSource;
-use etendue_sweep::SweepRequest;
-use etendue_sweep::values::{Setting, Sweep, setting, sweep};
+use etendue_studies::sweep::SweepRequest;
+use etendue_studies::sweep::values::{Setting, Sweep, setting, sweep};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

@@ -2,9 +2,9 @@
 
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs, within};
 use clap::Args;
-use etendue_pipeline::point_file;
 use etendue_store::{ArgumentStyle, Failure};
-use etendue_variance::{
+use etendue_studies::variance::point_file;
+use etendue_studies::variance::{
     DEFAULT_FREQUENCIES, DEFAULT_SETS, FREQUENCIES, PointCounts, SETS, Sampler,
 };
 use std::path::PathBuf;

@@ -231,7 +231,7 @@ impl Observed {
     /// Changes the length of a leg, and moves the plane and all surfaces after the leg.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         // A surface that is visited on both sides of the leg cannot move away from itself.
-        let (before, after) = self.system.surfaces.split_at(leg);
+        let (before, after) = self.system.surfaces.split_at_checked(leg)?;
         let is_before = |surface: &PathSurface| before.iter().any(|one| one.name == surface.name);
         if after.iter().any(is_before) {
             return None;

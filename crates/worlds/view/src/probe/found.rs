@@ -2,9 +2,9 @@
 
 use super::covariance::FoundCovariance;
 use etendue_compare::{PlaneComparison, Verdict};
-use etendue_pipeline::variance::PlaneVariance;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
+use etendue_studies::variance::PlaneVariance;
 
 /// The results at a plane.
 #[derive(Debug)]

@@ -108,7 +108,7 @@ fn written(
             .iter()
             .try_for_each(|files| files.write(&mut results))?;
         if let Some(found) = &found.variance {
-            let figure = etendue_report::variance::drawn(note, found)?;
+            let figure = etendue_studies::variance::figure::drawn(note, found)?;
             PictureFiles::new(format!("{}/variance", plane.name), figure)?.write(&mut results)?;
         }
     }
@@ -136,7 +136,7 @@ fn written(
 
 fn files_of(name: &str, with_variance: bool) -> impl Iterator<Item = String> + use<'_> {
     let files = arrays::NAMES.into_iter().chain(pictures::NAMES);
-    let drawn = etendue_report::variance::NAMES.into_iter();
+    let drawn = etendue_studies::variance::figure::NAMES.into_iter();
     let files = files.chain(drawn.filter(move |_| with_variance));
     files.map(move |file| format!("{name}/{file}"))
 }

@@ -3,8 +3,8 @@
 use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
 use etendue_paths::{Budget, Paths, Question};
-use etendue_pipeline::variance::VarianceOptions;
 use etendue_store::{Failure, PROBE, Plan, Results};
+use etendue_studies::variance::VarianceOptions;
 use etendue_world::Camera;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -4,11 +4,11 @@ use super::scene::{BATCHES, ProbeRequest, budget, seed_at};
 use etendue_field::{TwoPlane, VirtualPlane};
 use etendue_paths::{BackwardProbe, Probe};
 use etendue_pipeline::Reporter;
-use etendue_pipeline::variance::{
+use etendue_store::Failure;
+use etendue_studies::variance::{
     PlaneVariance, RayRadiance, VarianceOptions, VarianceStudy, WindowLight, WindowRadiance,
     box_window,
 };
-use etendue_store::Failure;
 
 /// The differences between the seed of the backward rays and the seeds of the rays for the spectrum
 /// and for single radiances.

@@ -1,0 +1,181 @@
+//! The points of a sweep, each with its scene.
+
+use crate::sweep::request::SweepRequest;
+use crate::sweep::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
+use etendue_pipeline::load::{self, SceneSource};
+use etendue_pipeline::{Reporter, Run, Summary, judged};
+use etendue_predict::test_of;
+use etendue_scene::{RunFile, Scene};
+use etendue_store::{ArgumentStyle, Failure, Method};
+use std::collections::BTreeMap;
+
+/// The scene at each point of the requested sweep.
+#[derive(Debug)]
+pub struct SweepPoints {
+    pub(crate) source: SceneSource,
+    pub(crate) base: Scene,
+    pub(crate) sweeps: Vec<Sweep>,
+    pub(crate) method: Method,
+    pub(crate) points: Vec<SweepPoint>,
+    /// A scene for each point.
+    pub(crate) scenes: Vec<Scene>,
+}
+
+impl SweepPoints {
+    /// Reads the scene at all points.
+    pub fn read(request: &SweepRequest) -> Result<Self, Failure> {
+        let (set, sweeps) = settings(&request.set);
+        let mut source = request.scene.clone();
+        source.set.extend(set);
+        check(request, &source.set, &sweeps)?;
+        let options = |run: &mut RunFile| {
+            run.photons = request.photons.unwrap_or(run.photons);
+            run.seed = request.seed.unwrap_or(run.seed);
+        };
+        let base = load::scene(&source, options)?;
+        let points = points(&sweeps, request.together)?;
+        let has_own_seed = !request.common_seed && sweeps.iter().all(|s| s.path != "run.seed");
+        let at = |point| {
+            let mut at = scene_at(&source, point, options)?;
+            if has_own_seed {
+                at.run.seed = seed_of(&at);
+                at.file.run.seed = at.run.seed;
+            }
+            Ok(at)
+        };
+        let scenes = points.iter().map(at).collect::<Result<_, _>>()?;
+        Ok(Self {
+            source,
+            base,
+            sweeps,
+            method: request.method,
+            points,
+            scenes,
+        })
+    }
+
+    /// Returns the name of the scene.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.base.name
+    }
+
+    /// Returns the scene at each point.
+    #[must_use]
+    pub fn scenes(&self) -> &[Scene] {
+        &self.scenes
+    }
+
+    /// Returns the warnings about the scenes. Each warning is shown once, with the first point
+    /// that it concerns.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut told: Vec<String> = Vec::new();
+        let mut warnings = Vec::new();
+        for (point, scene) in self.points.iter().zip(&self.scenes) {
+            for warning in scene.warnings() {
+                // Among warnings that differ only in their numbers, only the first is shown.
+                let words: String = warning
+                    .chars()
+                    .filter(|c| !c.is_ascii_digit() && *c != '.')
+                    .collect();
+                if !told.contains(&words) {
+                    warnings.push(format!("at {}: {warning}", shown(point)));
+                    told.push(words);
+                }
+            }
+        }
+        warnings
+    }
+
+    /// Runs a point; returns its `summary.json`.
+    pub fn summary(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
+        let scene = self.scenes.get(point as usize);
+        let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
+        let case = Run::of(scene.clone(), self.method, Vec::new())?.measured_scene(reporter)?;
+        let summary = Summary::new(&case, &judged(&case, &test_of(&case.scene))?, Vec::new());
+        Ok(summary.json(&BTreeMap::new()))
+    }
+}
+
+/// Returns the seed of a point. The seed is derived from the point's scene and the seed of the
+/// sweep, and does not depend on the other points. The seed is so small that every reader of JSON
+/// represents it exactly.
+fn seed_of(scene: &Scene) -> u64 {
+    let hash = blake3::hash(scene.hash().as_bytes());
+    let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
+        let word: [u8; 8] = word.try_into().unwrap_or_default();
+        u64::from_le_bytes(word)
+    });
+    words.next().unwrap_or(0) >> 24
+}
+
+/// Fails if no field is swept, or if values for one field are given twice.
+fn check(
+    request: &SweepRequest,
+    set: &[(String, String)],
+    sweeps: &[Sweep],
+) -> Result<(), Failure> {
+    if sweeps.is_empty() {
+        let given: Vec<String> = set
+            .iter()
+            .map(|(path, value)| format!("{path}={value} is one value; "))
+            .collect();
+        let several = match request.scene.arguments {
+            ArgumentStyle::Command => {
+                "--set PATH=A..B:N or PATH=A,B,C gives a field several values, such as --set blockers.0.pitch=0.05..0.4:8"
+            }
+            ArgumentStyle::Python => {
+                "give a field several values in the argument set, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
+            }
+        };
+        let message = format!("nothing is swept: {}{several}", given.concat());
+        return Err(Failure::bad_input(message));
+    }
+    let options = [
+        ("run.photons", request.photons.is_some()),
+        ("run.seed", request.seed.is_some()),
+    ];
+    let options = options
+        .iter()
+        .filter(|(_, given)| *given)
+        .map(|(path, _)| *path);
+    let fixed = set.iter().map(|(path, _)| path.as_str()).chain(options);
+    let mut given: Vec<&str> = fixed
+        .chain(sweeps.iter().map(|sweep| sweep.path.as_str()))
+        .collect();
+    given.sort_unstable();
+    match given.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(Failure::bad_input(format!("{} is given twice", pair[0]))),
+        None => Ok(()),
+    }
+}
+
+/// Separates the fields that are set to one value from the swept fields.
+fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
+    let (mut set, mut sweeps) = (Vec::new(), Vec::new());
+    for setting in all {
+        match setting {
+            Setting::Value(path, value) => set.push((path.clone(), value.clone())),
+            Setting::Sweep(sweep) => sweeps.push(sweep.clone()),
+        }
+    }
+    (set, sweeps)
+}
+
+/// Returns the scene with some further fields set to numbers; `options` overrides fields at all
+/// points.
+pub fn scene_at(
+    source: &SceneSource,
+    point: &SweepPoint,
+    options: impl FnOnce(&mut RunFile),
+) -> Result<Scene, Failure> {
+    let mut source = source.clone();
+    let numbers = point.iter();
+    let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
+    source.set.extend(numbers);
+    load::scene(&source, options).map_err(|failure| Failure {
+        message: message_at(point, failure.message),
+        ..failure
+    })
+}
