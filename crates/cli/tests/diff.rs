@@ -131,53 +131,54 @@ fn the_edge_that_moved_is_named() {
     let polygon =
         format!(r#"Aperture(name:"slit",center:(0.1,0.2,1.3),hole:Polygon(corners:{corners}))"#);
     let mirror = concat!(
-        r#"--set surfaces=[Smooth(name:"m",center:(0.1,0.2,2.2),facing:(0,0.6,-0.8),"#,
-        r#"form:Sphere(-0.25),aperture:1,event:Mirror)] --set path.visits=["m"] "#,
-        r#"--set planes=[(name:"far",at:Distance(2.4))] --set window.u=Hann(0.5)"#,
+        r#" --set path.visits=["m"] --set planes=[(name:"far",at:Distance(2.4))] "#,
+        r#"--set window.u=Hann(0.5) --set surfaces=[Smooth(name:"m",center:(0.1,0.2,2.2),"#,
+        r#"facing:(0,0.6,-0.8),form:Sphere(-0.25),aperture:0.2,event:Mirror)]"#,
     );
-    for (mask, [from, to], named, rest) in [
+    let of = |mask: &str| format!("--set blockers=[{mask}]");
+    let lamp = "--set other_lights=[Disc(center:(0.2,0.2,0.6),radius:0.05)]";
+    for (options, [from, to], named) in [
+        (of(&shapes(slit)), ["e:0.05", "e:0.056"], "edge 2 of slit"),
         (
-            shapes(slit),
-            ["edge:0.05", "edge:0.056"],
+            of(&shapes(slit)) + mirror,
+            ["e:0.05", "e:0.056"],
             "edge 2 of slit",
-            "",
         ),
         (
-            shapes(slit),
-            ["edge:0.05", "edge:0.056"],
-            "edge 2 of slit",
-            mirror,
-        ),
-        (
-            shapes(two),
+            of(&shapes(two)),
             ["0.08,0.2", "0.08,0.215"],
             "side y of shape 2 of slit",
-            "",
         ),
         (
-            shapes(two),
+            of(&shapes(two)) + mirror,
             ["(0.1,0)", "(0.113,0)"],
             "position x of shape 2 of slit",
-            mirror,
         ),
         (
-            polygon,
+            of(&polygon),
             ["(0.2,0.2)", "(0.22,0.2)"],
             "x of corner 3 of slit",
-            "",
+        ),
+        (
+            of("") + mirror,
+            ["aperture:0.2", "aperture:0.21"],
+            "aperture of m",
+        ),
+        (
+            lamp.to_owned(),
+            ["(0.2,0.2", "(0.20315,0.2051"],
+            "position x of light (light 2)",
         ),
     ] {
-        let run = |mask: &str, options: &str| {
-            format!("--set blockers=[{mask}] {rest} --photons 2^18 {options}")
-        };
+        let run = |options: &str, more: &str| format!("{options} --photons 2^18 {more}");
         let folder = runs(&[
-            &run(&mask, "--seed 1 --out a"),
-            &run(&mask.replace(from, to), "--seed 2 --out b"),
+            &run(&options, "--seed 1 --out a"),
+            &run(&options.replace(from, to), "--seed 2 --out b"),
         ]);
         let (code, text) = diff(folder.path(), "a b");
         assert_eq!(code, Some(1), "{text}");
         let verdict = text.lines().find(|line| line.starts_with("verdict:"));
-        assert!(verdict.unwrap().contains(named), "{verdict:?}");
+        assert!(verdict.unwrap().contains(named), "{verdict:?} {text}");
     }
 }
 

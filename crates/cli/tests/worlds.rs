@@ -22,6 +22,16 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
+const EVEN_FLOOR: &str = r#"<scene version="3.0.0">
+  <sensor type="perspective"><float name="fov" value="10"/>
+    <transform name="to_world"><lookat origin="0, 0, 3.9" target="0, 0, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/><rfilter type="box"/></film>
+  </sensor>
+  <emitter type="point"><point name="position" x="0" y="0" z="5"/><float name="intensity" value="18"/></emitter>
+  <shape type="rectangle"><transform name="to_world"><scale value="50"/></transform></shape>
+</scene>
+"#;
+
 /// Returns a folder with the room scene, in which `from` is replaced by `to`.
 fn folder(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -255,6 +265,15 @@ fn a_probe_finds_variation_above_its_highest_frequency() {
                 );
             }
         }
+    }
+    // Neither is variation below the noise, such as that of a floor under a lamp.
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("even.xml"), EVEN_FLOOR).unwrap();
+    for seed in 1..4 {
+        let line =
+            format!("probe even.xml --pixel 8,8 --seed {seed} --rays 2^15 --photons 2^10 --out e");
+        let said = String::from_utf8(call(folder.path(), &line).stdout).unwrap();
+        assert!(said.contains("the picture is even"), "{seed}: {said}");
     }
     // Too few rays are not taken for a smooth or a fine picture.
     let folder = room();

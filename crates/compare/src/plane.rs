@@ -397,7 +397,7 @@ impl ComparedSides<'_> {
             photons_needed: judged.photons_needed,
             undecided: judged.undecided_reason.clone(),
             verdict: judged.verdict,
-            first_order: judged.first_order.clone(),
+            first_order: judged.first_order.clone().filter(|_| tells_noise),
             warnings: warnings(
                 self.predicted_radial,
                 grid,
@@ -425,6 +425,10 @@ impl ComparedSides<'_> {
     /// by at most 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
+        let pair = Pair {
+            error: pair.error.filter(|_| !self.has_dark_batch()),
+            ..pair
+        };
         let epsilon = self.prediction.systematic_error();
         let (Some(epsilon), Some(slope)) = (epsilon, pair.predicted) else {
             return pair;

@@ -45,7 +45,9 @@ pub use hole::{ConvexPolygon, Hole, HoleMoments};
 pub use image::Image;
 pub use light::Light;
 pub use mask::Mask;
-pub use number::{brief, decimals, fixed, grouped, percent, sinc, tidy, uncertain, whole};
+pub use number::{
+    brief, byte_size, decimals, fixed, grouped, percent, sinc, tidy, uncertain, whole,
+};
 pub use patch::{Patch, Specular};
 pub use pattern::{Pattern, Picture};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};

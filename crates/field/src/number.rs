@@ -108,6 +108,15 @@ pub fn grouped(n: u64) -> String {
     groups.join(" ")
 }
 
+/// Formats 1.25e9 as 1.2 GB, in the largest of MB, GB, TB and PB that is not above the number.
+#[must_use]
+pub fn byte_size(bytes: f64) -> String {
+    let mut units = ["MB", "GB", "TB", "PB"].iter().zip([1e6, 1e9, 1e12, 1e15]);
+    let found = units.rfind(|(_, unit)| bytes >= *unit);
+    let (name, unit) = found.unwrap_or((&"MB", 1e6));
+    format!("{:.1} {name}", bytes / unit)
+}
+
 #[cfg(test)]
 mod tests {
     use super::{brief, percent, tidy, uncertain};

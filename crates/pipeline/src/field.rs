@@ -5,7 +5,7 @@ use crate::measure::MeasuredScene;
 use crate::method::{judge_of, source};
 use crate::reporter::{Reporter, Work};
 use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField};
-use etendue_field::{FieldGrid, Slices, VirtualPlane};
+use etendue_field::{FieldGrid, Slices, VirtualPlane, byte_size};
 use etendue_predict::{Theory, predict_field, test_each};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{Aliasing, FieldMeasurement, FieldOptions, measure_field};
@@ -53,9 +53,9 @@ pub fn check_grid(name: &str, grid: &FieldGrid, options: &FieldOptions) -> Resul
     let bytes = options.bytes(grid, rayon::current_num_threads());
     if bytes > memory {
         let [nx, ny, nu, nv] = grid.cells;
-        let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
+        let [needed, memory] = [bytes, memory].map(|bytes| byte_size(bytes as f64));
         return Err(Failure::cannot_run(format!(
-            "{name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; {memory:.1} GB are available"
+            "{name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed}; {memory} are available"
         )));
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! Compares the work and the memory that a command needs with the available resources, before the
 //! command begins.
 
-use etendue_field::Light;
+use etendue_field::{Light, byte_size};
 use etendue_predict::{Applicability, Memory, too_much_work};
 use etendue_scene::Scene;
 use etendue_store::{Failure, machine};
@@ -70,7 +70,6 @@ pub fn check_memory(
         return Ok(());
     }
     let threads = counted(threads);
-    let gigabytes = |bytes: f64| format!("{:.2} GB", bytes / 1e9);
     let Memory {
         batches,
         threads: grids,
@@ -81,13 +80,13 @@ pub fn check_memory(
     Err(Failure::cannot_run(format!(
         "{}: a run on {threads} needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
         scene.name,
-        gigabytes(needed.total()),
-        gigabytes(batches),
+        byte_size(needed.total()),
+        byte_size(batches),
         scene.run.batches,
-        gigabytes(grids),
-        gigabytes(predictions),
-        gigabytes(comparison),
-        gigabytes(meshes),
-        gigabytes(available as f64)
+        byte_size(grids),
+        byte_size(predictions),
+        byte_size(comparison),
+        byte_size(meshes),
+        byte_size(available as f64)
     )))
 }

@@ -92,7 +92,10 @@ fn by<M: Model>(
     (budget, number): (RayBudget, Option<usize>),
     first_order: impl FnOnce(&etendue_theory::Predicted) -> Option<FirstOrder>,
 ) -> Prediction {
-    let parameters = model.parameters();
+    let mut parameters = model.parameters();
+    // The central ray begins at the centre of the first light.
+    let is_first = number.is_none_or(|number| number == 1);
+    parameters.retain(|p| !is_first || !matches!(p, Parameter::SourcePosition(_)));
     let found = model.predict(&parameters, over, budget);
     let first_order = first_order(&found);
     let name = |parameter| match number.filter(|_| is_of_light(parameter, &parameters)) {
@@ -101,6 +104,10 @@ fn by<M: Model>(
     };
     let derivatives = parameters.iter().copied().zip(found.derivatives);
     let parameters = derivatives.filter_map(|(parameter, derivative)| {
+        // Most surfaces are larger than the light that they meet.
+        if matches!(parameter, Parameter::SurfaceSize(..)) && derivative.is_dark() {
+            return None;
+        }
         Some(PredictedParameter {
             name: name(parameter),
             unit: model.unit(parameter).to_owned(),
@@ -171,7 +178,10 @@ pub fn predict_reference(
 /// `all` are the parameters of a model; the first travel begins at the light.
 fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
     match parameter {
-        Parameter::SourceSize(_) | Parameter::SpotExponent | Parameter::ImageWidth(_) => true,
+        Parameter::SourceSize(_)
+        | Parameter::SourcePosition(_)
+        | Parameter::SpotExponent
+        | Parameter::ImageWidth(_) => true,
         Parameter::Travel(_) => {
             let is_travel = |other: &&Parameter| matches!(other, Parameter::Travel(_));
             all.iter().find(is_travel) == Some(&parameter)

@@ -3,7 +3,7 @@
 use crate::applicability::Applicability;
 use crate::budget::budget;
 use etendue_compare::Class;
-use etendue_field::{ProjectionGrid, VirtualPlane};
+use etendue_field::{ProjectionGrid, VirtualPlane, byte_size};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::PredictionWork;
@@ -29,9 +29,11 @@ impl fmt::Display for TooMuchWork {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plane, work, total } = self;
         let (estimate, limit) = if work.bytes + work.bytes_each > MOST_BYTES {
-            let gigabytes = (work.bytes + work.bytes_each) / 1e9;
             let limit = format!("{:.0} GB", MOST_BYTES / 1e9);
-            (format!("{gigabytes:.1} GB on one core"), limit)
+            (
+                format!("{} on one core", byte_size(work.bytes + work.bytes_each)),
+                limit,
+            )
         } else {
             let steps = if work.steps.is_finite() {
                 format!(

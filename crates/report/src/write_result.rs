@@ -1,7 +1,7 @@
 //! Writes the result of a run: arrays, pictures and the page, and then the summary.
 
 use crate::{Stopwatch, explorer, page, pictures};
-use etendue_field::VirtualPlane;
+use etendue_field::{VirtualPlane, byte_size};
 use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Judged, MeasuredScene, Outcome, field, photons};
 use etendue_scene::Scene;
@@ -74,19 +74,11 @@ pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
     let (_, row) = photons::file_of(save)?;
     let planes = scene.planes.len();
     let each = row * scene.run.photons;
-    let [all, each] = [each * planes as u64, each].map(size);
+    let [all, each] = [each * planes as u64, each].map(|bytes| byte_size(bytes as f64));
     Some(format!(
         "--save {}: at most {all} on disk, {each} for each of {planes} planes",
         save.name()
     ))
-}
-
-fn size(bytes: u64) -> String {
-    let mut units = ["MB", "GB", "TB", "PB"].iter().zip([1e6, 1e9, 1e12, 1e15]);
-    let bytes = bytes as f64;
-    let found = units.rfind(|(_, unit)| bytes >= *unit);
-    let (name, unit) = found.unwrap_or((&"MB", 1e6));
-    format!("{:.1} {name}", bytes / unit)
 }
 
 /// Writes all files, with the summary last.

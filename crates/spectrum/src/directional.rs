@@ -66,9 +66,19 @@ impl DirectionalBandwidth {
         found.widest.value.error = errors[0];
         found.across.error = errors[1];
         found.power.error = errors[2];
-        let noise = power.noise_at_azimuths();
-        found.noise = PolarPower::new(noise.view(), &grid).map_or(0.0, |noise| noise.total);
+        found.noise = Self::noise(pictures)?;
         Ok(Some(found))
+    }
+
+    /// Returns the power that noise adds to the power of the mean spectrum.
+    ///
+    /// # Errors
+    ///
+    /// Fails if there are fewer than three measurements.
+    pub fn noise(pictures: &[Slices]) -> Result<f64, TooFewBatches> {
+        let azimuths = pictures.first().map_or(0, |first| first.grid.azimuths);
+        let noise = CrossPower::of_replicates(pictures, 0..azimuths)?.noise_at_azimuths();
+        Ok(PolarPower::new(noise.view(), &pictures[0].grid).map_or(0.0, |noise| noise.total))
     }
 
     /// Returns the bandwidths of the spectrum of a window alone, without errors.

@@ -8,6 +8,8 @@ use etendue_field::{ConvexPolygon, Disc, Hole, Light, Mask, Patch, Rectangle, Sh
 pub enum Parameter {
     /// The side of a rectangular light along X (0) or Y (1), or the radius of a disc (0).
     SourceSize(usize),
+    /// The position of a light's centre along X (0) or Y (1). The central ray does not move.
+    SourcePosition(usize),
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
     /// The first (0) or the second (1) width of a light's picture.
@@ -42,6 +44,8 @@ pub enum Parameter {
     /// The angle of incidence θ₀ of the central ray on a patch; a change turns only this patch
     /// about B.
     Incidence(usize),
+    /// The side of a rectangular surface along X (0) or Y (1), or the aperture of a patch (0).
+    SurfaceSize(usize, usize),
     /// A curvature of a patch, k₁ (0) or k₂ (1). Other curvatures of the patch change too if they
     /// are equal to this curvature. The patch's vertex does not move.
     Curvature(usize, usize),
@@ -64,7 +68,9 @@ impl Parameter {
             } => {
                 let sizes = size_axes(std::slice::from_ref(shape)).into_iter();
                 let exponent = (*exponent > 0.0).then_some(Self::SpotExponent);
-                sizes.map(Self::SourceSize).chain(exponent).collect()
+                let positions = [0, 1].map(Self::SourcePosition);
+                let sizes = sizes.map(Self::SourceSize).chain(positions);
+                sizes.chain(exponent).collect()
             }
             Light::Projector { .. } | Light::Beam { .. } => [0, 1].map(Self::ImageWidth).to_vec(),
             _ => Vec::new(),
@@ -84,6 +90,12 @@ impl Parameter {
         }
     }
 
+    /// Checks whether the parameter places edges or a light. Its value may be zero, and its finite
+    /// differences need large steps.
+    pub(crate) fn places(self) -> bool {
+        matches!(self, Self::SourcePosition(_) | Self::SurfaceSize(..)) || self.mask().is_some()
+    }
+
     /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
@@ -92,12 +104,14 @@ impl Parameter {
             Self::GratingPhase(_) | Self::Incidence(_) => "rad",
             Self::GratingFrequency(_) | Self::Curvature(..) => "1/m",
             Self::SourceSize(_)
+            | Self::SourcePosition(_)
             | Self::ImageWidth(_)
             | Self::Travel(_)
             | Self::BlockerSide(..)
             | Self::BlockerPosition(..)
             | Self::HoleCorner(..)
             | Self::HalfPlaneEdge(..)
+            | Self::SurfaceSize(..)
             | Self::FocalLength(_) => "m",
         }
     }
@@ -107,7 +121,10 @@ impl Parameter {
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             // The distance from the central ray tells nothing about how far an edge may move.
-            Self::BlockerPosition(..) | Self::HoleCorner(..) | Self::HalfPlaneEdge(..) => 1.0,
+            Self::SourcePosition(_)
+            | Self::BlockerPosition(..)
+            | Self::HoleCorner(..)
+            | Self::HalfPlaneEdge(..) => 1.0,
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
                 value.abs().max(0.1)
             }
@@ -123,6 +140,7 @@ impl Parameter {
                 let word = size_word(std::slice::from_ref(shape), axis);
                 Some(format!("{word} of {name}"))
             }
+            (Self::SourcePosition(axis), _) => Some(position(axis, name)),
             (Self::SpotExponent, _) => Some(format!("exponent of {name}")),
             (Self::ImageWidth(axis), _) => Some(format!("width {} of image", axis + 1)),
             _ => None,
@@ -135,6 +153,9 @@ impl Parameter {
         match (self, light) {
             (Self::SourceSize(axis), Light::Area { shape, .. }) => {
                 resize(std::slice::from_mut(shape), axis, new);
+            }
+            (Self::SourcePosition(axis), Light::Area { shape, .. }) => {
+                reposition(std::slice::from_mut(shape), axis, new);
             }
             (Self::SpotExponent, Light::Area { exponent, .. }) => *exponent = new(*exponent),
             (
@@ -192,9 +213,7 @@ impl Parameter {
                 let group = shapes.chunks(size).nth(number)?;
                 format!("{} of {}", size_word(group, axis), of(number))
             }
-            (Self::BlockerPosition(_, number, axis), _) => {
-                format!("position {} of {}", ["x", "y"][axis], of(number))
-            }
+            (Self::BlockerPosition(_, number, axis), _) => position(axis, &of(number)),
             (Self::HoleCorner(_, corner, axis), _) => {
                 format!("{} of corner {} of {name}", ["x", "y"][axis], corner + 1)
             }
@@ -256,6 +275,10 @@ impl Parameter {
         }
         Some(())
     }
+}
+
+fn position(axis: usize, name: &str) -> String {
+    format!("position {} of {name}", ["x", "y"][axis])
 }
 
 /// Returns the axes of the curvatures of a patch that are parameters; equal curvatures are a

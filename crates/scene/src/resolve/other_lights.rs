@@ -1,11 +1,10 @@
 //! Resolves further lights, each to a scene in which it is the only light.
 
 use super::faults::vector;
-use super::planes::gigabytes;
 use super::{Resolver, SAME_PLANE};
 use crate::scene::{Leg, MeshObject, Scene};
 use crate::triangles::Triangles;
-use etendue_field::{Frame, Light, Shape, tidy};
+use etendue_field::{Frame, Light, Shape, byte_size, tidy};
 use etendue_scenefile::{Fault, LightFile, fault};
 use glam::DVec3;
 
@@ -38,11 +37,11 @@ impl Resolver<'_> {
                     "other_lights",
                     format!(
                         "{copies} lights, which need {} for copies of all meshes",
-                        gigabytes(bytes)
+                        byte_size(bytes)
                     ),
                     format!(
                         "at most the available memory, {}",
-                        gigabytes(self.memory as f64)
+                        byte_size(self.memory as f64)
                     ),
                 )
             });

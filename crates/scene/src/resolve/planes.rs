@@ -4,7 +4,8 @@ use super::faults::{names, show};
 use super::{PathStop, Resolver, SAME_PLANE};
 use crate::scene::{CentralRay, Object};
 use etendue_field::{
-    Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, tidy,
+    Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, byte_size,
+    tidy,
 };
 use etendue_scenefile::Fault;
 use etendue_scenefile::did_you_mean;
@@ -379,19 +380,15 @@ impl Resolver<'_> {
         if bytes > memory as f64 {
             self.faults.all.push(Fault {
                 field: "frequencies of all planes".to_owned(),
-                value: format!("{} for the spectra of {batches} batches", gigabytes(bytes)),
+                value: format!("{} for the spectra of {batches} batches", byte_size(bytes)),
                 allowed: format!(
                     "at most the available memory, {}: use lower frequencies, a smaller window, or lengths in metres",
-                    gigabytes(memory as f64)
+                    byte_size(memory as f64)
                 ),
                 memory: true,
             });
         }
     }
-}
-
-pub(super) fn gigabytes(bytes: f64) -> String {
-    format!("{:.1} GB", bytes / 1e9)
 }
 
 /// Checks whether a frame lies across the first leg.

@@ -33,10 +33,10 @@ const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
 /// Minimum and maximum number of nodes in each net by which derivatives are computed.
-const DERIVATIVE_NODES: [u32; 2] = [1 << 9, 1 << 15];
+const DERIVATIVE_NODES: [u32; 2] = [1 << 8, 1 << 15];
 /// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
 /// nodes of the prediction. Each node has two rays for each parameter.
-const FOR_DERIVATIVES: f64 = 0.5;
+const FOR_DERIVATIVES: f64 = 0.25;
 /// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
 /// derivative, the measured value of a parameter is wrong by about the square of this error, times
 /// the difference between the measured value and the scene's value.
@@ -227,7 +227,9 @@ pub(crate) fn means(
     let end = |running: &[Running], each: u32| {
         let of_field = |field: usize| NetMean::new(running.iter().map(|net| &net.slices[field]));
         let mut means: Vec<NetMean> = (0..integrand.fields()).map(of_field).collect();
-        let is_accurate = means.iter().all(|mean| mean.error <= DERIVATIVE_ERROR);
+        // A parameter that changes no ray has no derivative.
+        let is_known = |mean: &NetMean| mean.error <= DERIVATIVE_ERROR || mean.slices.is_dark();
+        let is_accurate = means.iter().all(is_known);
         for mean in &mut means {
             mean.slices.half /= Complex::from(f64::from(each));
         }

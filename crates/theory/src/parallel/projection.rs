@@ -19,8 +19,9 @@ use std::f64::consts::TAU;
 const NODES: usize = 5;
 /// Number of nodes that are added for each cycle of a grating in a cell.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// Maximum number of nodes along each direction of a triangle. If a cell contains dozens of periods
-/// of a grating, this number is too small, and the grating is undersampled.
+/// Maximum number of nodes along each direction of a triangle. If a cell contains more periods than
+/// they resolve, a single grating is replaced by its mean: its mean over a cell differs by less than
+/// 1 % from it. Several gratings are undersampled, because their product may have a slow beat.
 const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
@@ -103,8 +104,7 @@ fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
 /// Cells of (x, u) in units of the half-widths of the window.
 struct Cells<'a> {
     window: &'a Window,
-    /// The gratings along x, each with its distance upstream of the plane.
-    gratings: Vec<(&'a Grating, f64)>,
+    gratings: CellGratings<'a>,
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
@@ -115,28 +115,43 @@ struct Cells<'a> {
     nodes: Vec<(f64, f64)>,
 }
 
-/// Returns the gratings along x of a path, each with its distance upstream of the plane.
-fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
+/// The gratings along x of a path.
+struct CellGratings<'a> {
+    /// The gratings that nodes resolve, each with its distance upstream of the plane.
+    resolved: Vec<(&'a Grating, f64)>,
+    /// The mean transmittance of the others.
+    mean: f64,
+    /// Number of nodes along each direction of a triangle within a cell.
+    nodes: usize,
+}
+
+fn gratings<'a>(path: &ChainSegment<'a>, grid: &ProjectionGrid) -> CellGratings<'a> {
     let layers = path.layers.iter();
     let along_x = layers.filter_map(|layer| match layer.mask {
         Mask::Grating(grating) if grating.axis == 0 => Some((grating, layer.distance)),
         _ => None,
     });
-    along_x.collect()
-}
-
-/// Returns the number of nodes along each direction of a triangle within a cell.
-fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
+    let mut resolved: Vec<(&Grating, f64)> = along_x.collect();
     let cell = [grid.half_x, grid.half_u].map(|half| 2.0 * half / grid.bins as f64);
-    let cycles = gratings
+    let cycles = resolved
         .iter()
         .map(|(g, h)| g.frequency.abs() * (cell[0] + h.abs() * cell[1]));
-    NODES + whole((cycles.sum::<f64>() * NODES_PER_CYCLE).min(MOST_NODES))
+    let mut more = cycles.sum::<f64>() * NODES_PER_CYCLE;
+    let mut mean = 1.0;
+    if resolved.len() == 1 && more > MOST_NODES {
+        resolved.clear();
+        (mean, more) = (0.5, 0.0);
+    }
+    CellGratings {
+        resolved,
+        mean,
+        nodes: NODES + whole(more.min(MOST_NODES)),
+    }
 }
 
 /// Returns the number of nodes for the picture of a path.
 pub(crate) fn nodes_of_cells(path: &ChainSegment<'_>, grid: &ProjectionGrid) -> usize {
-    nodes(&gratings(path), grid)
+    gratings(path, grid).nodes
 }
 
 impl<'a> Cells<'a> {
@@ -146,8 +161,8 @@ impl<'a> Cells<'a> {
         slope: &Slope,
         grid: &ProjectionGrid,
     ) -> Self {
-        let gratings = gratings(path);
-        let nodes = gauss_legendre(nodes(&gratings, grid)).into_iter();
+        let gratings = gratings(path, grid);
+        let nodes = gauss_legendre(gratings.nodes).into_iter();
         Self {
             window,
             gratings,
@@ -251,9 +266,10 @@ impl<'a> Cells<'a> {
             x: along, u: angle, ..
         } = self.window;
         let (x, u) = (x * along.half_width(), u * angle.half_width());
-        let gratings = self.gratings.iter();
-        let seen = gratings.map(|(grating, h)| grating.transmittance(x - h * u, 0.0));
-        along.value(x) * slope(u) * seen.product::<f64>()
+        let CellGratings { resolved, mean, .. } = &self.gratings;
+        let seen = resolved.iter();
+        let seen = seen.map(|(grating, h)| grating.transmittance(x - h * u, 0.0));
+        along.value(x) * slope(u) * mean * seen.product::<f64>()
     }
 
     /// Returns the cosine series Σ termsₙ cos(2π n f u) at u, by Clenshaw's recurrence.

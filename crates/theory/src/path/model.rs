@@ -2,8 +2,8 @@
 
 use super::rays::{self, CentralHit};
 use super::{
-    Interaction, Observed, PathKind, PathMask, PathSurface, PathSystem, chain, reflections,
-    scattering,
+    Interaction, Observed, PatchExtent, PathKind, PathMask, PathSurface, PathSystem, chain,
+    reflections, scattering,
 };
 use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
@@ -11,8 +11,8 @@ use crate::parameter::{New, Parameter, change_curvature, curvatures, scale};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{
-    Complex, Disc, Frame, Light, Orientation, Pattern, Rectangle, Reflectance, Shape, Specular,
-    Weight,
+    Complex, Disc, Frame, Light, Orientation, Patch, Pattern, Rectangle, Reflectance, Shape,
+    Specular, Weight,
 };
 use glam::{DQuat, DVec3};
 
@@ -33,6 +33,8 @@ impl Model for Observed {
         let masks = self.system.masks.iter().enumerate();
         let masks = masks.flat_map(|(i, one)| Parameter::of_mask(&one.mask, i));
         all.extend(masks.filter(|parameter| self.is_parameter(*parameter)));
+        let surfaces = self.system.first_visits();
+        all.extend(surfaces.flat_map(|(i, surface)| surface.sizes(i)));
         let Some(last) = self.system.last_scatterer() else {
             all.extend(self.specular_parameters());
             all.retain(|parameter| self.is_parameter(*parameter));
@@ -65,6 +67,10 @@ impl Model for Observed {
             (Parameter::Travel(0), _) => format!("travel light to {}", name(0)),
             (Parameter::Travel(i), _) => format!("travel {} to {}", name(i - 1), name(i)),
             (Parameter::Incidence(i), _) => format!("incidence on {}", name(i)),
+            (Parameter::SurfaceSize(i, axis), _) => match surfaces[i].extent {
+                PatchExtent::Whole => format!("aperture of {}", name(i)),
+                PatchExtent::Rectangle(_) => format!("side {} of {}", ["x", "y"][axis], name(i)),
+            },
             (Parameter::Curvature(i, axis), _) => format!("curvature {} of {}", axis + 1, name(i)),
             (Parameter::Index(i), _) => format!("index of {}", name(i)),
             (Parameter::FocalLength(i), _) => format!("focal length of {}", name(i)),
@@ -97,7 +103,19 @@ impl Model for Observed {
                 let frame = &mut self.system.surfaces.get_mut(i)?.patch.frame;
                 *frame = tilted(frame, &hit, by);
             }
-            Parameter::Curvature(i, axis) => self.curve(i, axis, new)?,
+            Parameter::Curvature(i, axis) => {
+                self.reshape(i, |patch, _| change_curvature(patch, axis, new))?
+            }
+            Parameter::SurfaceSize(i, axis) => self.reshape(i, |patch, extent| {
+                match extent {
+                    PatchExtent::Whole => patch.aperture = new(patch.aperture),
+                    PatchExtent::Rectangle(size) => {
+                        size[axis] = new(size[axis]);
+                        patch.aperture = 0.5 * libm::hypot(size[0], size[1]);
+                    }
+                }
+                Some(())
+            })?,
             Parameter::Index(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
                 Interaction::Specular(Specular::Refraction { front, back }) => {
                     let denser = if *front > *back { front } else { back };
@@ -119,6 +137,7 @@ impl Model for Observed {
         match parameter {
             Parameter::Incidence(i)
             | Parameter::Curvature(i, _)
+            | Parameter::SurfaceSize(i, _)
             | Parameter::Index(i)
             | Parameter::FocalLength(i) => self.system.repeat(i),
             Parameter::Albedo | Parameter::Lobe => self.system.repeat(last?),
@@ -138,12 +157,12 @@ impl Model for Observed {
         let albedo = albedo.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let shifted = |parameter: &Parameter| match parameter.mask() {
-            Some(_) => {
-                let step = self.step(*parameter, (over.0, over.1), STEPS_OF_EDGES)?;
-                ShiftedModels::new(self, *parameter, step, |moved| moved)
+        let shifted = |parameter: &Parameter| {
+            if !parameter.places() {
+                return ShiftedModels::nearby(self, *parameter);
             }
-            None => ShiftedModels::nearby(self, *parameter),
+            let step = self.step(*parameter, (over.0, over.1), STEPS_OF_EDGES)?;
+            ShiftedModels::new(self, *parameter, step, |moved| moved)
         };
         let moved: Option<Vec<_>> = others.map(shifted).collect();
         let moved = moved.expect("parameters of the path");
@@ -224,7 +243,7 @@ impl Observed {
             return false;
         }
         let value = self.value(parameter);
-        value.is_some_and(|value| parameter.mask().is_some() || value.abs() > ROUNDING_OF_ZERO)
+        value.is_some_and(|value| parameter.places() || value.abs() > ROUNDING_OF_ZERO)
             && ShiftedModels::nearby(self, parameter).is_some()
     }
 
@@ -254,11 +273,15 @@ impl Observed {
         Some(())
     }
 
-    /// Changes one curvature of the patch of surface `i`.
-    fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
+    /// Changes the patch and the extent of surface `i`.
+    fn reshape(
+        &mut self,
+        i: usize,
+        change: impl FnOnce(&mut Patch, &mut PatchExtent) -> Option<()>,
+    ) -> Option<()> {
         let is_last = i + 1 == self.system.visited;
-        let patch = &mut self.system.surfaces.get_mut(i)?.patch;
-        change_curvature(patch, axis, new)?;
+        let PathSurface { patch, extent, .. } = self.system.surfaces.get_mut(i)?;
+        change(patch, extent)?;
         // A plane with local normals that light leaves is on the surface itself.
         if is_last && !self.plane.is_arriving() && self.plane.patch.is_some() {
             self.plane.patch = Some(*patch);
@@ -312,11 +335,13 @@ impl PathSystem {
         let PathSurface {
             name,
             patch,
+            extent,
             interaction,
             ..
         } = self.surfaces[number].clone();
         for visit in self.surfaces.iter_mut().filter(|visit| visit.name == name) {
             visit.patch = patch;
+            visit.extent = extent;
             visit.interaction = interaction.clone();
         }
     }
@@ -369,6 +394,15 @@ fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
 }
 
 impl PathSurface {
+    /// Returns the parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
+    fn sizes(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
+        let axes = match self.extent {
+            PatchExtent::Rectangle(_) => 2,
+            PatchExtent::Whole => usize::from(self.occludes),
+        };
+        (0..axes).map(move |axis| Parameter::SurfaceSize(i, axis))
+    }
+
     /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
     /// is the albedo of the first BRDF.
     fn albedo_mut(&mut self) -> Option<&mut f64> {

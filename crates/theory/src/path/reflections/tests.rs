@@ -377,6 +377,10 @@ fn a_wrong_map_is_a_defect() {
         [
             Parameter::SourceSize(0),
             Parameter::SourceSize(1),
+            Parameter::SourcePosition(0),
+            Parameter::SourcePosition(1),
+            Parameter::SurfaceSize(0, 0),
+            Parameter::SurfaceSize(1, 0),
             Parameter::Curvature(0, 0),
             Parameter::Curvature(1, 0),
             Parameter::Albedo,

@@ -245,7 +245,8 @@ fn measured(
         .map(|found| relative(found.power) < 1.0 / FOUND);
     let pairs = (rays / RAYS_PER_PAIR).min(MOST_PAIRS);
     let whole = whole_variation(&backward, plane, &pictures, pairs);
-    let missed = missed(whole, variation.as_ref().map(|found| found.power));
+    let noise = DirectionalBandwidth::noise(&varying).map_err(Failure::cannot_run)?;
+    let missed = missed(whole, variation.as_ref().map(|found| found.power), noise);
     let variation = variation.filter(|found| {
         found.noise <= MAX_NOISE * found.power.value && relative(found.widest.value) <= MAX_ERROR
     });
@@ -291,8 +292,9 @@ fn whole_variation(
 }
 
 /// Returns the share of the whole variation that the measured power misses, if this share is large
-/// and not due to noise.
-fn missed(whole: Uncertain, measured: Option<Uncertain>) -> Option<f64> {
+/// and not due to noise. Below the noise of the measured power, its lowest frequencies may hide the
+/// whole variation.
+fn missed(whole: Uncertain, measured: Option<Uncertain>, noise: f64) -> Option<f64> {
     let none = Uncertain {
         value: 0.0,
         error: 0.0,
@@ -300,5 +302,5 @@ fn missed(whole: Uncertain, measured: Option<Uncertain>) -> Option<f64> {
     let measured = measured.unwrap_or(none);
     let missed = whole.value - measured.value;
     let is_found = missed > FOUND * libm::hypot(whole.error, measured.error);
-    (is_found && missed > MISSED * whole.value).then_some(missed / whole.value)
+    (is_found && missed > noise.max(MISSED * whole.value)).then_some(missed / whole.value)
 }
