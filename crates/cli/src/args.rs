@@ -176,8 +176,10 @@ impl Cli {
 }
 
 /// Adds to an error the name of the command that was probably meant. Clap itself does not detect
-/// swapped letters, and takes `rn` for `render`.
+/// swapped letters, and takes `rn` for `render`. Its tip to pass an unknown option as a value is
+/// removed, because no command has such values.
 fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
+    error.remove(ContextKind::Suggested);
     let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
     if let Some(ContextValue::String(unknown)) = unknown
         && let Some(meant) = nearest(&unknown, names.iter().map(String::as_str))
@@ -222,6 +224,9 @@ mod tests {
                 .to_string();
             assert!(error.contains(&format!("'{meant}'")), "{error}");
         }
+        let unknown = Cli::parse_line(["etendue", "check", "s.ron", "--photons", "9"]);
+        let unknown = unknown.unwrap_err().to_string();
+        assert!(!unknown.contains("as a value"), "{unknown}");
     }
 
     #[test]

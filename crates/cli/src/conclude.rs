@@ -79,11 +79,7 @@ impl Ending<'_> {
 /// Describes the noise of the run, and predicts the noise of a run that lasts a hundred times as
 /// long. Returns `None` if there is no light.
 fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
-    let noise = |plane: &PlaneReport| plane.noise_limit;
-    let lit = planes
-        .iter()
-        .filter_map(|plane| Some((&plane.name, noise(plane)?)));
-    let (plane, noise) = lit.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let (plane, noise) = noisiest(planes.iter())?;
     let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
     let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(noise, 3));
     Some(format!(
@@ -92,13 +88,18 @@ fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
+/// Returns the plane with the largest noise, and this noise, if any plane has light.
+fn noisiest<'a>(planes: impl Iterator<Item = &'a PlaneReport>) -> Option<(&'a String, f64)> {
+    let noise = planes.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
+    noise.max_by(|(_, a), (_, b)| a.total_cmp(b))
+}
+
 /// Describes the noise of predictions, which `target` does not include.
 fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes
         .iter()
         .filter(|plane| plane.quadrature_error.is_some_and(|error| error > 0.0));
-    let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
-    let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+    let rest = match noisiest(sampled) {
         Some((name, noise)) => format!(
             "if the errors of predictions are included, the largest noise is {} (at {name})",
             percent(noise, 3)

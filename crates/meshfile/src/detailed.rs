@@ -23,6 +23,7 @@ pub struct DetailedMesh {
     /// The names of all attributes of the file.
     pub attribute_names: Vec<String>,
 }
+
 /// Numbers of a mesh file that belong to its vertices or to its triangles, such as colours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshAttribute {

@@ -27,7 +27,10 @@ pub fn read_case(
         .collect::<Result<Vec<Stored<Held>>, _>>()?;
     let predicted = Stored::read(predicted, PREDICTION)?;
     let first = &shards[0];
-    let experiment = |Index { scene, content, .. }: &Index<Held>| json!({"scene": scene, "method": content.method});
+    let experiment = |index: &Index<Held>| {
+        let Index { scene, content, .. } = index;
+        json!({"scene": scene, "method": content.method})
+    };
     for shard in &shards[1..] {
         // Batches of different experiments are not replicates of each other.
         first.check_scene(shard, true)?;

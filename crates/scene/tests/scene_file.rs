@@ -214,7 +214,7 @@ fn a_grid_larger_than_memory_says_how_large() {
     match resolve("test", file, ".".as_ref(), 24_000_000_000) {
         Err(SceneError::Values(faults)) => {
             assert!(faults.iter().all(|f| f.memory), "{faults:?}");
-            assert!(faults[0].value.contains("GB"), "{faults:?}");
+            assert!(faults[0].value.contains("7.6 TB"), "{faults:?}");
         }
         other => panic!("{other:?}"),
     }

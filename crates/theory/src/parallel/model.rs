@@ -189,6 +189,8 @@ mod tests {
             [
                 "side x of light",
                 "side y of light",
+                "position x of light",
+                "position y of light",
                 "travel a to b",
                 "side of b",
                 "position x of b",
@@ -210,9 +212,9 @@ mod tests {
             let chain = chain(0.2, &[(1.0, vec![bar]), (0.5, vec![])]);
             let names: Vec<_> = chain.parameters().iter().map(|&p| chain.name(p)).collect();
             let moved = format!("position {across} of b");
-            assert_eq!(names[3..5], ["width of b".to_owned(), moved]);
-            assert_eq!(names.len(), 6);
-            let width = chain.parameters()[3];
+            assert_eq!(names[5..7], ["width of b".to_owned(), moved]);
+            assert_eq!(names.len(), 8);
+            let width = chain.parameters()[5];
             assert_eq!(chain.value(width), Some(0.05));
         }
     }
@@ -337,6 +339,8 @@ mod tests {
             all,
             [
                 "radius of light [m]",
+                "position x of light [m]",
+                "position y of light [m]",
                 "exponent of light []",
                 "travel a to b [m]",
                 "radius of shape 1 of b [m]",
