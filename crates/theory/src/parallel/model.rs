@@ -359,7 +359,7 @@ mod tests {
         );
         for p in chain.parameters() {
             let value = |chain: &Chain, p| chain.value(p).unwrap();
-            let moved = chain.with(p, value(&chain, p) * 2.0).unwrap();
+            let moved = chain.with(p, value(&chain, p) * 2.0 + 0.01).unwrap();
             let changed = |q: &Parameter| (value(&moved, *q) - value(&chain, *q)).abs() > 1e-3;
             let others: Vec<_> = chain.parameters().into_iter().filter(changed).collect();
             assert_eq!(others, [p]);
