@@ -104,7 +104,7 @@ impl Model for Observed {
                 *frame = tilted(frame, &hit, by);
             }
             Parameter::Curvature(i, axis) => {
-                self.reshape(i, |patch, _| change_curvature(patch, axis, new))?
+                self.reshape(i, |patch, _| change_curvature(patch, axis, new))?;
             }
             Parameter::SurfaceSize(i, axis) => self.reshape(i, |patch, extent| {
                 match extent {
