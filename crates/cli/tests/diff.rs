@@ -170,7 +170,9 @@ fn the_edge_that_moved_is_named() {
             "position x of light (light 2)",
         ),
     ] {
-        let run = |options: &str, more: &str| format!("{options} --photons 2^18 {more}");
+        // Behind a mirror, a run of few photons has no derivatives for all edges.
+        let photons = if options.ends_with(mirror) { 21 } else { 18 };
+        let run = |options: &str, more: &str| format!("{options} --photons 2^{photons} {more}");
         let folder = runs(&[
             &run(&options, "--seed 1 --out a"),
             &run(&options.replace(from, to), "--seed 2 --out b"),

@@ -96,6 +96,7 @@ fn by<M: Model>(
     // The central ray begins at the centre of the first light.
     let is_first = number.is_none_or(|number| number == 1);
     parameters.retain(|p| !is_first || !matches!(p, Parameter::SourcePosition(_)));
+    model.keep_affordable(&mut parameters, budget);
     let found = model.predict(&parameters, over, budget);
     let first_order = first_order(&found);
     let name = |parameter| match number.filter(|_| is_of_light(parameter, &parameters)) {

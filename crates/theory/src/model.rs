@@ -18,6 +18,9 @@ pub trait Model: Clone {
     /// propagation.
     fn parameters(&self) -> Vec<Parameter>;
 
+    /// Leaves out parameters whose derivatives would take too long, beginning with the last.
+    fn keep_affordable(&self, _parameters: &mut Vec<Parameter>, _budget: RayBudget) {}
+
     /// Returns the readable name of a parameter, e.g. "travel light to blockers".
     fn name(&self, parameter: Parameter) -> String;
 

@@ -1,5 +1,7 @@
 //! The work that a prediction may take.
 
+use etendue_field::whole;
+
 /// The criterion by which a prediction stops adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
@@ -46,4 +48,35 @@ impl RayBudget {
             ..self
         }
     }
+}
+
+/// Number of independent nets for derivatives, which need no error estimate.
+pub(super) const OF_DERIVATIVES: usize = 8;
+/// Minimum and maximum number of nodes in each net by which derivatives are computed.
+pub(super) const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
+/// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
+/// nodes of the prediction. Each node has two rays for each parameter.
+const FOR_DERIVATIVES: f64 = 0.5;
+
+/// Returns how many derivatives a budget of rays includes. With fewer nodes for each, the noise of
+/// derivatives would make stated errors of parameters too small.
+pub(crate) fn affordable_derivatives(budget: RayBudget) -> usize {
+    let each = OF_DERIVATIVES as f64 * f64::from(DERIVATIVE_NODES[0]);
+    whole(FOR_DERIVATIVES * budget.nodes / each)
+}
+
+/// Returns the maximum number of nodes in each net for derivatives.
+pub(super) fn most_for_derivatives(fields: usize, nodes: f64) -> u32 {
+    let all = FOR_DERIVATIVES * nodes / fields as f64;
+    power_of_two(all / OF_DERIVATIVES as f64, DERIVATIVE_NODES)
+}
+
+/// Returns the largest power of two that is at most `count` and within a range of powers of two.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the number is within the range"
+)]
+pub(super) fn power_of_two(count: f64, [least, most]: [u32; 2]) -> u32 {
+    1 << (count.clamp(f64::from(least), f64::from(most)) as u32).ilog2()
 }

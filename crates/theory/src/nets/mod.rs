@@ -13,6 +13,8 @@ mod rays;
 mod sobol;
 
 pub use budget::RayBudget;
+pub(crate) use budget::affordable_derivatives;
+use budget::{DERIVATIVE_NODES, OF_DERIVATIVES, most_for_derivatives, power_of_two};
 pub(crate) use density::{LinearDensity, Target};
 pub use rays::RayNets;
 pub(crate) use rays::SampledNets;
@@ -28,15 +30,8 @@ use rayon::prelude::*;
 
 /// Number of independent nets of a prediction.
 pub const REPLICATES: usize = 32;
-/// Number of independent nets for derivatives, which need no error estimate.
-const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// Minimum and maximum number of nodes in each net by which derivatives are computed.
-const DERIVATIVE_NODES: [u32; 2] = [1 << 8, 1 << 15];
-/// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
-/// nodes of the prediction. Each node has two rays for each parameter.
-const FOR_DERIVATIVES: f64 = 0.25;
 /// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
 /// derivative, the measured value of a parameter is wrong by about the square of this error, times
 /// the difference between the measured value and the scene's value.
@@ -163,16 +158,6 @@ pub(crate) fn trial(
     doubled(integrand, (window, grid), &mut nets, each, within(TRIED))
 }
 
-/// Returns the largest power of two that is at most `count` and within a range of powers of two.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the number is within the range"
-)]
-fn power_of_two(count: f64, [least, most]: [u32; 2]) -> u32 {
-    1 << (count.clamp(f64::from(least), f64::from(most)) as u32).ilog2()
-}
-
 /// Adds `first` nodes to all nets, and doubles the number of nodes until `end` returns a result for
 /// the nets and the number of nodes of each.
 fn doubled<T>(
@@ -237,12 +222,6 @@ pub(crate) fn means(
     };
     let over = (window, grid);
     doubled(integrand, over, &mut running, DERIVATIVE_NODES[0], end)
-}
-
-/// Returns the maximum number of nodes in each net for derivatives.
-fn most_for_derivatives(fields: usize, nodes: f64) -> u32 {
-    let all = FOR_DERIVATIVES * nodes / fields as f64;
-    power_of_two(all / OF_DERIVATIVES as f64, DERIVATIVE_NODES)
 }
 
 /// Estimated number of computing steps to follow a ray and to spread it onto the grid of an

@@ -6,7 +6,7 @@ use super::{
     reflections, scattering,
 };
 use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
-use crate::nets::{RayBudget, RayNets, work_of_nets};
+use crate::nets::{RayBudget, RayNets, affordable_derivatives, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, scale};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
@@ -51,6 +51,17 @@ impl Model for Observed {
             all.push(Parameter::Lobe);
         }
         all
+    }
+
+    fn keep_affordable(&self, parameters: &mut Vec<Parameter>, budget: RayBudget) {
+        let edges = parameters.iter().filter(|parameter| parameter.places());
+        let others = parameters.len() - edges.count();
+        let mut left = affordable_derivatives(budget).saturating_sub(others);
+        parameters.retain(|parameter| {
+            let is_kept = !parameter.places() || left > 0;
+            left = left.saturating_sub(usize::from(is_kept && parameter.places()));
+            is_kept
+        });
     }
 
     fn name(&self, parameter: Parameter) -> String {
