@@ -171,7 +171,7 @@ fn the_edge_that_moved_is_named() {
         ),
     ] {
         // Behind a mirror, a run of few photons has no derivatives for all edges.
-        let photons = if options.ends_with(mirror) { 21 } else { 18 };
+        let photons = if options.ends_with(mirror) { 23 } else { 18 };
         let run = |options: &str, more: &str| format!("{options} --photons 2^{photons} {more}");
         let folder = runs(&[
             &run(&options, "--seed 1 --out a"),

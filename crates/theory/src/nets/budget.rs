@@ -58,11 +58,12 @@ pub(super) const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
 /// nodes of the prediction. Each node has two rays for each parameter.
 const FOR_DERIVATIVES: f64 = 0.5;
 
-/// Returns how many derivatives a budget of rays includes. With fewer nodes for each, the noise of
-/// derivatives would make stated errors of parameters too small.
+/// Returns how many derivatives a budget of rays includes, if they take half of the nodes that
+/// derivatives may take. With fewer nodes for each, the noise of derivatives would make stated
+/// errors of parameters too small.
 pub(crate) fn affordable_derivatives(budget: RayBudget) -> usize {
     let each = OF_DERIVATIVES as f64 * f64::from(DERIVATIVE_NODES[0]);
-    whole(FOR_DERIVATIVES * budget.nodes / each)
+    whole(0.5 * FOR_DERIVATIVES * budget.nodes / each)
 }
 
 /// Returns the maximum number of nodes in each net for derivatives.
