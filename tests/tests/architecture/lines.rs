@@ -64,7 +64,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("store", 3185, 3167, ""),
     ("studies", 4009, 4009, ""),
-    ("theory", 15390, 15374, ""),
+    ("theory", 15390, 15378, ""),
     (
         "trace",
         6797,

@@ -253,6 +253,10 @@ impl Observed {
         if parameter == Parameter::Travel(0) && self.system.is_alike_everywhere() {
             return false;
         }
+        // All edges but corners can move. To try it, all shapes of masks would be copied.
+        if parameter.places() && !matches!(parameter, Parameter::HoleCorner(..)) {
+            return true;
+        }
         let value = self.value(parameter);
         value.is_some_and(|value| parameter.places() || value.abs() > ROUNDING_OF_ZERO)
             && ShiftedModels::nearby(self, parameter).is_some()
