@@ -31,6 +31,11 @@ pub struct DirectionalBandwidth {
     pub noise: f64,
 }
 
+fn noise_of(power: &CrossPower<'_>, grid: &SliceGrid) -> f64 {
+    let noise = power.noise_at_azimuths();
+    PolarPower::new(noise.view(), grid).map_or(0.0, |noise| noise.total)
+}
+
 impl DirectionalBandwidth {
     /// Computes the bandwidths of independent measurements of one picture.
     ///
@@ -66,7 +71,7 @@ impl DirectionalBandwidth {
         found.widest.value.error = errors[0];
         found.across.error = errors[1];
         found.power.error = errors[2];
-        found.noise = Self::noise(pictures)?;
+        found.noise = noise_of(&power, &grid);
         Ok(Some(found))
     }
 
@@ -77,8 +82,8 @@ impl DirectionalBandwidth {
     /// Fails if there are fewer than three measurements.
     pub fn noise(pictures: &[Slices]) -> Result<f64, TooFewBatches> {
         let azimuths = pictures.first().map_or(0, |first| first.grid.azimuths);
-        let noise = CrossPower::of_replicates(pictures, 0..azimuths)?.noise_at_azimuths();
-        Ok(PolarPower::new(noise.view(), &pictures[0].grid).map_or(0.0, |noise| noise.total))
+        let power = CrossPower::of_replicates(pictures, 0..azimuths)?;
+        Ok(noise_of(&power, &pictures[0].grid))
     }
 
     /// Returns the bandwidths of the spectrum of a window alone, without errors.

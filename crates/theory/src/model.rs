@@ -93,8 +93,8 @@ pub(crate) struct ShiftedModels<M> {
 /// The step of a finite-difference derivative, as a fraction of the parameter's scale.
 const STEP: f64 = 1e-3;
 
-/// The step of a parameter of a mask in [`Model::step`], if rays are followed. It is large enough for
-/// some rays to cross the edge of a shadow that moves, and small enough to change phases by at most
+/// The step of a parameter of an edge in [`Model::step`], if rays are followed. It is large enough
+/// for some rays to cross the edge of a shadow that moves, and small enough to change phases by at most
 /// a third of a radian.
 pub(crate) const STEPS_OF_EDGES: [f64; 2] = [5e-2, 0.05];
 

@@ -77,7 +77,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the index of the mask to which the parameter belongs, or `None` for other parameters.
+    /// Returns the index of the mask to which the parameter belongs, or `None` if it has no mask.
     pub(crate) fn mask(self) -> Option<usize> {
         match self {
             Self::BlockerSide(i, ..)

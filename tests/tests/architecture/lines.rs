@@ -59,8 +59,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "spectrum",
         3218,
-        3313,
-        "errors of bandwidths hold where noise is strong; aliasing writes itself as JSON",
+        3318,
+        "errors of bandwidths hold where noise is strong; noise of pictures without power",
     ),
     ("store", 3185, 3167, ""),
     ("studies", 4009, 4009, ""),

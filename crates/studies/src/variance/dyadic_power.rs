@@ -32,7 +32,7 @@ pub(crate) fn bands(finest: usize) -> impl Iterator<Item = [usize; 4]> {
     (0..n.pow(4)).map(move |i| indices(i, n))
 }
 
-/// Measures the power in dyadic bands at a plane with a [Box window](crate::variance::box_window), which is
+/// Measures the power in dyadic bands at a plane with a [Box window](super::box_window), which is
 /// plane 0 of `source`. `progress` is called with the number of photons as they are traced.
 ///
 /// # Errors

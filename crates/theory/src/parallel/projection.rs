@@ -20,8 +20,8 @@ const NODES: usize = 5;
 /// Number of nodes that are added for each cycle of a grating in a cell.
 const NODES_PER_CYCLE: f64 = 5.0;
 /// Maximum number of nodes along each direction of a triangle. If a cell contains more periods than
-/// they resolve, a single grating is replaced by its mean: its mean over a cell differs by less than
-/// 1 % from it. Several gratings are undersampled, because their product may have a slow beat.
+/// they resolve, a single grating is replaced by its mean, from which its mean over a cell differs
+/// by less than 2 %. Several gratings are undersampled, because their product may have a slow beat.
 const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).

@@ -40,8 +40,8 @@ pub struct PathSystem {
     /// The light, which emits from the plane z = 0, along Z. A light that is a list of rays is not
     /// allowed.
     pub light: Light,
-    /// Masks in planes across the first leg, in ascending order of distance. A mask attenuates light
-    /// on every leg that crosses it. It may stand behind the light, at a negative distance, or
+    /// Masks in planes across the first leg, in ascending order of distance. A mask attenuates
+    /// light on every leg that crosses it. It may stand behind the light, at a negative distance, or
     /// beyond the first surface.
     pub masks: Vec<PathMask>,
     /// Occluders beside the path.
