@@ -88,6 +88,8 @@ pub(crate) struct ShiftedModels<M> {
     pub(crate) apart: f64,
     /// The models with the increased and with the decreased value of the parameter.
     pub(crate) sides: [M; 2],
+    /// Whether the parameter belongs to a mask, so that it moves no ray.
+    pub(crate) moves_mask: bool,
 }
 
 /// The step of a finite-difference derivative, as a fraction of the parameter's scale.
@@ -127,6 +129,7 @@ impl<M> ShiftedModels<M> {
             Some(Self {
                 apart: 2.0 * step,
                 sides: [at(value + step)?, at(value - step)?],
+                moves_mask: parameter.mask().is_some(),
             })
         })
     }

@@ -141,16 +141,47 @@ impl Obstacle {
                 on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
             ObstacleForm::Patch(patch) => ray.hits(patch).any(is_between),
-            ObstacleForm::Mesh(triangles) => triangles.stop(ray, &is_between),
+            ObstacleForm::Mesh(triangles) => triangles.stop(ray, length, &is_between),
         }
+    }
+}
+
+/// A sphere that contains a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BoundingSphere {
+    center: DVec3,
+    radius: f64,
+}
+
+impl BoundingSphere {
+    /// Returns a sphere about points, of which there is at least one.
+    pub(crate) fn new(points: &[DVec3]) -> Self {
+        let points = || points.iter();
+        let low = points().fold(DVec3::INFINITY, |low, point| low.min(*point));
+        let high = points().fold(DVec3::NEG_INFINITY, |high, point| high.max(*point));
+        let center = 0.5 * (low + high);
+        let radius = points().map(|point| point.distance(center));
+        Self {
+            center,
+            radius: (1.0 + ROUNDING) * radius.fold(0.0, f64::max),
+        }
+    }
+
+    /// Checks whether a ray may meet the sphere within the first `length` metres.
+    pub(crate) fn is_near(&self, ray: &LegRay, length: f64) -> bool {
+        let away = self.center - ray.point;
+        let beside = away.cross(ray.direction).length_squared();
+        let along = away.dot(ray.direction);
+        beside <= self.radius * self.radius
+            && -self.radius <= along
+            && along <= length + self.radius
     }
 }
 
 /// The triangles of a mesh in a sphere, and parts of the mesh with spheres of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleTree {
-    center: DVec3,
-    radius: f64,
+    sphere: BoundingSphere,
     triangles: Vec<[DVec3; 3]>,
     parts: Vec<Self>,
 }
@@ -162,39 +193,40 @@ impl TriangleTree {
     /// Builds the tree of triangles, of which there is at least one.
     #[must_use]
     pub fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
-        let corners = || triangles.as_flattened().iter();
-        let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
-        let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
-        let center = 0.5 * (low + high);
-        let radius = corners().map(|corner| corner.distance(center));
-        let radius = (1.0 + ROUNDING) * radius.fold(0.0, f64::max);
+        let corners = triangles.as_flattened();
+        let sphere = BoundingSphere::new(corners);
         let mut parts = Vec::new();
         if triangles.len() > UNDIVIDED {
-            let axis = (high - low).max_position();
+            let low = corners
+                .iter()
+                .fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+            let axis = (sphere.center - low).max_position();
             let place = |[a, b, c]: &[DVec3; 3]| (*a + *b + *c)[axis];
             triangles.sort_by(|one, other| place(one).total_cmp(&place(other)));
             let rest = triangles.split_off(triangles.len() / 2);
             parts = [std::mem::take(&mut triangles), rest].map(Self::new).into();
         }
         Self {
-            center,
-            radius,
+            sphere,
             triangles,
             parts,
         }
     }
 
     /// Checks whether a ray meets a triangle at a distance that `is_between` accepts.
-    fn stop(&self, ray: &LegRay, is_between: &impl Fn(f64) -> bool) -> bool {
-        let beside = (self.center - ray.point).cross(ray.direction);
-        if beside.length_squared() > self.radius * self.radius {
+    fn stop(&self, ray: &LegRay, length: f64, is_between: &impl Fn(f64) -> bool) -> bool {
+        if !self.sphere.is_near(ray, length) {
             return false;
         }
         let mut hits = self
             .triangles
             .iter()
             .filter_map(|triangle| on(triangle, ray));
-        hits.any(is_between) || self.parts.iter().any(|part| part.stop(ray, is_between))
+        hits.any(is_between)
+            || self
+                .parts
+                .iter()
+                .any(|part| part.stop(ray, length, is_between))
     }
 }
 

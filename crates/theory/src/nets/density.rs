@@ -13,12 +13,11 @@ const SHARES: usize = 4;
 pub(crate) struct LinearDensity {
     low: f64,
     step: f64,
-    /// Values at the ends of the cells.
-    values: Vec<f64>,
-    /// The cumulative density at the ends of the cells, from 0 to 1.
-    below: Vec<f64>,
-    /// Lookup table: for each entry, the cell at which the search for a quantile starts.
-    first: Vec<usize>,
+    /// The value and the cumulative density, from 0 to 1, at the ends of the cells.
+    ends: Vec<[f64; 2]>,
+    /// Lookup table: for each entry, the cell at which the search for a quantile starts. Small
+    /// entries keep the tables of several densities in the fastest cache.
+    first: Vec<u16>,
 }
 
 impl LinearDensity {
@@ -26,38 +25,35 @@ impl LinearDensity {
     /// function is zero everywhere.
     pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
         let step = (high - low) / CELLS as f64;
-        let mut values: Vec<f64> = (0..=CELLS)
-            .map(|i| function(low + i as f64 * step))
-            .collect();
-        let mut below = vec![0.0];
-        for pair in values.windows(2) {
-            let last = below.last().copied().unwrap_or_default();
-            below.push(last + 0.5 * step * (pair[0] + pair[1]));
+        let values = (0..=CELLS).map(|i| function(low + i as f64 * step));
+        let mut ends: Vec<[f64; 2]> = Vec::with_capacity(CELLS + 1);
+        for value in values {
+            let below = ends
+                .last()
+                .map_or(0.0, |[last, below]| below + 0.5 * step * (last + value));
+            ends.push([value, below]);
         }
-        let total = below[CELLS];
+        let [_, total] = ends[CELLS];
         if !(total > 0.0 && total.is_finite()) {
             return None;
         }
-        for value in values.iter_mut().chain(&mut below) {
-            *value /= total;
-        }
-        Some(Self::linear(low, step, values, below))
+        let ends = ends.into_iter().map(|end| end.map(|x| x / total));
+        Some(Self::linear(low, step, ends.collect()))
     }
 
-    fn linear(low: f64, step: f64, values: Vec<f64>, below: Vec<f64>) -> Self {
-        let cells = below.len() - 1;
+    fn linear(low: f64, step: f64, ends: Vec<[f64; 2]>) -> Self {
+        let cells = ends.len() - 1;
         let shares = SHARES * cells;
         let cell = |k: usize| {
             let share = k as f64 / shares as f64;
-            let after = below.partition_point(|below| *below <= share);
-            after.clamp(1, cells) - 1
+            let after = ends.partition_point(|[_, below]| *below <= share);
+            u16::try_from(after.clamp(1, cells) - 1).expect("at most `CELLS` cells")
         };
         Self {
             low,
             step,
             first: (0..=shares).map(cell).collect(),
-            values,
-            below,
+            ends,
         }
     }
 
@@ -66,7 +62,13 @@ impl LinearDensity {
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
-        let even = || Self::linear(-half, 2.0 * half, vec![0.5 / half; 2], vec![0.0, 1.0]);
+        let even = || {
+            Self::linear(
+                -half,
+                2.0 * half,
+                vec![[0.5 / half, 0.0], [0.5 / half, 1.0]],
+            )
+        };
         Self::new([-half, half], inside).unwrap_or_else(even)
     }
 
@@ -78,14 +80,14 @@ impl LinearDensity {
     /// Returns the quantile at which the cumulative density equals `share`, and the density at
     /// this quantile.
     pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
-        let last = self.below.len() - 2;
-        let mut cell = self.first[whole(share * (self.first.len() - 1) as f64)];
-        while cell < last && self.below[cell + 1] <= share {
+        let last = self.ends.len() - 2;
+        let mut cell = usize::from(self.first[whole(share * (self.first.len() - 1) as f64)]);
+        while cell < last && self.ends[cell + 1][1] <= share {
             cell += 1;
         }
-        let [a, b] = [self.values[cell], self.values[cell + 1]];
+        let [[a, below], [b, _]] = [self.ends[cell], self.ends[cell + 1]];
         // Solves a t + (b − a) t²/2 = (remaining cumulative density) / step.
-        let left = (share - self.below[cell]) / self.step;
+        let left = (share - below) / self.step;
         let root = (a * a + 2.0 * (b - a) * left).max(0.0).sqrt();
         let t = if a + root > 0.0 {
             2.0 * left / (a + root)
@@ -101,13 +103,14 @@ impl LinearDensity {
     /// Returns the value of the density; zero outside the interval.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let at = (t - self.low) / self.step;
-        let cells = self.values.len() - 1;
+        let cells = self.ends.len() - 1;
         if !(0.0..=cells as f64).contains(&at) {
             return 0.0;
         }
         let cell = whole(at).min(cells - 1);
         let share = at - cell as f64;
-        self.values[cell] + share * (self.values[cell + 1] - self.values[cell])
+        let [[a, _], [b, _]] = [self.ends[cell], self.ends[cell + 1]];
+        a + share * (b - a)
     }
 }
 

@@ -36,6 +36,8 @@ const OF_TRIALS: usize = 16;
 /// derivative, the measured value of a parameter is wrong by about the square of this error, times
 /// the difference between the measured value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.1;
+/// Number of nodes of a net at which the error of a derivative is first estimated.
+const FIRST_OF_DERIVATIVES: u32 = 1 << 9;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 /// Minimum number of nodes of a net in a trial.
@@ -82,14 +84,23 @@ pub(crate) trait Integrand: Sync {
     fn rays(&self) -> usize {
         1
     }
-    /// Computes the rays of each field for a point of the unit cube, and writes them to `nodes`
-    /// field by field. Before the call, all entries of `nodes` are rays without a contribution.
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
+    /// Computes the rays of each wanted field for a point of the unit cube, and writes them to
+    /// `nodes` field by field. Before the call, all entries of `nodes` are rays without a
+    /// contribution.
+    fn nodes(&self, at: &[f64; DIMENSIONS], wanted: &[bool], nodes: &mut [RayNode]);
 }
 
 /// Writes the difference between two rays of increased and decreased parameters, `apart` from each
-/// other, to two nodes. A ray that does not arrive contributes nothing.
+/// other, to two nodes. A ray that does not arrive contributes nothing, and rays with the same
+/// coordinates become one.
 pub(crate) fn difference(sides: [Option<RayNode>; 2], apart: f64, nodes: &mut [RayNode]) {
+    if let [Some(above), Some(below)] = sides
+        && above.z.map(f64::to_bits) == below.z.map(f64::to_bits)
+    {
+        let weight = (above.weight - below.weight) / apart;
+        nodes[0] = RayNode { weight, ..above };
+        return;
+    }
     for ((side, sign), node) in sides.into_iter().zip([1.0, -1.0]).zip(nodes) {
         if let Some(RayNode { z, weight }) = side {
             let weight = sign * weight / apart;
@@ -119,6 +130,8 @@ impl Predicted {
 /// The sums over the nodes of a net, to which more nodes can be added.
 struct Running {
     net: NetPoints,
+    /// Whether more nodes are added to each field.
+    wanted: Vec<bool>,
     /// The sums of each field so far.
     slices: Vec<Slices>,
     projection: Array2<f64>,
@@ -165,7 +178,7 @@ fn doubled<T>(
     (window, grid): (&Window, &SliceGrid),
     running: &mut [Running],
     first: u32,
-    end: impl Fn(&[Running], u32) -> Option<T>,
+    mut end: impl FnMut(&mut [Running], u32) -> Option<T>,
 ) -> T {
     let picture = ProjectionGrid::new(window, running[0].projection.nrows());
     let transform = SliceTransform::new(grid);
@@ -183,7 +196,7 @@ fn doubled<T>(
 }
 
 /// Returns the end of a prediction: the error of the mean over nets, once the budget is reached.
-fn within(budget: RayBudget) -> impl Fn(&[Running], u32) -> Option<f64> {
+fn within(budget: RayBudget) -> impl Fn(&mut [Running], u32) -> Option<f64> {
     move |running, each| {
         let nodes = f64::from(each) * REPLICATES as f64;
         let [error, own] = error_and_norm(running.iter().map(|net| &net.slices[0]));
@@ -194,7 +207,8 @@ fn within(budget: RayBudget) -> impl Fn(&[Running], u32) -> Option<f64> {
 }
 
 /// Returns the mean of each field over nets, to a relative error of [`DERIVATIVE_ERROR`] or with
-/// a number of nodes in proportion to that of the prediction.
+/// a number of nodes in proportion to that of the prediction. No nodes are added to a field that is
+/// accurate.
 ///
 /// The nets differ from the nets of [`sums`], because a derivative that has the same noise as the
 /// prediction biases every measured parameter.
@@ -203,25 +217,40 @@ pub(crate) fn means(
     (window, grid): (&Window, &SliceGrid),
     predicted: &Predicted,
 ) -> Vec<NetMean> {
-    if integrand.fields() == 0 {
+    let fields = integrand.fields();
+    if fields == 0 {
         return Vec::new();
     }
-    let first = REPLICATES + OF_TRIALS;
-    let mut running = begin(integrand, grid, 1, first, OF_DERIVATIVES);
-    let most = most_for_derivatives(integrand.fields(), predicted.nodes);
-    let end = |running: &[Running], each: u32| {
-        let of_field = |field: usize| NetMean::new(running.iter().map(|net| &net.slices[field]));
-        let mut means: Vec<NetMean> = (0..integrand.fields()).map(of_field).collect();
-        // A parameter that changes no ray has no derivative.
-        let is_known = |mean: &NetMean| mean.error <= DERIVATIVE_ERROR || mean.slices.is_dark();
-        let is_accurate = means.iter().all(is_known);
-        for mean in &mut means {
-            mean.slices.half /= Complex::from(f64::from(each));
+    let mut running = begin(integrand, grid, 1, REPLICATES + OF_TRIALS, OF_DERIVATIVES);
+    let most = most_for_derivatives(fields, predicted.nodes);
+    let mut means = vec![None; fields];
+    let end = |running: &mut [Running], each: u32| {
+        for (field, known) in means
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, mean)| mean.is_none())
+        {
+            let mut mean = NetMean::new(running.iter().map(|net| &net.slices[field]));
+            // A parameter that changes no ray has no derivative, but few rays may have missed it.
+            let is_dark = each >= DERIVATIVE_NODES[0] && mean.slices.is_dark();
+            if mean.error <= DERIVATIVE_ERROR || is_dark || each >= most {
+                mean.slices.half /= Complex::from(f64::from(each));
+                *known = Some(mean);
+                for net in &mut *running {
+                    net.wanted[field] = false;
+                }
+            }
         }
-        (each >= most || is_accurate).then_some(means)
+        means.iter().all(Option::is_some).then_some(())
     };
-    let over = (window, grid);
-    doubled(integrand, over, &mut running, DERIVATIVE_NODES[0], end)
+    doubled(
+        integrand,
+        (window, grid),
+        &mut running,
+        FIRST_OF_DERIVATIVES,
+        end,
+    );
+    means.into_iter().flatten().collect()
 }
 
 /// Estimated number of computing steps to follow a ray and to spread it onto the grid of an
@@ -270,6 +299,7 @@ fn begin(
 ) -> Vec<Running> {
     let running = |replicate| Running {
         net: NetPoints::new(replicate, integrand.dimensions()),
+        wanted: vec![true; integrand.fields()],
         slices: vec![Slices::zeros(*grid); integrand.fields()],
         projection: Array2::zeros((bins, bins)),
         moments: WeightedMoments::default(),
@@ -287,17 +317,15 @@ impl Running {
         count: u32,
     ) {
         self.count += f64::from(count);
-        let mut sums: Vec<_> = self
-            .slices
-            .iter()
-            .map(|_| transform.accumulator())
-            .collect();
+        let sum = |wanted: &bool| wanted.then(|| transform.accumulator());
+        let mut sums: Vec<_> = self.wanted.iter().map(sum).collect();
         let rays = integrand.rays();
         let mut nodes = vec![RayNode::DARK; sums.len() * rays];
         for _ in 0..count {
             nodes.fill(RayNode::DARK);
-            integrand.nodes(&self.net.point(), &mut nodes);
+            integrand.nodes(&self.net.point(), &self.wanted, &mut nodes);
             for (nodes, sum) in nodes.chunks(rays).zip(&mut sums) {
+                let Some(sum) = sum else { continue };
                 for RayNode { z, weight } in nodes.iter().filter(|node| node.weight != 0.0) {
                     let [x, y, u, v] = *z;
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
@@ -310,7 +338,9 @@ impl Running {
             self.moments.add(z, weight);
         }
         for (slices, sum) in self.slices.iter_mut().zip(&mut sums) {
-            slices.half += &sum.finish(1.0).half;
+            if let Some(sum) = sum {
+                slices.half += &sum.finish(1.0).half;
+            }
         }
     }
 }
@@ -399,7 +429,7 @@ mod tests {
             2
         }
 
-        fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
+        fn nodes(&self, at: &[f64; DIMENSIONS], _: &[bool], nodes: &mut [RayNode]) {
             for (i, node) in nodes.iter_mut().enumerate() {
                 node.z = std::array::from_fn(|k| at[k + i] - 0.5);
                 node.weight = libm::cos(3.0 * at[4]) + i as f64;
@@ -426,7 +456,7 @@ mod tests {
         let mut nodes = [RayNode::DARK; 2];
         let rays: Vec<RayNode> = (0..FIRST_NODES)
             .map(|_| {
-                Waves.nodes(&net.point(), &mut nodes);
+                Waves.nodes(&net.point(), &[true; 2], &mut nodes);
                 nodes[0]
             })
             .collect();
@@ -454,10 +484,10 @@ mod tests {
         let mut running = begin(&Waves, &grid, 1, 0, OF_DERIVATIVES);
         let (picture, transform) = (ProjectionGrid::new(&window, 1), SliceTransform::new(&grid));
         for net in &mut running {
-            net.add(&Waves, &transform, &picture, DERIVATIVE_NODES[0]);
+            net.add(&Waves, &transform, &picture, FIRST_OF_DERIVATIVES);
         }
         let mut same = mean(running.iter().map(|net| &net.slices[0]));
-        same.half /= Complex::from(f64::from(DERIVATIVE_NODES[0]));
+        same.half /= Complex::from(f64::from(FIRST_OF_DERIVATIVES));
         assert_ne!(derivative.slices.half, same.half);
     }
 

@@ -41,11 +41,12 @@ impl<I: Integrand> RayNets for SampledNets<'_, I> {
     fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64)) {
         let mut net = NetPoints::new(net as u32, self.integrand.dimensions());
         let share = 1.0 / f64::from(self.nodes);
-        let mut nodes = vec![RayNode::DARK; self.integrand.fields() * self.integrand.rays()];
+        let wanted = vec![true; self.integrand.fields()];
+        let mut nodes = vec![RayNode::DARK; wanted.len() * self.integrand.rays()];
         for _ in 0..self.nodes {
             nodes.fill(RayNode::DARK);
             let at: [f64; DIMENSIONS] = net.point();
-            self.integrand.nodes(&at, &mut nodes);
+            self.integrand.nodes(&at, &wanted, &mut nodes);
             let of_first = nodes.iter().take(self.integrand.rays());
             for RayNode { z, weight } in of_first.filter(|node| node.weight != 0.0) {
                 let [x, y, u, v] = *z;

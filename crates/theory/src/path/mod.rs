@@ -17,6 +17,7 @@
 //! The theory of a path shares no intersection, BRDF evaluation or sampling code with the tracers.
 
 mod chain;
+mod differences;
 mod model;
 mod prepared;
 pub mod rays;
@@ -27,7 +28,7 @@ mod surface;
 pub use chain::{PathChain, ScatteringSurface, chain, defect};
 
 pub(crate) use chain::{local, towards};
-pub(crate) use prepared::{PreparedPath, SAME_DISTANCE};
+pub(crate) use prepared::{AtMask, MaskCrossings, PreparedPath, SAME_DISTANCE};
 
 use crate::obstacle::Obstacle;
 use crate::plane::Plane;

@@ -7,7 +7,8 @@ use crate::geometry::{AffineMap, SpectrumMap};
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, NetPoints, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
-use crate::path::{Observed, PathMask, PathSystem, PreparedPath};
+use crate::path::differences::{Differences, DrawnField};
+use crate::path::{AtMask, Observed, PathMask, PathSystem, PreparedPath};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
@@ -46,9 +47,13 @@ pub(crate) fn predict(
     let of_pictures = RayBudget::new(budget.nodes.min(FOR_PICTURES), 0.0);
     let budgets = [budget, of_pictures];
     let found = summed(&field, observed, way, over, budgets);
-    Predicted {
-        derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy), &found),
-        ..found
+    let of = |view| ExactRays::new(view, over.0, way?.1);
+    match of(view) {
+        Some(own) => Differences::new(&own, moved, of).complete(found, over),
+        None => Predicted {
+            derivatives: vec![Slices::zeros(*over.1); moved.len()],
+            ..found
+        },
     }
 }
 
@@ -147,57 +152,71 @@ pub fn linear(
     summed(&field, mapped, way, over, [budget, NO_PICTURES])
 }
 
-fn derivatives(
-    moved: &[ShiftedModels<Observed>],
-    over: Over<'_>,
-    strategy: Option<RayStrategy>,
-    predicted: &Predicted,
-) -> Vec<Slices> {
-    let zeros = || vec![Slices::zeros(*over.1); moved.len()];
-    let Some(strategy) = strategy else {
-        return zeros();
-    };
-    let sides = || moved.iter().flat_map(|moved| &moved.sides);
-    let paths: Vec<_> = sides()
-        .map(|view| PreparedPath::new(&view.system))
-        .collect();
-    let draws: Option<Vec<RaySampler<'_>>> = sides()
-        .map(|Observed { system, plane }| {
-            let lands = neighbourhood(system, plane)?;
-            RaySampler::new((system, Some(plane)), over.0, &lands, strategy)
+/// The exact rays of a light field, sampled by one strategy.
+struct ExactRays<'a> {
+    plane: &'a Plane,
+    path: PreparedPath<'a>,
+    draw: RaySampler<'a>,
+    window: &'a Window,
+}
+
+impl<'a> ExactRays<'a> {
+    /// Returns `None` if no ray arrives.
+    fn new(view: &'a Observed, window: &'a Window, strategy: RayStrategy) -> Option<Self> {
+        let Observed { system, plane } = view;
+        let lands = neighbourhood(system, plane)?;
+        Some(Self {
+            plane,
+            path: PreparedPath::new(system),
+            draw: RaySampler::new((system, Some(plane)), window, &lands, strategy)?,
+            window,
         })
-        .collect();
-    let Some(draws) = draws else { return zeros() };
-    let pairs = moved.iter().zip(paths.chunks(2).zip(draws.chunks(2)));
-    let pairs = pairs.map(|(moved, (paths, draws))| {
-        let side = |i: usize| {
-            let field = exact_field(&moved.sides[i], &paths[i]);
-            SampledField::new(field, &draws[i], over.0)
-        };
-        (moved.apart, [0, 1].map(side))
-    });
-    let differences = Differences(pairs.collect());
-    let means = nets::means(&differences, (over.0, over.1), predicted);
-    means.into_iter().map(|mean| mean.slices).collect()
+    }
+}
+
+impl DrawnField for ExactRays<'_> {
+    fn path(&self) -> &PreparedPath<'_> {
+        &self.path
+    }
+
+    fn draw(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<RayNode> {
+        let (ray, density) = self.draw.draw(at)?;
+        let (z, weight) = exact(self.plane, &self.path, ray, at_mask)?;
+        windowed(self.window, z, weight / density)
+    }
+}
+
+/// Returns a ray whose weight is multiplied by the window.
+fn windowed(window: &Window, z: [f64; 4], weight: f64) -> Option<RayNode> {
+    let [x, y, u, v] = z;
+    let weight = weight * window.value(&TwoPlane { x, y, u, v });
+    weight.is_finite().then_some(RayNode { z, weight })
 }
 
 fn exact_field<'a>(view: &'a Observed, path: &'a PreparedPath<'a>) -> impl RayField + 'a {
-    let Observed { system, plane } = view;
+    move |ray| exact(&view.plane, path, ray, &mut path.at_mask())
+}
+
+/// Returns a ray's coordinates at a plane and its contribution, as a [`RayField`].
+fn exact(
+    plane: &Plane,
+    path: &PreparedPath<'_>,
+    ray: [f64; 4],
+    at_mask: AtMask<'_>,
+) -> Option<([f64; 4], f64)> {
+    let flux = emitted(&path.system.light, ray);
+    if flux <= 0.0 {
+        return None;
+    }
+    let (ray, mut passes) = path.follow(ray, at_mask)?;
+    passes *= path.leaves(&ray, plane.along(&ray)?, at_mask);
+    let (z, per_flux) = plane.coordinates(&ray)?;
     // Light starts in the plane z = 0, so parts of a surface behind this plane are dark. On a
     // curved surface no check is needed, because the point where a ray meets the surface is always
     // ahead of the ray's start.
-    let on_first_leg = plane.is_arriving() && system.visited == 0 && plane.patch.is_none();
-    move |ray| {
-        let flux = emitted(&system.light, ray);
-        if flux <= 0.0 {
-            return None;
-        }
-        let (ray, mut passes) = path.follow(ray)?;
-        passes *= path.leaves(&ray, plane.along(&ray)?);
-        let (z, per_flux) = plane.coordinates(&ray)?;
-        let lit = !on_first_leg || plane.frame.to_world(DVec3::new(z[0], z[1], 0.0)).z > 0.0;
-        lit.then_some((z, passes * flux * per_flux))
-    }
+    let on_first_leg = plane.is_arriving() && path.system.visited == 0 && plane.patch.is_none();
+    let lit = !on_first_leg || plane.frame.to_world(DVec3::new(z[0], z[1], 0.0)).z > 0.0;
+    lit.then_some((z, passes * flux * per_flux))
 }
 
 fn linear_field<'a>(
@@ -299,7 +318,8 @@ impl AffineLeg {
             point: self.frame.to_world(DVec3::new(x, y, 0.0)),
             direction: self.frame.vector_to_world(along.normalize()),
         };
-        path.passes_beside(number, &ray, self.length * along.length())
+        let length = self.length * along.length();
+        path.passes_beside(number, &ray, length, &mut path.at_mask())
     }
 }
 
@@ -398,44 +418,17 @@ impl<'a> SampledField<'a> {
     fn node(&self, at: &[f64; DIMENSIONS]) -> RayNode {
         let arrives = self.draw.draw(at).and_then(|(ray, density)| {
             let (z, weight) = (self.field)(ray)?;
-            let [x, y, u, v] = z;
-            let seen = self.window.value(&TwoPlane { x, y, u, v });
-            if weight == 0.0 && seen > 0.0 {
+            if weight == 0.0 && windowed(self.window, z, 1.0)?.weight > 0.0 {
                 self.stops.store(true, Ordering::Relaxed);
             }
-            let weight = weight * seen / density;
-            weight.is_finite().then_some(RayNode { z, weight })
+            windowed(self.window, z, weight / density)
         });
         arrives.unwrap_or(RayNode::DARK)
     }
 }
 
 impl Integrand for SampledField<'_> {
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], _: &[bool], nodes: &mut [RayNode]) {
         nodes[0] = self.node(at);
-    }
-}
-
-/// Derivatives by finite differences. For each parameter, the difference between its increased and
-/// its decreased value, and the fields with these values.
-struct Differences<'a>(Vec<(f64, [SampledField<'a>; 2])>);
-
-impl Integrand for Differences<'_> {
-    fn fields(&self) -> usize {
-        self.0.len()
-    }
-
-    fn rays(&self) -> usize {
-        2
-    }
-
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        for ((apart, sides), nodes) in self.0.iter().zip(nodes.chunks_mut(2)) {
-            nets::difference(
-                sides.each_ref().map(|side| Some(side.node(at))),
-                *apart,
-                nodes,
-            );
-        }
     }
 }

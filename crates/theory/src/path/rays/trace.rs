@@ -1,7 +1,7 @@
 //! Tracing of a single ray through a specular system.
 
 use crate::obstacle::LegRay;
-use crate::path::{PathSystem, PreparedPath};
+use crate::path::{AtMask, PathSystem, PreparedPath};
 use etendue_field::{Frame, Specular};
 use glam::DVec3;
 
@@ -42,12 +42,12 @@ pub(crate) fn bent(
 impl PreparedPath<'_> {
     /// Returns the last leg of a ray from the light, and the fraction of the ray's light that
     /// passes on the legs before the last. A ray that is stopped is followed all the same.
-    pub(super) fn follow(&self, emission: [f64; 4]) -> Option<(LegRay, f64)> {
+    pub(super) fn follow(&self, emission: [f64; 4], at_mask: AtMask<'_>) -> Option<(LegRay, f64)> {
         let mut ray = LegRay::new(emission);
         let mut passes = 1.0;
         for (leg, surface) in self.system.before_plane().iter().enumerate() {
             let distance = surface.first(&ray, ray.start())?;
-            passes *= self.passes(leg, &ray, distance);
+            passes *= self.passes(leg, &ray, distance, at_mask);
             ray = surface.turned(&ray, ray.at(distance))?;
         }
         Some((ray, passes))

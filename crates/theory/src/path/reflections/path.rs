@@ -9,8 +9,8 @@ use crate::obstacle::LegRay;
 use crate::path::local;
 use crate::path::rays::{emitted, point_of};
 use crate::path::{
-    Observed, PatchExtent, PathChain, PathSurface, PreparedPath, SAME_DISTANCE, ScatteringSurface,
-    chain,
+    AtMask, Observed, PatchExtent, PathChain, PathSurface, PreparedPath, SAME_DISTANCE,
+    ScatteringSurface, chain,
 };
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 pub(super) struct FieldPaths<'a> {
     view: &'a Observed,
     window: &'a Window,
-    occluders: PreparedPath<'a>,
+    pub(super) occluders: PreparedPath<'a>,
     chain: PathChain,
     start: PathStart<'a>,
     /// For each scatterer, the Gaussian of the outgoing directions that reach the window.
@@ -135,18 +135,18 @@ impl<'a> FieldPaths<'a> {
         !matches!(self.aims.last(), Some(DirectionCoordinates::Angles))
     }
 
-    /// Returns the number of coordinates of the unit cube that a path uses.
-    pub(super) fn dimensions(&self) -> usize {
-        4 + 2 * self.chain.scatterers.len()
+    /// Returns the number of scatterers of the path.
+    pub(super) fn scatterers(&self) -> usize {
+        self.chain.scatterers.len()
     }
 
     /// Returns the path for a point of the unit cube; `None` if the path carries no light.
-    pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<DrawnPath> {
+    pub(super) fn drawn(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<DrawnPath> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
         let mut scatterers = 0;
         for (leg, surface) in system.before_plane().iter().enumerate() {
-            let point = self.arrive(leg, &mut going)?;
+            let point = self.arrive(leg, &mut going, at_mask)?;
             if surface.scatters() {
                 let r = [at[4 + 2 * scatterers], at[5 + 2 * scatterers]];
                 self.scatter(scatterers, point, r, &mut going)?;
@@ -155,7 +155,7 @@ impl<'a> FieldPaths<'a> {
                 going.ray = surface.turned(&going.ray, point)?;
             }
         }
-        self.end(&going)
+        self.end(&going, at_mask)
     }
 
     /// Samples a ray of the light.
@@ -208,10 +208,10 @@ impl<'a> FieldPaths<'a> {
 
     /// Returns the point where light meets the surface at the end of a leg. Returns `None` if the
     /// light misses this surface.
-    fn arrive(&self, leg: usize, going: &mut PathState) -> Option<DVec3> {
+    fn arrive(&self, leg: usize, going: &mut PathState, at_mask: AtMask<'_>) -> Option<DVec3> {
         let PathState { ray, .. } = going;
         let end = self.view.system.surfaces[leg].first(ray, ray.start())?;
-        let passes = self.occluders.passes(leg, ray, end);
+        let passes = self.occluders.passes(leg, ray, end, at_mask);
         going.flux *= passes;
         going.radiance *= passes;
         let point = ray.at(end);
@@ -278,7 +278,7 @@ impl<'a> FieldPaths<'a> {
     }
 
     /// Follows the last leg, to the plane.
-    fn end(&self, going: &PathState) -> Option<DrawnPath> {
+    fn end(&self, going: &PathState, at_mask: AtMask<'_>) -> Option<DrawnPath> {
         let PathState {
             ray,
             flux,
@@ -291,7 +291,7 @@ impl<'a> FieldPaths<'a> {
         if target.is_some_and(|target| is_beside(target, ray.at(length), length)) {
             return None;
         }
-        let passes = self.occluders.leaves(ray, length);
+        let passes = self.occluders.leaves(ray, length, at_mask);
         if passes == 0.0 {
             return None;
         }

@@ -5,15 +5,12 @@ use super::aim::DirectionCoordinates;
 use super::path::FieldPaths;
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
-use crate::path::Observed;
+use crate::path::differences::{Differences, DrawnField};
+use crate::path::{AtMask, Observed, PreparedPath};
 use crate::predicted::Predicted;
 
 /// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
 /// is bitwise identical on any number of threads.
-///
-/// The difference between the chain and the exact prediction is a sum of differences over the same
-/// paths. The derivatives are also such sums. These sums are accurate to about a per cent of their
-/// values.
 pub(crate) fn predict(
     view: &Observed,
     moved: &[ShiftedModels<Observed>],
@@ -31,21 +28,8 @@ pub(crate) fn predict(
         }
         Some(moved)
     };
-    let sides = moved.iter().map(|moved| {
-        let [above, below] = &moved.sides;
-        (moved.apart, [of(above), of(below)])
-    });
-    let around = ChainDifferences {
-        paths: &paths,
-        moved: sides.collect(),
-    };
     let found = nets::sums(&paths, (window, grid), picture.bins, budget);
-    let mut means = nets::means(&around, (window, grid), &found).into_iter();
-    Predicted {
-        to_first_order: means.next(),
-        derivatives: means.map(|mean| mean.slices).collect(),
-        ..found
-    }
+    Differences::new(&paths, moved, of).complete(found, over)
 }
 
 /// Returns the prediction by paths from the light, also where
@@ -89,48 +73,37 @@ fn best<'a>(
 
 impl Integrand for FieldPaths<'_> {
     fn dimensions(&self) -> usize {
-        FieldPaths::dimensions(self)
+        DrawnField::dimensions(self)
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        if let Some(drawn) = self.draw(at) {
-            nodes[0] = drawn.exact;
+    fn nodes(&self, at: &[f64; DIMENSIONS], _: &[bool], nodes: &mut [RayNode]) {
+        if let Some(ray) = DrawnField::draw(self, at, &mut self.path().at_mask()) {
+            nodes[0] = ray;
         }
     }
 }
 
-/// The difference between the chain and a light field, and the differences between light fields
-/// with each parameter increased and decreased.
-struct ChainDifferences<'a> {
-    paths: &'a FieldPaths<'a>,
-    moved: Vec<(f64, [Option<FieldPaths<'a>>; 2])>,
-}
-
-impl Integrand for ChainDifferences<'_> {
-    fn fields(&self) -> usize {
-        1 + self.moved.len()
+impl DrawnField for FieldPaths<'_> {
+    fn path(&self) -> &PreparedPath<'_> {
+        &self.occluders
     }
 
     fn dimensions(&self) -> usize {
-        self.paths.dimensions()
+        4 + 2 * self.scatterers()
     }
 
-    fn rays(&self) -> usize {
-        2
+    fn draw(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<RayNode> {
+        Some(self.drawn(at, at_mask)?.exact)
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        let (chain, others) = nodes.split_at_mut(2);
-        if let Some(drawn) = self.paths.draw(at) {
-            chain[0] = drawn.first_order;
-            chain[1] = drawn.exact;
-            chain[1].weight *= -1.0;
-        }
-        for ((apart, sides), nodes) in self.moved.iter().zip(others.chunks_mut(2)) {
-            let drawn = sides
-                .each_ref()
-                .map(|side| Some(side.as_ref()?.draw(at)?.exact));
-            nets::difference(drawn, *apart, nodes);
-        }
+    fn has_chain(&self) -> bool {
+        true
+    }
+
+    fn beside_chain(&self, at: &[f64; DIMENSIONS]) -> [Option<RayNode>; 2] {
+        let drawn = self.drawn(at, &mut self.path().at_mask());
+        drawn.map_or([None; 2], |drawn| {
+            [Some(drawn.first_order), Some(drawn.exact)]
+        })
     }
 }

@@ -216,12 +216,6 @@ impl<'a> Lights<'a> {
         Lights::new(system, self.sky.clone(), strategy)
     }
 
-    /// Checks whether the density of sampled parts depends on the point where a ray leaves the
-    /// surface.
-    pub(super) fn is_by_lobe(&self) -> bool {
-        self.by_lobe
-    }
-
     /// Returns the sampled parts of the light for a point of the surface. There is a single part,
     /// or there is one part in each quarter of the unit square. Each part's density is multiplied
     /// by the number of parts, so that the parts' contributions add up to a mean.

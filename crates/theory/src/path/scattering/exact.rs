@@ -3,7 +3,7 @@
 use super::brdf;
 use super::incoming::{IncomingLight, LightPart, secant};
 use crate::obstacle::LegRay;
-use crate::path::{PathSystem, PreparedPath};
+use crate::path::{AtMask, PathSystem, PreparedPath};
 use crate::plane::Plane;
 use etendue_field::Orientation;
 use glam::DVec3;
@@ -58,13 +58,13 @@ impl PathSystem {
 impl PreparedPath<'_> {
     /// Returns the radiance that leaves the surface due to a part of the light, per unit of the
     /// part's measure.
-    pub(super) fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
+    pub(super) fn radiance(&self, leaving: &Leaving, part: LightPart, at_mask: AtMask<'_>) -> f64 {
         let Leaving {
             point,
             normal,
             direction,
         } = *leaving;
-        let passes = |ray: &LegRay, length| self.reaches(0, ray, length);
+        let passes = |ray: &LegRay, length| self.reaches(0, ray, length, at_mask);
         let IncomingLight { slopes, weight } = self.incoming(point, part, passes);
         let [u, v] = slopes;
         let secant = secant(slopes);

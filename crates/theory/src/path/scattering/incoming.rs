@@ -38,7 +38,7 @@ impl PreparedPath<'_> {
         &self,
         point: DVec3,
         part: LightPart,
-        passes: impl Fn(&LegRay, f64) -> f64,
+        passes: impl FnOnce(&LegRay, f64) -> f64,
     ) -> IncomingLight {
         let light = &self.system.light;
         let DVec3 { x, y, z } = point;

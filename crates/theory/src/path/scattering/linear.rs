@@ -65,7 +65,8 @@ impl<'a> Linear<'a> {
     pub(super) fn radiance(&self, path: &PreparedPath<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.back.apply(z);
         let point = self.point(local);
-        let passes = |ray: &LegRay, length| path.passes_beside(0, ray, length);
+        let mut at_mask = path.at_mask();
+        let passes = |ray: &LegRay, length| path.passes_beside(0, ray, length, &mut at_mask);
         let IncomingLight { slopes, weight } = path.incoming(point, part, passes);
         if weight <= 0.0 {
             return 0.0;

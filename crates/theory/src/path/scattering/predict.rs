@@ -7,8 +7,8 @@ use super::linear::Linear;
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
-use crate::path::{Observed, PathChain, PathSystem, PreparedPath};
-use crate::plane::Plane;
+use crate::path::differences::{Differences, DrawnField};
+use crate::path::{AtMask, Observed, PathChain, PathSystem, PreparedPath};
 use crate::predicted::Predicted;
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
@@ -31,20 +31,15 @@ pub(crate) fn predict(
     view: &Observed,
     chain: Option<&PathChain>,
     moved: &[ShiftedModels<Observed>],
-    (window, grid, picture): Over<'_>,
+    over: Over<'_>,
     budget: RayBudget,
 ) -> Predicted {
+    let (window, grid, picture) = over;
     let budget = affordable(&view.system, budget);
     let strategy = fastest(view, chain, (window, grid), budget);
     let field = ScatteredField::new(view, window, chain, strategy);
-    let around = VariedFields::new(&field, chain, moved, strategy);
     let found = nets::sums(&field, (window, grid), picture.bins, budget);
-    let mut means = nets::means(&around, (window, grid), &found).into_iter();
-    Predicted {
-        to_first_order: around.linear.as_ref().and_then(|_| means.next()),
-        derivatives: means.map(|mean| mean.slices).collect(),
-        ..found
-    }
+    Differences::new(&field, moved, |view| Some(field.of(view, strategy))).complete(found, over)
 }
 
 /// Calls `then` with the rays that [`predict`] sums over nets.
@@ -134,13 +129,14 @@ struct ScatteredField<'a> {
     path: PreparedPath<'a>,
     rays: PlaneRaySampler,
     lights: Lights<'a>,
+    linear: Option<Linear<'a>>,
 }
 
 impl<'a> ScatteredField<'a> {
     fn new(
         view: &'a Observed,
         window: &'a Window,
-        chain: Option<&PathChain>,
+        chain: Option<&'a PathChain>,
         strategy: LightStrategy,
     ) -> Self {
         let system = &view.system;
@@ -151,12 +147,25 @@ impl<'a> ScatteredField<'a> {
             path: PreparedPath::new(system),
             rays: PlaneRaySampler::new(system, window, chain, strategy),
             lights: Lights::new(system, sky_density(system, normal), strategy),
+            linear: chain.and_then(|chain| Linear::new(system, chain)),
+        }
+    }
+
+    /// Returns the field of a changed model, whose rays at the plane are the same.
+    fn of<'b>(&'b self, view: &'b Observed, strategy: LightStrategy) -> ScatteredField<'b> {
+        ScatteredField {
+            view,
+            window: self.window,
+            path: PreparedPath::new(&view.system),
+            rays: self.rays.clone(),
+            lights: self.lights.of(&view.system, strategy),
+            linear: None,
         }
     }
 
     /// Returns a ray at the plane, the factor that multiplies its radiance, and the point where
     /// the ray leaves the surface.
-    fn draw(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
+    fn leaving(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
         let (z, density) = self.rays.draw([*a, *b, *c, *d]);
         let [x, y, u, v] = z;
         let seen = self.window.value(&TwoPlane { x, y, u, v }) * self.view.plane.factor(z);
@@ -167,9 +176,33 @@ impl<'a> ScatteredField<'a> {
         Some((z, factor, self.view.system.leaving(&self.view.plane, z)?))
     }
 
-    /// Returns the radiance of a ray due to a part of the light.
-    fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
-        radiance(&self.view.plane, &self.path, leaving, part)
+    /// Returns the radiance of a ray at the plane due to a part of the light, per unit of the
+    /// part's measure.
+    fn radiance(&self, leaving: &Leaving, part: LightPart, at_mask: AtMask<'_>) -> f64 {
+        let plane = &self.view.plane;
+        let passes = self.passes(leaving, at_mask);
+        let radiance = if passes > 0.0 {
+            passes * self.path.radiance(leaving, part, at_mask)
+        } else {
+            0.0
+        };
+        if plane.orientation.is_local() {
+            // For a plane on the surface itself, the integral is over the surface's area, which is
+            // larger than the area on the tangent plane.
+            radiance / leaving.normal.dot(plane.frame.d).abs()
+        } else {
+            radiance
+        }
+    }
+
+    /// Returns the fraction of a ray's radiance that passes between the surface and the plane.
+    fn passes(&self, leaving: &Leaving, at_mask: AtMask<'_>) -> f64 {
+        let ray = LegRay {
+            point: leaving.point,
+            direction: leaving.direction,
+        };
+        let along = self.view.plane.along(&ray);
+        along.map_or(0.0, |length| self.path.leaves(&ray, length, at_mask))
     }
 }
 
@@ -182,41 +215,16 @@ fn over(radiance: f64, density: f64) -> f64 {
     }
 }
 
-/// Returns the radiance of a ray at a plane due to a part of the light, per unit of the part's
-/// measure.
-fn radiance(plane: &Plane, path: &PreparedPath<'_>, leaving: &Leaving, part: LightPart) -> f64 {
-    let passes = past_obstacles(plane, path, leaving);
-    let radiance = if passes > 0.0 {
-        passes * path.radiance(leaving, part)
-    } else {
-        0.0
-    };
-    if plane.orientation.is_local() {
-        // For a plane on the surface itself, the integral is over the surface's area, which is
-        // larger than the area on the tangent plane.
-        radiance / leaving.normal.dot(plane.frame.d).abs()
-    } else {
-        radiance
-    }
-}
-
-/// Returns the fraction of a ray's radiance that passes between the surface and the plane.
-fn past_obstacles(plane: &Plane, path: &PreparedPath<'_>, leaving: &Leaving) -> f64 {
-    let ray = LegRay {
-        point: leaving.point,
-        direction: leaving.direction,
-    };
-    let along = plane.along(&ray);
-    along.map_or(0.0, |length| path.leaves(&ray, length))
-}
-
 impl Integrand for ScatteredField<'_> {
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        let Some((z, factor, leaving)) = self.draw(at) else {
+    fn nodes(&self, at: &[f64; DIMENSIONS], _: &[bool], nodes: &mut [RayNode]) {
+        let Some((z, factor, leaving)) = self.leaving(at) else {
             return;
         };
         let parts = self.lights.each(&leaving, [at[4], at[5]]);
-        let radiance = parts.map(|(part, density)| over(self.radiance(&leaving, part), density));
+        let radiance = parts.map(|(part, density)| {
+            let radiance = self.radiance(&leaving, part, &mut self.path.at_mask());
+            over(radiance, density)
+        });
         nodes[0] = RayNode {
             z,
             weight: factor * radiance.sum::<f64>(),
@@ -224,118 +232,32 @@ impl Integrand for ScatteredField<'_> {
     }
 }
 
-/// A sampled part of the light and the density with which it was sampled, or `None` if no part was
-/// sampled.
-type DrawnPart = Option<(LightPart, f64)>;
-
-/// A light field in which a parameter is changed.
-///
-/// If the change does not affect rays or the light, their values are taken from the original light
-/// field.
-struct VariedField<'a> {
-    view: &'a Observed,
-    moves_surface: bool,
-    moves_light: bool,
-    path: PreparedPath<'a>,
-    lights: Lights<'a>,
-}
-
-impl<'a> VariedField<'a> {
-    fn new(view: &'a Observed, field: &'a ScatteredField<'a>, strategy: LightStrategy) -> Self {
-        let Observed { system, plane } = field.view;
-        let moves_surface = view.system.surfaces != system.surfaces || view.plane != *plane;
-        Self {
-            view,
-            moves_surface,
-            moves_light: view.system.light != system.light
-                || moves_surface && field.lights.is_by_lobe(),
-            path: PreparedPath::new(&view.system),
-            lights: field.lights.of(&view.system, strategy),
-        }
+impl DrawnField for ScatteredField<'_> {
+    fn path(&self) -> &PreparedPath<'_> {
+        &self.path
     }
 
-    /// Returns the radiance of a ray due to a part of the light, divided by the density with which
-    /// this part was sampled. `own` contains two values of the original light field: the point
-    /// where the ray leaves the surface, and the sampled part of the light.
-    fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, DrawnPart)) -> Option<f64> {
-        let Observed { system, plane } = self.view;
-        let (mut leaving, mut drawn) = *own;
-        if self.moves_surface {
-            leaving = system.leaving(plane, z)?;
-        }
-        if self.moves_light {
-            drawn = self.lights.draw(&leaving, at);
-        }
-        let (part, density) = drawn?;
-        let radiance = radiance(plane, &self.path, &leaving, part);
-        Some(over(radiance, density))
-    }
-}
-
-/// Variants of a light field: the field of the first-order chain, and fields in which a parameter
-/// is changed.
-struct VariedFields<'a> {
-    field: &'a ScatteredField<'a>,
-    linear: Option<Linear<'a>>,
-    moved: Vec<(f64, [VariedField<'a>; 2])>,
-}
-
-impl<'a> VariedFields<'a> {
-    fn new(
-        field: &'a ScatteredField<'a>,
-        chain: Option<&'a PathChain>,
-        moved: &'a [ShiftedModels<Observed>],
-        strategy: LightStrategy,
-    ) -> Self {
-        let side = |view| VariedField::new(view, field, strategy);
-        let moved = moved.iter();
-        Self {
-            field,
-            linear: chain.and_then(|chain| Linear::new(&field.view.system, chain)),
-            moved: moved
-                .map(|moved| (moved.apart, moved.sides.each_ref().map(side)))
-                .collect(),
-        }
-    }
-}
-
-impl Integrand for VariedFields<'_> {
-    fn fields(&self) -> usize {
-        usize::from(self.linear.is_some()) + self.moved.len()
+    fn draw(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<RayNode> {
+        let (z, factor, leaving) = self.leaving(at)?;
+        let (part, density) = self.lights.draw(&leaving, [at[4], at[5]])?;
+        let weight = factor * over(self.radiance(&leaving, part, at_mask), density);
+        Some(RayNode { z, weight })
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
-        let Self {
-            field,
-            linear,
-            moved,
-        } = self;
-        let Some((z, factor, leaving)) = field.draw(at) else {
-            return;
+    fn has_chain(&self) -> bool {
+        self.linear.is_some()
+    }
+
+    /// The chain treats obstacles between the surface and the plane exactly.
+    fn beside_chain(&self, at: &[f64; DIMENSIONS]) -> [Option<RayNode>; 2] {
+        let first_order = || {
+            let (z, factor, leaving) = self.leaving(at)?;
+            let (part, density) = self.lights.draw(&leaving, [at[4], at[5]])?;
+            let radiance = self.linear.as_ref()?.radiance(&self.path, z, part);
+            let passes = self.passes(&leaving, &mut self.path.at_mask());
+            let weight = factor * over(passes * radiance, density);
+            Some(RayNode { z, weight })
         };
-        let at = [at[4], at[5]];
-        let own = (leaving, field.lights.draw(&leaving, at));
-        let mut nodes = nodes.iter_mut();
-        let mut put = |difference: f64| {
-            if let Some(node) = nodes.next() {
-                let weight = factor * difference;
-                *node = RayNode { z, weight };
-            }
-        };
-        if let Some(linear) = linear {
-            put(own.1.map_or(0.0, |(part, density)| {
-                let exact = field.radiance(&leaving, part);
-                // The chain treats obstacles between the surface and the plane exactly.
-                let passes = past_obstacles(&field.view.plane, &field.path, &leaving);
-                let first_order = passes * linear.radiance(&field.path, z, part);
-                over(first_order - exact, density)
-            }));
-        }
-        for (apart, sides) in moved {
-            let [above, below] = sides
-                .each_ref()
-                .map(|side| side.radiance(z, at, &own).unwrap_or(0.0));
-            put((above - below) / apart);
-        }
+        [first_order(), self.draw(at, &mut self.path.at_mask())]
     }
 }

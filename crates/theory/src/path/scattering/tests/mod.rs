@@ -465,7 +465,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
             let points = (0..count).filter_map(|_| {
                 let [a, b, ..] = net.point();
                 let (part, density) = lights.draw(&leaving, [a, b])?;
-                Some(path.radiance(&leaving, part) / density)
+                Some(path.radiance(&leaving, part, &mut path.at_mask()) / density)
             });
             let radiance = points.sum::<f64>() / f64::from(count);
             let gamma = libm::acos(leaving.normal.dot(from));
