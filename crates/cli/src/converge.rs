@@ -65,8 +65,10 @@ fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
     header.push("order".to_owned());
     let row = |plane: &Convergence| {
         let mut row = vec![plane.plane.clone()];
-        let errors = plane.steps.iter().map(|step| step.error);
-        row.extend(errors.map(|error| format!("{error:.2e}")));
+        row.extend(plane.steps.iter().map(|step| match step.error {
+            _ if step.is_dark() => "dark".to_owned(),
+            error => format!("{error:.2e}"),
+        }));
         row.push(plane.order.map_or("–".to_owned(), |n| format!("{n:.2}")));
         row
     };

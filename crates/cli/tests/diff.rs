@@ -104,7 +104,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a window",
         4,
-        &["the field window.u is 0.30000000000000004 and 0.2"],
+        &["the field window.u is Hann(0.30000000000000004) and Hann(0.2)"],
     );
     found(
         &folder,

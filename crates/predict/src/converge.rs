@@ -19,7 +19,7 @@ pub struct Convergence {
     pub steps: Vec<ConvergenceStep>,
     /// The order n. The error is proportional to eⁿ, and n is fitted by least squares to the last
     /// three steps of those with clear errors. The order is `None` if fewer than three errors are
-    /// clear.
+    /// clear, or if a neighbourhood is dark.
     pub order: Option<f64>,
 }
 
@@ -32,6 +32,14 @@ pub struct ConvergenceStep {
     pub error: f64,
     /// The floor: what `error` may be if the chain is exact.
     pub floor: f64,
+}
+
+impl ConvergenceStep {
+    /// Checks whether no light is left. Masks do not shrink, so they may cover the whole light.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        self.error.max(self.floor) <= 0.0
+    }
 }
 
 /// The budget of rays of each step, for planes where no quadrature rule converges.
@@ -108,7 +116,8 @@ pub fn converge_to(
     }
     let is_clear = |step: &&ConvergenceStep| step.error > CLEAR * step.floor;
     let clear = steps.iter().take_while(is_clear).count();
-    let order = (clear >= FITTED).then(|| order(&steps[clear - FITTED..clear]));
+    let is_lit = !steps.iter().any(ConvergenceStep::is_dark);
+    let order = (is_lit && clear >= FITTED).then(|| order(&steps[clear - FITTED..clear]));
     Some(Convergence {
         plane: plane.name.clone(),
         order,

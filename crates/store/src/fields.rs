@@ -29,7 +29,10 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
     match (a, b) {
         _ if a == b => (),
         (Value::Object(of_a), Value::Object(of_b)) => match [a, b].map(variant) {
-            [Some((name, a)), Some((other, b))] if name == other => collect(field, a, b, found),
+            // A plain value stays with its variant, as a scene file and `--set` have it.
+            [Some((name, a)), Some((other, b))] if name == other && !is_plain(a) => {
+                collect(field, a, b, found);
+            }
             [None, None] => {
                 let added = of_b.keys().filter(|name| !of_a.contains_key(*name));
                 for name in of_a.keys().chain(added) {
@@ -56,6 +59,11 @@ fn variant(value: &Value) -> Option<(&str, &Value)> {
     let (name, content) = fields.iter().next()?;
     let is_name = name.starts_with(char::is_uppercase) && name.chars().all(char::is_alphanumeric);
     is_name.then_some((name, content))
+}
+
+/// Checks whether a value has no parts.
+fn is_plain(value: &Value) -> bool {
+    !value.is_object() && !value.is_array()
 }
 
 impl FieldChange {
@@ -95,12 +103,12 @@ mod tests {
     fn every_field_that_differs_is_named() {
         let a = json!({
             "light": {"Disc": {"radius": 1}}, "blockers": [{"Bars": {"pitch": 0.12, "fill": 0.5}}],
-            "planes": [{"at": {"After": "stop"}}], "mask": "m".repeat(50), "run": null,
+            "planes": [{"at": {"After": "stop"}}], "x": {"Hann": 0.3}, "mask": "m".repeat(50), "run": null,
             "inputs": {"Wall.png": "a"},
         });
         let b = json!({
             "light": {"Beam": {"waist": 2}}, "blockers": [{"Bars": {"pitch": 0.1, "fill": 0.5}}, 7],
-            "planes": [{"at": "Emission"}, {"Plain": {}}], "mask": 1, "run": {"seed": 1},
+            "planes": [{"at": "Emission"}, {"Plain": {}}], "x": {"Hann": 0.2}, "mask": 1, "run": {"seed": 1},
             "inputs": {"Wall.png": "b"},
         });
         let lines: Vec<String> = differences(&a, &b)
@@ -116,6 +124,7 @@ mod tests {
             "planes[1]: none and Plain(…)",
             &cut,
             "run: none and (…)",
+            "x: Hann(0.3) and Hann(0.2)",
             "inputs.Wall.png: \"a\" and \"b\"",
         ];
         expected.sort_unstable();
