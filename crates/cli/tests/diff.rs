@@ -165,6 +165,11 @@ fn the_edge_that_moved_is_named() {
             "aperture of m",
         ),
         (
+            of("") + mirror,
+            ["center:(0.1,0.2,2.2)", "center:(0.105,0.2,2.2)"],
+            "position x of m",
+        ),
+        (
             lamp.to_owned(),
             ["(0.2,0.2", "(0.20315,0.2051"],
             "position x of light (light 2)",

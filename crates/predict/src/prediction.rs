@@ -106,7 +106,7 @@ fn by<M: Model>(
     let derivatives = parameters.iter().copied().zip(found.derivatives);
     let parameters = derivatives.filter_map(|(parameter, derivative)| {
         // Most surfaces are larger than the light that they meet.
-        if matches!(parameter, Parameter::SurfaceSize(..)) && derivative.is_dark() {
+        if parameter.is_of_rim() && derivative.is_dark() {
             return None;
         }
         Some(PredictedParameter {

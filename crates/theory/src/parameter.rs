@@ -46,6 +46,9 @@ pub enum Parameter {
     Incidence(usize),
     /// The side of a rectangular surface along X (0) or Y (1), or the aperture of a patch (0).
     SurfaceSize(usize, usize),
+    /// The position of the vertex of a surface along X (0) or Y (1) of its patch, from the point
+    /// where the central ray meets the surface.
+    SurfacePosition(usize, usize),
     /// A curvature of a patch, k₁ (0) or k₂ (1). Other curvatures of the patch change too if they
     /// are equal to this curvature. The patch's vertex does not move.
     Curvature(usize, usize),
@@ -93,7 +96,13 @@ impl Parameter {
     /// Checks whether the parameter places edges or a light. Its value may be zero, and its finite
     /// differences need large steps.
     pub(crate) fn places(self) -> bool {
-        matches!(self, Self::SourcePosition(_) | Self::SurfaceSize(..)) || self.mask().is_some()
+        matches!(self, Self::SourcePosition(_)) || self.is_of_rim() || self.mask().is_some()
+    }
+
+    /// Checks whether the parameter places the rim of a surface, which light may not reach.
+    #[must_use]
+    pub fn is_of_rim(self) -> bool {
+        matches!(self, Self::SurfaceSize(..) | Self::SurfacePosition(..))
     }
 
     /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
@@ -112,6 +121,7 @@ impl Parameter {
             | Self::HoleCorner(..)
             | Self::HalfPlaneEdge(..)
             | Self::SurfaceSize(..)
+            | Self::SurfacePosition(..)
             | Self::FocalLength(_) => "m",
         }
     }
@@ -122,6 +132,7 @@ impl Parameter {
         match self {
             // The distance from the central ray tells nothing about how far an edge may move.
             Self::SourcePosition(_)
+            | Self::SurfacePosition(..)
             | Self::BlockerPosition(..)
             | Self::HoleCorner(..)
             | Self::HalfPlaneEdge(..) => 1.0,
@@ -277,7 +288,7 @@ impl Parameter {
     }
 }
 
-fn position(axis: usize, name: &str) -> String {
+pub(crate) fn position(axis: usize, name: &str) -> String {
     format!("position {} of {name}", ["x", "y"][axis])
 }
 

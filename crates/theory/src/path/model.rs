@@ -7,7 +7,7 @@ use super::{
 };
 use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, affordable_derivatives, work_of_nets};
-use crate::parameter::{New, Parameter, change_curvature, curvatures, scale};
+use crate::parameter::{New, Parameter, change_curvature, curvatures, position, scale};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{
@@ -34,7 +34,7 @@ impl Model for Observed {
         let masks = masks.flat_map(|(i, one)| Parameter::of_mask(&one.mask, i));
         all.extend(masks.filter(|parameter| self.is_parameter(*parameter)));
         let surfaces = self.system.first_visits();
-        all.extend(surfaces.flat_map(|(i, surface)| surface.sizes(i)));
+        all.extend(surfaces.flat_map(|(i, surface)| surface.rim(i)));
         let Some(last) = self.system.last_scatterer() else {
             all.extend(self.specular_parameters());
             all.retain(|parameter| self.is_parameter(*parameter));
@@ -82,6 +82,7 @@ impl Model for Observed {
                 PatchExtent::Whole => format!("aperture of {}", name(i)),
                 PatchExtent::Rectangle(_) => format!("side {} of {}", ["x", "y"][axis], name(i)),
             },
+            (Parameter::SurfacePosition(i, axis), _) => position(axis, name(i)),
             (Parameter::Curvature(i, axis), _) => format!("curvature {} of {}", axis + 1, name(i)),
             (Parameter::Index(i), _) => format!("index of {}", name(i)),
             (Parameter::FocalLength(i), _) => format!("focal length of {}", name(i)),
@@ -127,6 +128,15 @@ impl Model for Observed {
                 }
                 Some(())
             })?,
+            Parameter::SurfacePosition(i, axis) => {
+                let hit = self.system.surfaces.get(i)?.hit;
+                self.reshape(i, |Patch { frame, .. }, _| {
+                    let along = [frame.x, frame.y][axis];
+                    let position = (frame.origin - hit).dot(along);
+                    frame.origin += (new(position) - position) * along;
+                    Some(())
+                })?;
+            }
             Parameter::Index(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
                 Interaction::Specular(Specular::Refraction { front, back }) => {
                     let denser = if *front > *back { front } else { back };
@@ -149,6 +159,7 @@ impl Model for Observed {
             Parameter::Incidence(i)
             | Parameter::Curvature(i, _)
             | Parameter::SurfaceSize(i, _)
+            | Parameter::SurfacePosition(i, _)
             | Parameter::Index(i)
             | Parameter::FocalLength(i) => self.system.repeat(i),
             Parameter::Albedo | Parameter::Lobe => self.system.repeat(last?),
@@ -410,12 +421,14 @@ fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
 
 impl PathSurface {
     /// Returns the parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
-    fn sizes(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
-        let axes = match self.extent {
-            PatchExtent::Rectangle(_) => 2,
-            PatchExtent::Whole => usize::from(self.occludes),
+    fn rim(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
+        let [sizes, positions] = match self.extent {
+            PatchExtent::Rectangle(_) => [2, 2],
+            PatchExtent::Whole if self.occludes => [1, 2],
+            PatchExtent::Whole => [0, 0],
         };
-        (0..axes).map(move |axis| Parameter::SurfaceSize(i, axis))
+        let sizes = (0..sizes).map(move |axis| Parameter::SurfaceSize(i, axis));
+        sizes.chain((0..positions).map(move |axis| Parameter::SurfacePosition(i, axis)))
     }
 
     /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
