@@ -84,6 +84,10 @@ fn of_light(
     }
 }
 
+/// The smallest share of the light by which a rim that moves a metre must change the light. Where
+/// it changes less, the derivative is a rounding error.
+const MIN_CHANGE: f64 = 1e-6;
+
 /// Returns the prediction of a model, with the first-order chain beside it.
 fn by<M: Model>(
     empty: Prediction,
@@ -103,10 +107,11 @@ fn by<M: Model>(
         Some(number) => format!("{} (light {number})", model.name(parameter)),
         None => model.name(parameter),
     };
+    let norm = found.slices.norm();
     let derivatives = parameters.iter().copied().zip(found.derivatives);
     let parameters = derivatives.filter_map(|(parameter, derivative)| {
         // Most surfaces are larger than the light that they meet.
-        if parameter.is_of_rim() && derivative.is_dark() {
+        if parameter.is_of_rim() && derivative.norm() <= MIN_CHANGE * norm {
             return None;
         }
         Some(PredictedParameter {
