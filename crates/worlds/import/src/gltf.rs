@@ -20,7 +20,6 @@
 mod accessor;
 mod camera;
 mod container;
-mod level;
 mod light;
 mod material;
 mod node;

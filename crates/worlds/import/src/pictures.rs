@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// A cache of pictures, from which each picture is read only once.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
-    known: HashMap<(PathBuf, u64), Result<Arc<Raster>, String>>,
+    /// Pictures by path and by curve, in words.
+    known: HashMap<(PathBuf, String), Result<Arc<Raster>, String>>,
 }
 
 /// How the levels of a picture represent light.
@@ -41,24 +42,13 @@ impl Pictures {
         color: Color,
         curve: TransferCurve,
     ) -> Result<Arc<Raster>, String> {
-        let key = (path.to_owned(), curve.exponent().to_bits());
+        let key = (path.to_owned(), format!("{curve:?}"));
         if let Some(known) = self.known.get(&key) {
             return known.clone();
         }
         let read = read(files, path, color, curve).map(Arc::new);
         self.known.insert(key, read.clone());
         read
-    }
-}
-
-impl TransferCurve {
-    /// Returns a number that distinguishes curves: the exponent, or 0 for sRGB.
-    fn exponent(self) -> f64 {
-        match self {
-            Self::Srgb => 0.0,
-            Self::Linear => 1.0,
-            Self::Gamma(exponent) => exponent,
-        }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::files::Files;
 use etendue_world::World;
 use std::cell::RefCell;
+use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 use std::rc::Rc;
@@ -49,6 +50,8 @@ impl SourcePlace {
 pub(crate) struct Report {
     causes: RefCell<Messages>,
     notes: RefCell<Messages>,
+    /// The messages that are given only once, with their places.
+    told: RefCell<HashSet<String>>,
 }
 
 /// The messages of one kind: the first messages, and the number of further messages.
@@ -97,6 +100,19 @@ impl Report {
     /// Adds a note on an omission or approximation.
     pub(crate) fn note(&self, place: &SourcePlace, message: impl Into<String>) {
         self.notes.borrow_mut().add(place, message.into());
+    }
+
+    /// Adds a note only once, even if the object that the note concerns is used several times.
+    pub(crate) fn note_once(&self, place: &SourcePlace, message: &str) {
+        if self.is_first(place, message) {
+            self.note(place, message);
+        }
+    }
+
+    /// Checks whether a message was not given before at a place.
+    pub(crate) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
+        let message = place.note(message.to_owned()).to_string();
+        self.told.borrow_mut().insert(message)
     }
 
     /// Checks whether the scene is refused.
@@ -173,11 +189,8 @@ impl Refused {
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, cause) in self.causes.iter().enumerate() {
-            let end = if i == 0 { "" } else { "\n" };
-            write!(f, "{end}{cause}")?;
-        }
-        Ok(())
+        let causes: Vec<String> = self.causes.iter().map(Note::to_string).collect();
+        f.write_str(&causes.join("\n"))
     }
 }
 

@@ -11,7 +11,7 @@ const PER_OBSERVER: f64 = 1.0 / 106.750_259_399_414_06;
 const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
 
 /// The quantity that a spectrum represents.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Role {
     /// A reflectance or transmittance, 0 to 1.
     Reflectance,

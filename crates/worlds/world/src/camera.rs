@@ -1,6 +1,6 @@
 //! Cameras of a world, and the rays of their pixels.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// A camera. `to_world` maps the camera's coordinates to the world. In these coordinates, the
 /// camera looks along Z, Y points up in the picture, and X points to the left.
@@ -57,6 +57,31 @@ pub struct Look {
 }
 
 impl Camera {
+    /// Creates a camera without a lens at the point `from`, with the point `at` in the middle of its
+    /// picture, and `up` upwards in the picture. Returns `None` if these give no orientation.
+    #[must_use]
+    pub fn pinhole(
+        [from, at, up]: [DVec3; 3],
+        half_width: f64,
+        size: [usize; 2],
+        clip: [f64; 2],
+    ) -> Option<Self> {
+        let ahead = (at - from).try_normalize()?;
+        let left = up.cross(ahead).try_normalize()?;
+        let frame = DMat3::from_cols(left, ahead.cross(left), ahead);
+        Some(Self {
+            name: "camera".to_owned(),
+            to_world: DAffine3::from_mat3_translation(frame, from),
+            size,
+            projection: Projection::Perspective {
+                half_width,
+                shift: [0.0; 2],
+                lens: None,
+            },
+            clip,
+        })
+    }
+
     /// Returns whether rays begin at different points of a lens.
     #[must_use]
     pub fn has_lens(&self) -> bool {

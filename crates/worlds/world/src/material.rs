@@ -63,6 +63,20 @@ pub enum Material {
 }
 
 impl Material {
+    /// Creates Lambert's BRDF with a constant reflectance.
+    #[must_use]
+    pub fn diffuse(reflectance: f64) -> Self {
+        Self::Diffuse {
+            reflectance: Texture::Constant(reflectance),
+        }
+    }
+
+    /// Returns the material that has this opaque material on both sides.
+    #[must_use]
+    pub fn on_both_sides(self) -> Self {
+        Self::TwoSided(Box::new([self.clone(), self]))
+    }
+
     /// Checks whether a part of the material is a mirror or smooth glass.
     #[must_use]
     pub fn has_smooth_part(&self) -> bool {

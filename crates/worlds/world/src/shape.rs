@@ -26,6 +26,22 @@ pub struct Shape {
     pub emits_on_both_sides: bool,
 }
 
+impl Shape {
+    /// Creates a surface without a name, which does not emit.
+    #[must_use]
+    pub fn new(geometry: Geometry, to_world: DAffine3, material: usize) -> Self {
+        Self {
+            name: String::new(),
+            geometry,
+            to_world,
+            is_flipped: false,
+            material,
+            emission: None,
+            emits_on_both_sides: false,
+        }
+    }
+}
+
 /// The geometry of a surface, with its front and its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Geometry {

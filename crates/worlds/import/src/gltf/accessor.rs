@@ -28,11 +28,17 @@ struct AccessorRows {
 }
 
 impl AccessorRows {
-    fn number(&self, row: usize, column: usize) -> f64 {
+    /// Returns the bytes of a number, with zeros behind them.
+    fn word(&self, row: usize, column: usize) -> [u8; 4] {
         let size = self.component.size();
         let at = self.start + row * self.stride + column * size;
         let mut word = [0; 4];
         word[..size].copy_from_slice(&self.bytes[at..at + size]);
+        word
+    }
+
+    fn number(&self, row: usize, column: usize) -> f64 {
+        let word = self.word(row, column);
         let signed = |value: f64, most: f64| match self.is_normalized {
             true => (value / most).max(-1.0),
             false => value,
@@ -49,14 +55,6 @@ impl AccessorRows {
             ComponentType::U32 => f64::from(u32::from_le_bytes(word)),
             ComponentType::F32 => f64::from(f32::from_le_bytes(word)),
         }
-    }
-
-    fn whole(&self, row: usize) -> u32 {
-        let size = self.component.size();
-        let at = self.start + row * self.stride;
-        let mut word = [0; 4];
-        word[..size].copy_from_slice(&self.bytes[at..at + size]);
-        u32::from_le_bytes(word)
     }
 }
 
@@ -95,7 +93,11 @@ impl GltfReader<'_> {
             let message = "is not allowed for indices; allowed: 5121, 5123, 5125";
             return self.refuse(&path, message);
         }
-        Some((0..rows.count).map(|row| rows.whole(row)).collect())
+        Some(
+            (0..rows.count)
+                .map(|row| u32::from_le_bytes(rows.word(row, 0)))
+                .collect(),
+        )
     }
 
     fn spend(&self, index: Index<Accessor>, bytes: usize) -> Option<()> {

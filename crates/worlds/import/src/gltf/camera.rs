@@ -15,6 +15,9 @@ const ACROSS: usize = 512;
 /// number.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
+/// A projection, its scale, the aspect ratio of the picture, and the clip planes.
+type CameraView = (Projection, f64, f64, [f64; 2]);
+
 impl<'a> GltfReader<'a> {
     pub(super) fn camera_of(&mut self, placed: &PlacedNode<'a>, number: usize) {
         let path = format!("cameras[{number}]");
@@ -47,12 +50,7 @@ impl<'a> GltfReader<'a> {
         self.note_once("cameras have no resolution: pictures are 512 pixels wide, and their aspect ratio determines the height");
     }
 
-    /// Returns the projection, its scale, the aspect ratio of the picture, and the clip planes.
-    fn perspective(
-        &mut self,
-        of: &Perspective,
-        path: &str,
-    ) -> Option<(Projection, f64, f64, [f64; 2])> {
+    fn perspective(&mut self, of: &Perspective, path: &str) -> Option<CameraView> {
         let field = |name: &str| format!("{path}.{name}");
         let yfov = self.within(&field("yfov"), of.yfov, [1e-4, PI - 1e-4]);
         let aspect = match of.aspect_ratio {
@@ -77,11 +75,7 @@ impl<'a> GltfReader<'a> {
         Some((projection, 1.0, aspect, [near?, far?]))
     }
 
-    fn orthographic(
-        &self,
-        of: &Orthographic,
-        path: &str,
-    ) -> Option<(Projection, f64, f64, [f64; 2])> {
+    fn orthographic(&self, of: &Orthographic, path: &str) -> Option<CameraView> {
         let field = |name: &str| format!("{path}.{name}");
         let [xmag, ymag] = [("xmag", of.xmag), ("ymag", of.ymag)]
             .map(|(name, value)| self.within(&field(name), value, [1e-9, 1e9]));

@@ -25,7 +25,7 @@ impl<'a> GltfReader<'a> {
         }
         if let Some(light) = self.light(light, placed, &path) {
             self.world.lights.push(light);
-            self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
+            self.note_units();
         }
     }
 

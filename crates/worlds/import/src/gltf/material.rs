@@ -1,7 +1,7 @@
 //! Materials of a glTF file.
 
-use super::level::TextureChannel;
 use super::reader::{Draft, GltfReader, GltfSurface};
+use super::texture::TextureChannel;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::Material as GltfMaterial;
 use ::gltf::json::material::AlphaMode;
@@ -16,6 +16,9 @@ const INDEX: f64 = 1.5;
 
 /// The JSON field that contains the pictures of the base colour and of metallic and roughness.
 const PBR: &str = "pbrMetallicRoughness";
+
+/// The JSON field of the picture of the base colour.
+const BASE_COLOR: &str = "pbrMetallicRoughness.baseColorTexture";
 
 impl<'a> GltfReader<'a> {
     /// Returns the material with a given number in the file. If no number is given, returns the
@@ -73,7 +76,7 @@ impl<'a> GltfReader<'a> {
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
-            true => Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness])),
+            true => metallic_roughness.on_both_sides(),
             false => {
                 self.note_once("surfaces that are not doubleSided scatter light on their front only; their backs, which glTF does not show, are black");
                 metallic_roughness
@@ -103,13 +106,11 @@ impl<'a> GltfReader<'a> {
         if !is_lit(draft.source) {
             return Some(None);
         }
-        self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
+        self.note_units();
         let level = TextureChannel::Color(factor.map(|v| v * strength));
-        let source = draft.source;
-        match &source.emissive_texture {
-            Some(info) => self.bitmap(draft, info, "emissiveTexture", level).map(Some),
-            None => Some(Some(self.constant(&level))),
-        }
+        let info = draft.source.emissive_texture.as_ref();
+        self.textured(draft, info, "emissiveTexture", level)
+            .map(Some)
     }
 
     /// Returns the opacity. The inner `None` means an opaque material, and the outer `None` means
@@ -129,17 +130,12 @@ impl<'a> GltfReader<'a> {
             Checked::Valid(AlphaMode::Blend) => None,
         };
         let level = TextureChannel::Alpha { factor, cutoff };
-        let texture = match &source.pbr_metallic_roughness.base_color_texture {
-            Some(info) => {
-                if cutoff.is_some() {
-                    let message = "approximated: each pixel is opaque or transparent, with no interpolation between pixels";
-                    self.note(&format!("{}.alphaCutoff", draft.path), message);
-                }
-                self.bitmap(draft, info, "pbrMetallicRoughness.baseColorTexture", level)?
-            }
-            None => self.constant(&level),
-        };
-        Some(match texture {
+        let info = source.pbr_metallic_roughness.base_color_texture.as_ref();
+        if info.is_some() && cutoff.is_some() {
+            let message = "approximated: each pixel is opaque or transparent, with no interpolation between pixels";
+            self.note(&format!("{}.alphaCutoff", draft.path), message);
+        }
+        Some(match self.textured(draft, info, BASE_COLOR, level)? {
             Texture::Constant(1.0..) => None,
             other => Some(other),
         })
@@ -169,7 +165,8 @@ impl<'a> GltfReader<'a> {
     /// was reported.
     fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
-        let metallic = self.share(draft, "metallicFactor");
+        let factor = draft.source.pbr_metallic_roughness.metallic_factor.0;
+        let metallic = self.channel(draft, "metallicFactor", factor, TextureChannel::Blue);
         let alpha = self.alpha(draft);
         let (color, metallic, alpha) = (color?, metallic?, alpha?);
         let coat = self.coat(draft)?;
@@ -189,49 +186,44 @@ impl<'a> GltfReader<'a> {
         let path = format!("{}.{PBR}.baseColorFactor", draft.path);
         let [r, g, b, _] = self.shares(&path, pbr.base_color_factor.0)?;
         let level = TextureChannel::Color([r, g, b]);
-        match &pbr.base_color_texture {
-            Some(info) => self.bitmap(draft, info, &format!("{PBR}.baseColorTexture"), level),
-            None => Some(self.constant(&level)),
-        }
-    }
-
-    /// Returns `metallicFactor` times the metallic channel of the picture.
-    fn share(&mut self, draft: &mut Draft<'_>, name: &str) -> Option<Texture> {
-        let pbr = &draft.source.pbr_metallic_roughness;
-        let path = format!("{}.{PBR}.{name}", draft.path);
-        let factor = self.within(&path, pbr.metallic_factor.0, [0.0, 1.0])?;
-        match &pbr.metallic_roughness_texture {
-            // If the metallic factor is 0, the picture has no effect.
-            Some(info) if factor > 0.0 => {
-                let field = format!("{PBR}.metallicRoughnessTexture");
-                self.bitmap(draft, info, &field, TextureChannel::Blue(factor))
-            }
-            _ => Some(Texture::Constant(factor)),
-        }
+        self.textured(draft, pbr.base_color_texture.as_ref(), BASE_COLOR, level)
     }
 
     /// Returns α, which is the square of the roughness.
-    pub(super) fn alpha(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
-        let pbr = &draft.source.pbr_metallic_roughness;
-        let path = format!("{}.{PBR}.roughnessFactor", draft.path);
-        let factor = self.within(&path, pbr.roughness_factor.0, [0.0, 1.0])?;
-        match &pbr.metallic_roughness_texture {
-            Some(info) if factor > 0.0 => {
-                let field = format!("{PBR}.metallicRoughnessTexture");
-                self.bitmap(draft, info, &field, TextureChannel::GreenSquared(factor))
-            }
-            _ => Some(Texture::Constant(factor * factor)),
-        }
+    fn alpha(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
+        let factor = draft.source.pbr_metallic_roughness.roughness_factor.0;
+        self.channel(
+            draft,
+            "roughnessFactor",
+            factor,
+            TextureChannel::GreenSquared,
+        )
+    }
+
+    /// Returns a factor from 0 to 1, as a channel of the picture of metallic and roughness.
+    fn channel(
+        &mut self,
+        draft: &mut Draft<'_>,
+        name: &str,
+        factor: f32,
+        channel: fn(f64) -> TextureChannel,
+    ) -> Option<Texture> {
+        let path = format!("{}.{PBR}.{name}", draft.path);
+        let factor = self.within(&path, factor, [0.0, 1.0])?;
+        let info = &draft
+            .source
+            .pbr_metallic_roughness
+            .metallic_roughness_texture;
+        // If the factor is 0, the picture has no effect.
+        let info = info.as_ref().filter(|_| factor > 0.0);
+        let field = format!("{PBR}.metallicRoughnessTexture");
+        self.textured(draft, info, &field, channel(factor))
     }
 
     /// Returns the index of refraction, or `None` if a cause of refusal was reported.
     fn index(&self, draft: &Draft<'_>) -> Option<f64> {
-        let ior = draft
-            .source
-            .extensions
-            .as_ref()
-            .and_then(|of| of.ior.as_ref());
-        let Some(ior) = ior else {
+        let extensions = draft.source.extensions.as_ref();
+        let Some(ior) = extensions.and_then(|of| of.ior.as_ref()) else {
             return Some(INDEX);
         };
         let path = format!("{}.extensions.KHR_materials_ior.ior", draft.path);

@@ -1,7 +1,6 @@
 //! Reads a glTF file into a world.
 
 use super::container::Document;
-use super::level::RasterKey;
 use crate::Color;
 use crate::files::Files;
 use crate::main_file::MainFile;
@@ -9,7 +8,7 @@ use crate::report::{Report, SourcePlace, quoted};
 use ::gltf::json::{Material as GltfMaterial, Root};
 use etendue_field::Raster;
 use etendue_world::{EmittedRadiance, Triangles, World};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -32,9 +31,8 @@ pub(super) struct GltfReader<'a> {
     /// Materials by number in the file; `None` if a cause of refusal was reported for the
     /// material. The default material has no number in the file.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
-    pub(super) rasters: HashMap<RasterKey, Option<Arc<Raster>>>,
-    /// Notes that were already given, and are not repeated.
-    pub(super) told: HashSet<&'static str>,
+    /// Pictures by image number and by the channel that is read, in words.
+    pub(super) rasters: HashMap<(usize, String), Option<Arc<Raster>>>,
 }
 
 /// The material of a surface.
@@ -71,7 +69,6 @@ impl<'a> GltfReader<'a> {
             meshes: HashMap::new(),
             materials: HashMap::new(),
             rasters: HashMap::new(),
-            told: HashSet::new(),
         }
     }
 
@@ -114,10 +111,13 @@ impl<'a> GltfReader<'a> {
     }
 
     /// Adds a note on the file as a whole, unless the same note was already given.
-    pub(super) fn note_once(&mut self, message: &'static str) {
-        if self.told.insert(message) {
-            self.report.note(&self.place, message);
-        }
+    pub(super) fn note_once(&self, message: &str) {
+        self.report.note_once(&self.place, message);
+    }
+
+    /// Adds the note on the units of all lights.
+    pub(super) fn note_units(&self) {
+        self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
     }
 
     /// Checks that a number is within range; `None` if a cause of refusal was reported.

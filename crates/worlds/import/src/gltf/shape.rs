@@ -70,12 +70,9 @@ impl<'a> GltfReader<'a> {
         };
         self.world.shapes.extend(known.map(|mesh| Shape {
             name: name.to_owned(),
-            geometry: Geometry::Mesh(mesh),
-            to_world: placed.to_world,
-            is_flipped: false,
-            material: surface.material,
             emission: surface.emission,
             emits_on_both_sides: surface.is_double_sided,
+            ..Shape::new(Geometry::Mesh(mesh), placed.to_world, surface.material)
         }));
     }
 

@@ -1,6 +1,5 @@
 //! Textures and images of a glTF file.
 
-use super::level::{RasterKey, TextureChannel, cut};
 use super::reader::{Draft, GltfReader};
 use crate::pictures;
 use crate::range::MAX_NUMBER;
@@ -14,9 +13,38 @@ use glam::{DAffine2, DMat2, DVec2};
 use std::path::Path;
 use std::sync::Arc;
 
+/// The texture channel that is read from a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TextureChannel {
+    /// The three colour channels, linearised from sRGB, times the given factors.
+    Color([f64; 3]),
+    /// The second channel is multiplied by a factor, and the product is squared.
+    GreenSquared(f64),
+    /// The third channel of the pixel times a factor.
+    Blue(f64),
+    /// Alpha times a factor; if there is a cutoff, this product is replaced by 0 below the cutoff
+    /// and by 1 otherwise.
+    Alpha { factor: f64, cutoff: Option<f64> },
+}
+
 impl GltfReader<'_> {
+    /// Returns the texture of a factor, and of the picture that it multiplies, if there is one.
+    /// Returns `None` if a cause of refusal was reported.
+    pub(super) fn textured(
+        &mut self,
+        draft: &mut Draft<'_>,
+        info: Option<&Info>,
+        field: &str,
+        level: TextureChannel,
+    ) -> Option<Texture> {
+        match info {
+            Some(info) => self.bitmap(draft, info, field, level),
+            None => Some(self.constant(&level)),
+        }
+    }
+
     /// Returns the value for a white, opaque pixel, as a constant texture.
-    pub(super) fn constant(&self, level: &TextureChannel) -> Texture {
+    fn constant(&self, level: &TextureChannel) -> Texture {
         Texture::Constant(match *level {
             TextureChannel::Color(factor) => self.color.of(factor),
             TextureChannel::GreenSquared(factor) => factor * factor,
@@ -26,7 +54,7 @@ impl GltfReader<'_> {
     }
 
     /// Returns a picture of a material, or `None` if a cause of refusal was reported.
-    pub(super) fn bitmap(
+    fn bitmap(
         &mut self,
         draft: &mut Draft<'_>,
         info: &Info,
@@ -102,7 +130,7 @@ impl GltfReader<'_> {
 
     /// Returns one number for each pixel of an image, or `None` if a cause of refusal was reported.
     fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
-        let key = RasterKey::new(image, level);
+        let key = (image, format!("{level:?}"));
         if let Some(known) = self.rasters.get(&key) {
             return known.clone();
         }
@@ -144,6 +172,16 @@ impl GltfReader<'_> {
             TextureChannel::Blue(factor) => factor * rgb[2],
             TextureChannel::Alpha { .. } => 1.0,
         })
+    }
+}
+
+/// Returns alpha if there is no cutoff; otherwise returns 0 for alpha below the cutoff, and 1 for
+/// all other values.
+fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
+    match cutoff {
+        Some(cutoff) if alpha >= cutoff => 1.0,
+        Some(_) => 0.0,
+        None => alpha.clamp(0.0, 1.0),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Functions that read the properties of an object and mark them as read.
 
-use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
+use super::object::{MitsubaObject, ObjectProperty, Value};
 use super::reader::MitsubaReader;
 use super::xml::unknown;
 use crate::report::{SourcePlace, quoted};
@@ -163,7 +163,7 @@ impl<'a> MitsubaReader<'a> {
     pub(super) fn children(
         &self,
         object: &'a MitsubaObject,
-        kind: ObjectKind,
+        kind: &str,
     ) -> Vec<(&'a ObjectProperty, &'a MitsubaObject)> {
         let all = object.properties.iter();
         let found = all.filter_map(|property| Some((property, self.object_of(property)?)));
@@ -177,15 +177,11 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the only child object of a kind, if one exists. A second child of the same kind is a
     /// cause of refusal.
-    pub(super) fn child(
-        &self,
-        object: &'a MitsubaObject,
-        kind: ObjectKind,
-    ) -> Option<&'a MitsubaObject> {
+    pub(super) fn child(&self, object: &'a MitsubaObject, kind: &str) -> Option<&'a MitsubaObject> {
         let found = self.children(object, kind);
         if let Some((second, _)) = found.get(1) {
-            let (name, plugin) = (kind.name(), quoted(&object.plugin));
-            let message = format!("{plugin} has a second {name}; allowed: one");
+            let plugin = quoted(&object.plugin);
+            let message = format!("{plugin} has a second {kind}; allowed: one");
             self.report.cause(&second.place, message);
         }
         found.first().map(|(_, child)| *child)

@@ -1,7 +1,7 @@
 //! Materials: `bsdf` elements.
 
 use super::index::metal_index;
-use super::object::{MitsubaObject, ObjectKind};
+use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::texture::as_number;
 use crate::range::{MAX_MATERIALS, MAX_SHARE};
@@ -43,8 +43,8 @@ impl<'a> MitsubaReader<'a> {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;
         }
-        let reflectance = Texture::Constant(if shines { 0.0 } else { 0.5 });
-        let number = self.world.add_material(Material::Diffuse { reflectance });
+        let material = Material::diffuse(if shines { 0.0 } else { 0.5 });
+        let number = self.world.add_material(material);
         self.defaults[usize::from(shines)] = Some(number);
         number
     }
@@ -82,9 +82,7 @@ impl<'a> MitsubaReader<'a> {
             "blendbsdf" => self.blend(object, depth),
             "null" => Some(Material::Mask {
                 opacity: Texture::Constant(0.0),
-                of: Box::new(Material::Diffuse {
-                    reflectance: Texture::Constant(0.0),
-                }),
+                of: Box::new(Material::diffuse(0.0)),
             }),
             _ => self.unsupported(object, ALLOWED),
         }
@@ -299,7 +297,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
     fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
-        let within = self.children(object, ObjectKind::Bsdf);
+        let within = self.children(object, "bsdf");
         // All bsdfs are read even after a failure, to find all causes of refusal.
         let all: Vec<Option<Material>> = within
             .into_iter()

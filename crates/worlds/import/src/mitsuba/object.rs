@@ -9,7 +9,8 @@ use std::rc::Rc;
 /// An object of the scene, which Mitsuba creates by a plugin.
 #[derive(Debug)]
 pub(super) struct MitsubaObject {
-    pub(super) kind: ObjectKind,
+    /// The name of its element.
+    pub(super) kind: &'static str,
     /// The index of the object among all objects.
     pub(super) number: usize,
     /// The name of the plugin.
@@ -69,59 +70,32 @@ impl MitsubaObject {
     }
 }
 
-/// Elements that define objects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ObjectKind {
-    Scene,
-    Integrator,
-    Sensor,
-    Film,
-    Sampler,
-    Rfilter,
-    Bsdf,
-    Texture,
-    Emitter,
-    Shape,
-    Medium,
-    Phase,
-    Volume,
-}
+/// The names of elements that define objects.
+const KINDS: [&str; 13] = [
+    "scene",
+    "integrator",
+    "sensor",
+    "film",
+    "sampler",
+    "rfilter",
+    "bsdf",
+    "texture",
+    "emitter",
+    "shape",
+    "medium",
+    "phase",
+    "volume",
+];
 
-impl ObjectKind {
-    /// All kinds, with the names of their elements.
-    const NAMES: [(Self, &str); 13] = [
-        (Self::Scene, "scene"),
-        (Self::Integrator, "integrator"),
-        (Self::Sensor, "sensor"),
-        (Self::Film, "film"),
-        (Self::Sampler, "sampler"),
-        (Self::Rfilter, "rfilter"),
-        (Self::Bsdf, "bsdf"),
-        (Self::Texture, "texture"),
-        (Self::Emitter, "emitter"),
-        (Self::Shape, "shape"),
-        (Self::Medium, "medium"),
-        (Self::Phase, "phase"),
-        (Self::Volume, "volume"),
-    ];
-
-    /// Returns the kind of object that an element of this name defines. A spectrum with a type is a
-    /// texture.
-    pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
-        let name = if name == "spectrum" && has_type {
-            "texture"
-        } else {
-            name
-        };
-        let found = Self::NAMES.iter().find(|(_, known)| *known == name);
-        found.map(|(kind, _)| *kind)
-    }
-
-    /// Returns the element name.
-    pub(super) fn name(self) -> &'static str {
-        let found = Self::NAMES.iter().find(|(kind, _)| *kind == self);
-        found.map_or("", |(_, name)| name)
-    }
+/// Returns the kind of object that an element of this name defines. A spectrum with a type is a
+/// texture.
+pub(super) fn kind_of(name: &str, has_type: bool) -> Option<&'static str> {
+    let name = if name == "spectrum" && has_type {
+        "texture"
+    } else {
+        name
+    };
+    KINDS.into_iter().find(|kind| *kind == name)
 }
 
 impl Value {
@@ -149,7 +123,7 @@ pub(super) fn tell_unused(objects: &[MitsubaObject], report: &Report) {
             properties(object, report);
         } else if at != object.parent && objects[object.parent].is_used.get() {
             // One note suffices for an unused object and all objects that it contains.
-            let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+            let (kind, plugin) = (object.kind, quoted(&object.plugin));
             let id = object.id.as_deref().map(|id| format!(" {}", quoted(id)));
             let id = id.unwrap_or_default();
             let message = format!("{kind} {plugin}{id} is not used");
@@ -164,7 +138,7 @@ fn properties(object: &MitsubaObject, report: &Report) {
             continue;
         }
         let (name, plugin) = (quoted(&property.name), quoted(&object.plugin));
-        let kind = object.kind.name();
+        let kind = object.kind;
         let message = match &property.value {
             Value::Reference(id) => {
                 format!("reference to {} in {kind} {plugin} is left out", quoted(id))

@@ -1,7 +1,7 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
 use super::mesh_data::{MitsubaMesh, MitsubaMeshKey, ReadMesh};
-use super::object::{MitsubaObject, ObjectKind};
+use super::object::MitsubaObject;
 use super::xml::Tree;
 use crate::Color;
 use crate::files::Files;
@@ -72,14 +72,14 @@ impl<'a> MitsubaReader<'a> {
         self.refuse_unknown();
         self.integrator(scene);
         self.sensors(scene);
-        for (_, light) in self.children(scene, ObjectKind::Emitter) {
+        for (_, light) in self.children(scene, "emitter") {
             // Area lights are read with their shapes.
             match light.plugin.ends_with("area") {
                 true => light.is_used.set(false),
                 false => self.light(light),
             }
         }
-        for (_, shape) in self.children(scene, ObjectKind::Shape) {
+        for (_, shape) in self.children(scene, "shape") {
             self.top_shape(shape);
         }
         self.note_masks(scene);
@@ -93,10 +93,7 @@ impl<'a> MitsubaReader<'a> {
     fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
-                && matches!(
-                    object.kind,
-                    ObjectKind::Bsdf | ObjectKind::Texture | ObjectKind::Film
-                )
+                && matches!(object.kind, "bsdf" | "texture" | "film")
             {
                 property.is_read.set(true);
             }
@@ -108,9 +105,9 @@ impl<'a> MitsubaReader<'a> {
         for object in self.objects {
             // A medium within another medium is not reported, because the outer medium was already
             // reported.
-            let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
-            if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
-                let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+            let is_outermost = self.objects[object.parent].kind != "medium";
+            if matches!(object.kind, "medium" | "volume") && is_outermost {
+                let (kind, plugin) = (object.kind, quoted(&object.plugin));
                 let message = format!("{kind} {plugin}: participating media are not supported");
                 self.report.cause(&object.place, message);
                 self.drop_all(object);
@@ -133,7 +130,7 @@ impl<'a> MitsubaReader<'a> {
     /// it.
     pub(super) fn lost(&self, object: &'a MitsubaObject) {
         if !self.report.has_causes() {
-            let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+            let (kind, plugin) = (object.kind, quoted(&object.plugin));
             let message = format!("{kind} {plugin} is not understood");
             self.report.cause(&object.place, message);
         }
@@ -141,7 +138,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Reports an unsupported plugin, and returns `None` in place of the object.
     pub(super) fn unsupported<T>(&self, object: &'a MitsubaObject, allowed: &str) -> Option<T> {
-        let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+        let (kind, plugin) = (object.kind, quoted(&object.plugin));
         let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");
         self.drop_all(object);
         self.report.refuse(&object.place, message)

@@ -1,6 +1,6 @@
 //! Sensors, as cameras, and the integrator of a scene, which limits the depth of paths.
 
-use super::object::{MitsubaObject, ObjectKind};
+use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use crate::range::MAX_PIXELS;
 use crate::report::quoted;
@@ -22,7 +22,7 @@ const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
     pub(super) fn sensors(&mut self, scene: &'a MitsubaObject) {
-        let all = self.children(scene, ObjectKind::Sensor);
+        let all = self.children(scene, "sensor");
         let is_known =
             |sensor: &MitsubaObject| ALLOWED.split(", ").any(|known| known == sensor.plugin);
         let knows_any = all.iter().any(|(_, sensor)| is_known(sensor));
@@ -195,7 +195,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the width and height in pixels.
     fn film(&self, object: &'a MitsubaObject) -> Option<[usize; 2]> {
-        let Some(film) = self.child(object, ObjectKind::Film) else {
+        let Some(film) = self.child(object, "film") else {
             return Some(SIZE);
         };
         let size = ["width", "height"].map(|name| self.pixels(film, name));
@@ -210,7 +210,7 @@ impl<'a> MitsubaReader<'a> {
                 self.refuse_crop(film, name);
             }
         }
-        for (_, filter) in self.children(film, ObjectKind::Rfilter) {
+        for (_, filter) in self.children(film, "rfilter") {
             if filter.plugin != "box" {
                 let plugin = quoted(&filter.plugin);
                 let message = format!("rfilter {plugin} is approximated by the box filter");
@@ -218,7 +218,7 @@ impl<'a> MitsubaReader<'a> {
             }
             self.drop_all(filter);
         }
-        if self.children(film, ObjectKind::Rfilter).is_empty() {
+        if self.children(film, "rfilter").is_empty() {
             let message = "rfilter `gaussian`, the default, is approximated by the box filter";
             self.report.note(&film.place, message);
         }
@@ -246,7 +246,7 @@ impl<'a> MitsubaReader<'a> {
     /// Adds a note on the sampler, which is not needed for a world, and marks the sampler as
     /// read.
     fn sampler(&self, object: &'a MitsubaObject) {
-        for (_, sampler) in self.children(object, ObjectKind::Sampler) {
+        for (_, sampler) in self.children(object, "sampler") {
             let plugin = quoted(&sampler.plugin);
             self.report
                 .note(&sampler.place, format!("sampler {plugin} is left out"));
@@ -257,13 +257,13 @@ impl<'a> MitsubaReader<'a> {
     /// Reads the depth from the integrator. The other settings of the integrator affect only how
     /// Mitsuba computes, not the result.
     pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
-        let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
+        let Some(mut object) = self.child(scene, "integrator") else {
             return;
         };
         for _ in 0..MAX_DEPTH {
             object.is_used.set(true);
             match object.plugin.as_str() {
-                "moment" | "aov" => match self.child(object, ObjectKind::Integrator) {
+                "moment" | "aov" => match self.child(object, "integrator") {
                     Some(nested) => object = nested,
                     None => return self.note_depth(object),
                 },
@@ -284,7 +284,7 @@ impl<'a> MitsubaReader<'a> {
     pub(super) fn note_masks(&self, scene: &'a MitsubaObject) {
         let is_mask =
             |of: &MitsubaObject| of.is_used.get() && matches!(of.plugin.as_str(), "mask" | "null");
-        if let Some((_, object)) = self.children(scene, ObjectKind::Integrator).first()
+        if let Some((_, object)) = self.children(scene, "integrator").first()
             && !object.plugin.contains("volpath")
             && self.objects.iter().any(is_mask)
         {

@@ -1,6 +1,6 @@
 //! Shapes, groups of shapes, and instances of groups.
 
-use super::object::{MitsubaObject, ObjectKind};
+use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::transform::frame;
 use crate::range::{MAX_SHAPES, fault, is_similarity, similar};
@@ -38,7 +38,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn instance(&mut self, object: &'a MitsubaObject) {
         let to_world = self.to_world(object);
-        let groups = self.children(object, ObjectKind::Shape);
+        let groups = self.children(object, "shape");
         let [(_, group)] = groups[..] else {
             let message = "an instance has a wrong number of shapegroups; allowed: one";
             return self.report.cause(&object.place, message);
@@ -68,7 +68,7 @@ impl<'a> MitsubaReader<'a> {
             return Rc::clone(known);
         }
         let mut made = Vec::new();
-        for (_, shape) in self.children(group, ObjectKind::Shape) {
+        for (_, shape) in self.children(group, "shape") {
             if matches!(shape.plugin.as_str(), "shapegroup" | "instance") {
                 let message = format!("{} within a shapegroup", quoted(&shape.plugin));
                 self.report.cause(&shape.place, message);
@@ -106,7 +106,7 @@ impl<'a> MitsubaReader<'a> {
             return None;
         }
         let emission = self.shape_emission(object, is_in_group);
-        let material = match self.child(object, ObjectKind::Bsdf) {
+        let material = match self.child(object, "bsdf") {
             Some(bsdf) => self.material(bsdf),
             None => Some(self.default_material(emission.is_some())),
         };
@@ -247,7 +247,7 @@ impl<'a> MitsubaReader<'a> {
         object: &'a MitsubaObject,
         is_in_group: bool,
     ) -> Option<(&'a str, Texture)> {
-        let emitter = self.child(object, ObjectKind::Emitter)?;
+        let emitter = self.child(object, "emitter")?;
         if !["area", COLLIMATED].contains(&emitter.plugin.as_str()) {
             return self.unsupported(emitter, "area or directionalarea, within a shape");
         }

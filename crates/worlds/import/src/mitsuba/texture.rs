@@ -1,7 +1,7 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
 use super::mesh_data::MitsubaMesh;
-use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
+use super::object::{MitsubaObject, ObjectProperty, Value};
 use super::reader::MitsubaReader;
 use crate::Color;
 use crate::pictures::TransferCurve;
@@ -127,8 +127,8 @@ impl<'a> MitsubaReader<'a> {
     }
 
     fn texture_of(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
-        if object.kind != ObjectKind::Texture {
-            let message = format!("{} in place of a texture", object.kind.name());
+        if object.kind != "texture" {
+            let message = format!("{} in place of a texture", object.kind);
             return self.report.refuse(&object.place, message);
         }
         match object.plugin.as_str() {
@@ -283,19 +283,14 @@ impl<'a> MitsubaReader<'a> {
             if !seen.insert(object.number) {
                 continue;
             }
-            if object.kind == ObjectKind::Texture && object.plugin == "mesh_attribute" {
+            if object.kind == "texture" && object.plugin == "mesh_attribute" {
                 names.extend(object.last("name").and_then(|name| match &name.value {
                     Value::Text(name) => Some(name.clone()),
                     _ => None,
                 }));
             }
             let inner = object.properties.iter().filter_map(|p| self.object_of(p));
-            left.extend(inner.filter(|inner| {
-                matches!(
-                    inner.kind,
-                    ObjectKind::Bsdf | ObjectKind::Texture | ObjectKind::Emitter
-                )
-            }));
+            left.extend(inner.filter(|inner| matches!(inner.kind, "bsdf" | "texture" | "emitter")));
         }
         names.sort_unstable();
         names.dedup();

@@ -1,6 +1,6 @@
 //! Conversion of XML to objects: substitutes parameters, includes files and upgrades names.
 
-use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
+use super::object::{MitsubaObject, ObjectProperty, Value, kind_of};
 use super::parameters::Parameters;
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
@@ -124,7 +124,7 @@ impl<'a> Tree<'a> {
                     parent: 0,
                     depth: 0,
                 };
-                self.object(ObjectKind::Scene, &scene, &mut source);
+                self.object("scene", &scene, &mut source);
             }
             None => self.report.cause(&place, "the root is not <scene>"),
         }
@@ -174,7 +174,7 @@ impl<'a> Tree<'a> {
                 depth,
             };
             let attributes = &element.attributes;
-            let Some(kind) = ObjectKind::of(name, find(attributes, "type").is_some()) else {
+            let Some(kind) = kind_of(name, find(attributes, "type").is_some()) else {
                 return self.other(&element, source);
             };
             // An element without a parent is the root of an included file.
@@ -202,7 +202,7 @@ impl<'a> Tree<'a> {
 
     fn object(
         &mut self,
-        kind: ObjectKind,
+        kind: &'static str,
         element: &XmlElement<'_, '_>,
         source: &mut SourceFile<'_>,
     ) {

@@ -1,7 +1,6 @@
 //! Materials of MTL files.
 
 use super::mtl::{MtlEntry, MtlMap, ObjSurface};
-use super::ply::diffuse;
 use super::reader::ObjReader;
 use crate::pictures::{counted, decode, linear};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
@@ -17,7 +16,7 @@ impl ObjReader<'_> {
     /// Adds the surface of parts without a material.
     pub(super) fn default_surface(&mut self) -> ObjSurface {
         ObjSurface {
-            material: self.world.add_material(diffuse()),
+            material: (self.world).add_material(Material::diffuse(0.5).on_both_sides()),
             emission: None,
             has_picture: false,
         }
@@ -73,7 +72,7 @@ impl ObjReader<'_> {
                 reflectance: self.diffuse(entry)?,
             },
         };
-        Some(Material::TwoSided(Box::new([side.clone(), side])))
+        Some(side.on_both_sides())
     }
 
     /// Returns the colour `Kd` times the picture of `Kd`.
@@ -136,7 +135,7 @@ impl ObjReader<'_> {
         })
     }
 
-    /// Returns the transparency. The outer `None` means that a cause of refusal was reported.
+    /// Returns the emission. The outer `None` means that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means that a cause was reported"

@@ -4,7 +4,7 @@ use crate::main_file::MainFile;
 use crate::meshes::{MENDED, MeshParts};
 use crate::{Imported, Options, Refused};
 use etendue_meshfile::DetailedMesh;
-use etendue_world::{Geometry, Material, Shape, Texture, World};
+use etendue_world::{Geometry, Material, Shape, World};
 use glam::DAffine3;
 use std::path::Path;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     parts.drop_empty();
     parts.face_normals();
     let mended = parts.mend_normals();
-    let mesh = parts.finish();
+    let mesh = parts.finish().map(|mesh| Geometry::Mesh(Arc::new(mesh)));
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area above 0".to_owned()))?;
     let place = scene.place();
     if mended {
@@ -28,24 +28,9 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let message = "has no material: a diffuse material of reflectance 0.5 is used on both sides";
     scene.report.note(&place, message);
     let world = World {
-        shapes: vec![Shape {
-            name: String::new(),
-            geometry: Geometry::Mesh(Arc::new(mesh)),
-            to_world: DAffine3::IDENTITY,
-            is_flipped: false,
-            material: 0,
-            emission: None,
-            emits_on_both_sides: false,
-        }],
-        materials: vec![diffuse()],
+        shapes: vec![Shape::new(mesh, DAffine3::IDENTITY, 0)],
+        materials: vec![Material::diffuse(0.5).on_both_sides()],
         ..World::default()
     };
     scene.finish(world)
-}
-
-/// Returns the default material.
-pub(super) fn diffuse() -> Material {
-    let reflectance = Texture::Constant(0.5);
-    let side = Material::Diffuse { reflectance };
-    Material::TwoSided(Box::new([side.clone(), side]))
 }

@@ -104,14 +104,11 @@ impl<'a> ObjReader<'a> {
             let message = format!("{NO_AREA} and is left out");
             return self.report.note(&place, message);
         };
+        let geometry = Geometry::Mesh(Arc::new(mesh));
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),
-            geometry: Geometry::Mesh(Arc::new(mesh)),
-            to_world: DAffine3::IDENTITY,
-            is_flipped: false,
-            material: surface.material,
             emission: surface.emission,
-            emits_on_both_sides: false,
+            ..Shape::new(geometry, DAffine3::IDENTITY, surface.material)
         });
     }
 

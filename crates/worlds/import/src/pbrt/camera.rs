@@ -1,6 +1,6 @@
 //! The camera, the film and the path depth.
 
-use super::entity::{CauseGiven, Entity, ParameterKind, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
 use super::transform::without_scale;
 use crate::range::MAX_PIXELS;
@@ -102,7 +102,7 @@ impl PbrtReader<'_> {
         } else {
             [1.0, 1.0 / aspect]
         };
-        let window = entity.exactly::<4>("screenwindow", ParameterKind::Float)?;
+        let window = entity.exactly::<4>("screenwindow", "float")?;
         let window = window.unwrap_or([-x, x, -y, y]);
         let [left, right, low, high] = window;
         let (width, height) = (right - left, high - low);
@@ -195,9 +195,9 @@ impl PbrtReader<'_> {
                 false => Ok(()),
             }
         };
-        check_part("cropwindow", ParameterKind::Float, [1.0, 1.0])?;
+        check_part("cropwindow", "float", [1.0, 1.0])?;
         let (w, h) = (w?, h?);
-        check_part("pixelbounds", ParameterKind::Integer, [w as f64, h as f64])?;
+        check_part("pixelbounds", "integer", [w as f64, h as f64])?;
         if !self.scene.settings.contains_key("PixelFilter") {
             let message = "filter `gaussian`, the default, is approximated by the box filter";
             self.report.note(whole, message);

@@ -11,21 +11,21 @@ use std::rc::Rc;
 /// A value that was read, or an error if a cause of refusal was reported.
 pub(super) type Read<T> = Result<T, CauseGiven>;
 
-/// All types by name.
-const KINDS: [(&str, ParameterKind); 13] = [
-    ("bool", ParameterKind::Bool),
-    ("integer", ParameterKind::Integer),
-    ("float", ParameterKind::Float),
-    ("point2", ParameterKind::Point2),
-    ("vector2", ParameterKind::Vector2),
-    ("point3", ParameterKind::Point3),
-    ("vector3", ParameterKind::Vector3),
-    ("normal", ParameterKind::Normal),
-    ("string", ParameterKind::Text),
-    ("texture", ParameterKind::Texture),
-    ("rgb", ParameterKind::Rgb),
-    ("blackbody", ParameterKind::Blackbody),
-    ("spectrum", ParameterKind::Spectrum),
+/// The parameter types of pbrt-v4, each with the number of numbers that one value has.
+const KINDS: [(&str, usize); 13] = [
+    ("bool", 1),
+    ("integer", 1),
+    ("float", 1),
+    ("point2", 2),
+    ("vector2", 2),
+    ("point3", 3),
+    ("vector3", 3),
+    ("normal", 3),
+    ("string", 1),
+    ("texture", 1),
+    ("rgb", 3),
+    ("blackbody", 1),
+    ("spectrum", 1),
 ];
 
 /// The error of a function that has already added a cause of refusal.
@@ -101,7 +101,7 @@ impl Entity<'_> {
 
     /// Returns the values of a parameter, which must have one of the given types, or `None` if
     /// the parameter is missing.
-    fn values(&self, name: &str, kinds: &[ParameterKind]) -> Read<Option<&ParameterValues>> {
+    fn values(&self, name: &str, kinds: &[&str]) -> Read<Option<&ParameterValues>> {
         let Some(parameter) = self.find(name) else {
             return Ok(None);
         };
@@ -111,14 +111,13 @@ impl Entity<'_> {
         if kinds.contains(&parameter.kind) {
             return Ok(Some(&parameter.values));
         }
-        let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
-        let (kind, names) = (parameter.kind.name(), names.join(", "));
+        let (kind, names) = (parameter.kind, kinds.join(", "));
         let message = format!("{name} is of type {kind}; allowed: {names}");
         Err(self.fault(name, message))
     }
 
     /// Reads all numbers of a parameter.
-    pub(super) fn numbers(&self, name: &str, kinds: &[ParameterKind]) -> Read<&[f64]> {
+    pub(super) fn numbers(&self, name: &str, kinds: &[&str]) -> Read<&[f64]> {
         match self.values(name, kinds)? {
             Some(ParameterValues::Numbers(all)) => Ok(all),
             _ => Ok(&[]),
@@ -126,11 +125,7 @@ impl Entity<'_> {
     }
 
     /// Reads the `N` numbers of a parameter, if it exists.
-    pub(super) fn exactly<const N: usize>(
-        &self,
-        name: &str,
-        kind: ParameterKind,
-    ) -> Read<Option<[f64; N]>> {
+    pub(super) fn exactly<const N: usize>(&self, name: &str, kind: &str) -> Read<Option<[f64; N]>> {
         if !self.has(name) {
             return Ok(None);
         }
@@ -145,7 +140,7 @@ impl Entity<'_> {
     }
 
     pub(super) fn float(&self, name: &str) -> Read<Option<f64>> {
-        let one = self.exactly::<1>(name, ParameterKind::Float)?;
+        let one = self.exactly::<1>(name, "float")?;
         Ok(one.map(|[value]| value))
     }
 
@@ -174,12 +169,12 @@ impl Entity<'_> {
 
     #[expect(clippy::cast_possible_truncation, reason = "integers fit 32 bits")]
     pub(super) fn integer_or(&self, name: &str, default: i64) -> Read<i64> {
-        let one = self.exactly::<1>(name, ParameterKind::Integer)?;
+        let one = self.exactly::<1>(name, "integer")?;
         Ok(one.map_or(default, |[value]| value as i64))
     }
 
     pub(super) fn truth(&self, name: &str, default: bool) -> Read<bool> {
-        match self.values(name, &[ParameterKind::Bool])? {
+        match self.values(name, &["bool"])? {
             None => Ok(default),
             Some(ParameterValues::Truths(all)) if all.len() == 1 => Ok(all[0]),
             Some(_) => Err(self.fault(name, format!("{name} is not one boolean"))),
@@ -188,7 +183,7 @@ impl Entity<'_> {
 
     /// Reads all strings of a parameter.
     pub(super) fn texts(&self, name: &str) -> Read<&[String]> {
-        match self.values(name, &[ParameterKind::Text])? {
+        match self.values(name, &["string"])? {
             Some(ParameterValues::Texts(all)) => Ok(all),
             _ => Ok(&[]),
         }
@@ -196,7 +191,7 @@ impl Entity<'_> {
 
     /// Reads the name of the texture in a parameter of type texture.
     pub(super) fn texture_name(&self, name: &str) -> Read<&str> {
-        match self.values(name, &[ParameterKind::Texture])? {
+        match self.values(name, &["texture"])? {
             Some(ParameterValues::Texts(all)) if all.len() == 1 => Ok(&all[0]),
             _ => Err(self.fault(name, format!("{name} is not one texture"))),
         }
@@ -226,17 +221,17 @@ impl Entity<'_> {
     }
 
     pub(super) fn point_or(&self, name: &str, default: DVec3) -> Read<DVec3> {
-        let found = self.exactly::<3>(name, ParameterKind::Point3)?;
+        let found = self.exactly::<3>(name, "point3")?;
         Ok(found.map_or(default, DVec3::from))
     }
 
-    pub(super) fn points(&self, name: &str, kind: ParameterKind) -> Read<Vec<DVec3>> {
+    pub(super) fn points(&self, name: &str, kind: &str) -> Read<Vec<DVec3>> {
         let all = self.numbers(name, &[kind])?.chunks_exact(3);
         Ok(all.map(DVec3::from_slice).collect())
     }
 
     pub(super) fn pairs(&self, name: &str) -> Read<Vec<DVec2>> {
-        let kinds = [ParameterKind::Point2, ParameterKind::Vector2];
+        let kinds = ["point2", "vector2"];
         let all = self.numbers(name, &kinds)?.chunks_exact(2);
         Ok(all.map(DVec2::from_slice).collect())
     }
@@ -245,7 +240,8 @@ impl Entity<'_> {
 /// A named value.
 #[derive(Debug)]
 pub(super) struct PbrtParameter {
-    pub(super) kind: ParameterKind,
+    /// The name of the type.
+    pub(super) kind: &'static str,
     pub(super) name: String,
     pub(super) values: ParameterValues,
     pub(super) place: SourcePlace,
@@ -263,41 +259,6 @@ pub(super) enum ParameterValues {
     Broken,
 }
 
-/// The parameter types of pbrt-v4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ParameterKind {
-    Bool,
-    Integer,
-    Float,
-    Point2,
-    Vector2,
-    Point3,
-    Vector3,
-    Normal,
-    Text,
-    Texture,
-    Rgb,
-    Blackbody,
-    Spectrum,
-}
-
-impl ParameterKind {
-    /// Returns how many numbers one value of the type has.
-    fn arity(self) -> usize {
-        match self {
-            Self::Point2 | Self::Vector2 => 2,
-            Self::Point3 | Self::Vector3 | Self::Normal | Self::Rgb => 3,
-            _ => 1,
-        }
-    }
-
-    /// Returns the name of the type in files.
-    pub(super) fn name(self) -> &'static str {
-        let found = KINDS.iter().find(|(_, kind)| *kind == self);
-        found.map_or("", |(name, _)| name)
-    }
-}
-
 /// Parses all parameters that follow. Faulty parameters are included, as
 /// [`ParameterValues::Broken`].
 pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<PbrtParameter>> {
@@ -312,15 +273,15 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Pbr
             report.cause(&place, message);
             continue;
         };
-        let Some((_, kind)) = KINDS.iter().find(|(known, _)| *known == kind) else {
+        let Some((kind, arity)) = KINDS.iter().find(|(known, _)| *known == kind) else {
             let known = KINDS.map(|(known, _)| known).join(", ");
             let message = format!("a parameter has type {}; allowed: {known}", quoted(kind));
             report.cause(&place, message);
             continue;
         };
         all.push(Rc::new(PbrtParameter {
-            values: checked(values, *kind, name, &place, report),
-            kind: *kind,
+            values: checked(values, (kind, *arity), name, &place, report),
+            kind,
             name: name.to_owned(),
             place,
             is_read: false.into(),
@@ -384,7 +345,7 @@ fn add(found: &mut Option<ParameterValues>, token: Token<'_>) -> Result<(), Stri
 /// Returns the values if they match the type; otherwise adds a cause of refusal.
 fn checked(
     values: ParameterValues,
-    kind: ParameterKind,
+    (kind, arity): (&str, usize),
     name: &str,
     place: &SourcePlace,
     report: &Report,
@@ -394,33 +355,24 @@ fn checked(
     let allowed = match (kind, &values) {
         (_, ParameterValues::Broken) => return values,
         (_, ParameterValues::Numbers(none)) if none.is_empty() => return values,
-        (_, ParameterValues::Numbers(all))
-            if kind != ParameterKind::Integer && !all.iter().all(is_in_range) =>
-        {
+        (_, ParameterValues::Numbers(all)) if kind != "integer" && !all.iter().all(is_in_range) => {
             "numbers from -1e9 to 1e9"
         }
-        (ParameterKind::Bool, ParameterValues::Truths(_))
-        | (
-            ParameterKind::Text | ParameterKind::Texture | ParameterKind::Spectrum,
-            ParameterValues::Texts(_),
-        ) => return values,
-        (ParameterKind::Integer, ParameterValues::Numbers(all)) if all.iter().all(whole) => {
-            return values;
-        }
-        (ParameterKind::Bool, _) => "true or false, without quotation marks",
-        (ParameterKind::Text | ParameterKind::Texture, _) => "words in quotation marks",
-        (ParameterKind::Integer, _) => "integers of 32 bits",
-        (_, ParameterValues::Numbers(all)) if all.len().is_multiple_of(kind.arity()) => {
-            return values;
-        }
-        (ParameterKind::Spectrum, _) => "pairs of a wavelength and a value, or a name",
-        (kind, _) => match kind.arity() {
+        ("bool", ParameterValues::Truths(_))
+        | ("string" | "texture" | "spectrum", ParameterValues::Texts(_)) => return values,
+        ("integer", ParameterValues::Numbers(all)) if all.iter().all(whole) => return values,
+        ("bool", _) => "true or false, without quotation marks",
+        ("string" | "texture", _) => "words in quotation marks",
+        ("integer", _) => "integers of 32 bits",
+        (_, ParameterValues::Numbers(all)) if all.len().is_multiple_of(arity) => return values,
+        ("spectrum", _) => "pairs of a wavelength and a value, or a name",
+        _ => match arity {
             1 => "numbers",
             2 => "pairs of numbers",
             _ => "threes of numbers",
         },
     };
-    let message = format!("{} {name}; allowed: {allowed}", kind.name());
+    let message = format!("{kind} {name}; allowed: {allowed}");
     report.cause(place, message);
     ParameterValues::Broken
 }

@@ -153,7 +153,7 @@ impl PbrtReader<'_> {
         area.is_used.set(true);
         if is_in_object {
             let message = "left out, as in pbrt: area lights in an object";
-            self.note_once(&area.place, message);
+            self.report.note_once(&area.place, message);
             return Ok(None);
         }
         if area.plugin != "diffuse" {

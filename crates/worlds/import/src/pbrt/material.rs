@@ -1,6 +1,6 @@
 //! Materials. Opaque materials are the same on both sides.
 
-use super::entity::{CauseGiven, Entity, ParameterKind, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::reader::{PbrtReader, Uv};
 use super::scene::MaterialOf;
 use super::spectrum::named_index;
@@ -51,9 +51,7 @@ impl PbrtReader<'_> {
         }
         let made = match self.scene.materials.get(number) {
             Some(entity) => self.make_material(entity, uv),
-            None => Ok(Some(both_sides(Material::Diffuse {
-                reflectance: Texture::Constant(0.5),
-            }))),
+            None => Ok(Some(Material::diffuse(0.5).on_both_sides())),
         };
         let made = made.map(|of| of.map(|material| self.world.add_material(material)));
         self.materials.insert((number, uv), made);
@@ -61,7 +59,7 @@ impl PbrtReader<'_> {
     }
 
     fn cause_once(&self, place: &SourcePlace, message: &str) {
-        if self.is_first(place, message) {
+        if self.report.is_first(place, message) {
             self.report.cause(place, message);
         }
     }
@@ -87,12 +85,13 @@ impl PbrtReader<'_> {
         };
         Ok(Some(match plugin {
             "" | "none" | "interface" => return Ok(None),
-            "diffuse" => both_sides(Material::Diffuse {
-                reflectance: self.albedo_or(entity, "reflectance", 0.5, uv)?,
-            }),
+            "diffuse" => {
+                let reflectance = self.albedo_or(entity, "reflectance", 0.5, uv)?;
+                Material::Diffuse { reflectance }.on_both_sides()
+            }
             "diffusetransmission" => self.translucent(entity, uv)?,
-            "conductor" => both_sides(Material::Conductor(self.conductor(entity, uv)?)),
-            "coateddiffuse" => both_sides(Material::Plastic(self.coated(entity, uv)?)),
+            "conductor" => Material::Conductor(self.conductor(entity, uv)?).on_both_sides(),
+            "coateddiffuse" => Material::Plastic(self.coated(entity, uv)?).on_both_sides(),
             "dielectric" => Material::Dielectric(self.dielectric(entity, false, uv)?),
             "thindielectric" => Material::Dielectric(self.dielectric(entity, true, uv)?),
             "mix" => self.mixed(entity, uv)?,
@@ -155,7 +154,7 @@ impl PbrtReader<'_> {
 
     fn coated(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Plastic> {
         let message = "approximated: the material is a plastic, whose rough coat does not blur the light from the base; pbrt-v4 traces random walks between the layers";
-        self.note_once(&entity.place, message);
+        self.report.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
             // The parameters are marked as read, because the note about the approximation covers
@@ -197,9 +196,9 @@ impl PbrtReader<'_> {
     /// of the normal.
     fn index(&mut self, entity: &Entity<'_>) -> Read<f64> {
         let index = match entity.find("eta") {
-            Some(parameter) if parameter.kind != ParameterKind::Float => {
+            Some(parameter) if parameter.kind != "float" => {
                 let message = "approximated: eta is the same at all wavelengths";
-                self.note_once(&parameter.place, message);
+                self.report.note_once(&parameter.place, message);
                 self.number_of(entity, "eta", Role::Number)?.unwrap_or(1.5)
             }
             _ => entity.float_or("eta", 1.5)?,
@@ -253,7 +252,8 @@ impl PbrtReader<'_> {
         if [&u, &v].iter().any(|t| matches!(t, Texture::Bitmap(_))) && remaps {
             let message =
                 "approximated: pixels of a roughness are remapped before they are interpolated";
-            self.note_once(entity.place_of("remaproughness"), message);
+            self.report
+                .note_once(entity.place_of("remaproughness"), message);
         }
         let [u, v] = [u, v].map(|texture| self.mapped(entity, texture, alpha));
         let [u, v] = [u?, v?];
@@ -267,10 +267,6 @@ impl PbrtReader<'_> {
             alpha: [u?, v?],
         }))
     }
-}
-
-fn both_sides(material: Material) -> Material {
-    Material::TwoSided(Box::new([material.clone(), material]))
 }
 
 /// Checks whether a material depends on texture coordinates, either because the material varies or

@@ -1,7 +1,7 @@
 //! Shapes that are meshes.
 
 use super::build;
-use super::entity::{CauseGiven, Entity, ParameterKind, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
 use super::scene::PbrtShape;
 use crate::files::has_extension;
@@ -131,23 +131,18 @@ impl PbrtReader<'_> {
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
             let message = "approximated: a patch that is not a parallelogram has the texture coordinates of two triangles";
-            self.note_once(&entity.place, message);
+            self.report.note_once(&entity.place, message);
         }
         Ok(())
     }
 
     /// Reads the vertices with their attributes, and the indices of each face of `N` corners.
     fn indexed<const N: usize>(&self, entity: &Entity<'_>) -> Read<(MeshParts, Vec<[u32; N]>)> {
-        let vertices = entity.points("P", ParameterKind::Point3)?;
-        let indices = entity.numbers("indices", &[ParameterKind::Integer])?;
+        let vertices = entity.points("P", "point3")?;
+        let indices = entity.numbers("indices", &["integer"])?;
         let faces = faces(entity, indices, vertices.len())?;
         let parts = MeshParts {
-            normals: self.beside(
-                entity,
-                "N",
-                &vertices,
-                entity.points("N", ParameterKind::Normal)?,
-            ),
+            normals: self.beside(entity, "N", &vertices, entity.points("N", "normal")?),
             uvs: self.beside(entity, "uv", &vertices, entity.pairs("uv")?),
             vertices,
             corners: Vec::new(),
@@ -169,7 +164,7 @@ impl PbrtReader<'_> {
             let message = format!(
                 "{name} is left out: the mesh has {count} vertices, but {name} has values for {found}"
             );
-            self.note_once(entity.place_of(name), &message);
+            self.report.note_once(entity.place_of(name), &message);
             return None;
         }
         (!all.is_empty()).then_some(all)

@@ -2,6 +2,7 @@
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::scene::PbrtScene;
+use super::texture::Ask;
 use crate::Color;
 use crate::files::Files;
 use crate::main_file::MainFile;
@@ -9,8 +10,7 @@ use crate::pictures::Pictures;
 use crate::report::{Report, SourcePlace, quoted};
 use etendue_world::{Texture, Triangles, World};
 use glam::{DAffine2, DMat2, DVec2};
-use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ type PbrtMeshKey = (PathBuf, bool);
 
 /// The key of a texture. It consists of the texture's name, the type of its values, and the
 /// coordinates of its surface.
-type TextureKey = (bool, String, u8, Uv);
+type TextureKey = (String, Ask, Uv);
 
 /// Converts a scene to a world.
 pub(super) struct PbrtReader<'a> {
@@ -39,7 +39,6 @@ pub(super) struct PbrtReader<'a> {
     pub(super) made_materials: usize,
     /// The current nesting depth of textures or materials.
     pub(super) depth: usize,
-    noted: RefCell<BTreeSet<(usize, usize, String)>>,
 }
 
 impl Uv {
@@ -79,7 +78,6 @@ impl<'a> PbrtReader<'a> {
             materials: BTreeMap::new(),
             made_materials: 0,
             depth: 0,
-            noted: RefCell::default(),
         }
     }
 
@@ -94,20 +92,6 @@ impl<'a> PbrtReader<'a> {
         self.shapes();
         self.instances();
         self.world
-    }
-
-    /// Adds a note only once, even if the object that the note concerns is used several times.
-    pub(super) fn note_once(&self, place: &SourcePlace, message: &str) {
-        if self.is_first(place, message) {
-            self.report.note(place, message);
-        }
-    }
-
-    /// Checks whether a message was not given before.
-    pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
-        let (line, column) = (place.line, place.column);
-        let key = (line, column, format!("{}: {message}", place.file));
-        self.noted.borrow_mut().insert(key)
     }
 
     /// Returns the path of a file; names are relative to the folder of the scene.

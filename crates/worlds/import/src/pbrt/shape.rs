@@ -68,7 +68,7 @@ impl PbrtReader<'_> {
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MAX_SHAPES {
             let message = format!("more than {MAX_SHAPES} shapes, counting instances");
-            if self.is_first(&SourcePlace::whole(""), &message) {
+            if self.report.is_first(&SourcePlace::whole(""), &message) {
                 self.report.cause(place, message);
             }
             return false;
@@ -97,7 +97,7 @@ impl PbrtReader<'_> {
             if let Some(area) = area {
                 let message =
                     "left out, as in pbrt: an area light on a shape without a surface material";
-                self.note_once(&entity.place, message);
+                self.report.note_once(&entity.place, message);
                 area.is_used.set(true);
             }
             return None;
@@ -158,7 +158,7 @@ impl PbrtReader<'_> {
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
         if turns && shines {
             let message = "because of a mirroring transform, pbrt shows this light on one side and emits from the other side; the emitting side is used";
-            self.note_once(&shape.entity.place, message);
+            self.report.note_once(&shape.entity.place, message);
         }
         shape.is_reversed != (turns && !shines)
     }

@@ -46,7 +46,7 @@ impl PbrtReader<'_> {
         let message = format!(
             "approximated: the square picture is resampled to {w} × {h} pixels by longitude and latitude, and interpolated"
         );
-        self.note_once(&entity.place, &message);
+        self.report.note_once(&entity.place, &message);
         Ok(Light::Sky(SkyMap {
             to_world: turned?.0.matrix3,
             radiance: Arc::new(LatLong::from_pole_to_pole(radiance)),

@@ -5,7 +5,7 @@
 //! colours in Mitsuba for two reasons. Mitsuba weights its tables with the equal-energy white, and
 //! the tables of pbrt and Mitsuba contain different numbers.
 
-use super::entity::{CauseGiven, Entity, ParameterKind, ParameterValues, Read};
+use super::entity::{CauseGiven, Entity, ParameterValues, Read};
 use super::reader::PbrtReader;
 use super::token::number;
 use crate::Color;
@@ -130,22 +130,21 @@ impl PbrtReader<'_> {
         let fault = |message: String| entity.fault(name, message);
         let found = match (parameter.kind, &parameter.values) {
             (_, ParameterValues::Broken) => return Err(CauseGiven),
-            (ParameterKind::Rgb, ParameterValues::Numbers(all)) => match all[..] {
+            ("rgb", ParameterValues::Numbers(all)) => match all[..] {
                 [r, g, b] if r.min(g).min(b) >= 0.0 => PbrtSpectrum::Rgb([r, g, b]),
                 [_, _, _] => return Err(fault(format!("{name} is below 0"))),
                 _ => return Err(fault(format!("{name} is not one colour"))),
             },
-            (ParameterKind::Blackbody, ParameterValues::Numbers(all)) if all.len() == 1 => {
+            ("blackbody", ParameterValues::Numbers(all)) if all.len() == 1 => {
                 PbrtSpectrum::Blackbody(all[0])
             }
-            (ParameterKind::Spectrum, ParameterValues::Numbers(all)) => PbrtSpectrum::Sampled(
+            ("spectrum", ParameterValues::Numbers(all)) => PbrtSpectrum::Sampled(
                 sampled(all).map_err(|error| fault(format!("{name}: {error}")))?,
             ),
-            (ParameterKind::Spectrum, ParameterValues::Texts(all)) if all.len() == 1 => {
+            ("spectrum", ParameterValues::Texts(all)) if all.len() == 1 => {
                 self.named_spectrum(&all[0]).map_err(fault)?
             }
             (kind, _) => {
-                let kind = kind.name();
                 let message =
                     format!("{name} is of type {kind}; allowed: one rgb, spectrum or blackbody");
                 return Err(fault(message));

@@ -1,6 +1,6 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
-use super::entity::{CauseGiven, Entity, ParameterKind, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::reader::{PbrtReader, Uv};
 use crate::files::has_extension;
 use crate::pictures::TransferCurve;
@@ -20,7 +20,7 @@ const MAX_DEPTH: usize = 16;
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
 
 /// The type of a texture. Float textures and spectrum textures have separate names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Ask {
     Float,
     Spectrum(Role),
@@ -39,7 +39,7 @@ impl PbrtReader<'_> {
         let Some(parameter) = entity.find(name) else {
             return Ok(Texture::Constant(default));
         };
-        if parameter.kind == ParameterKind::Texture {
+        if parameter.kind == "texture" {
             let asked = entity.texture_name(name)?;
             return self.named_texture(entity, name, asked, ask, uv);
         }
@@ -96,11 +96,7 @@ impl PbrtReader<'_> {
         uv: Uv,
     ) -> Read<Texture> {
         let is_spectrum = ask != Ask::Float;
-        let role = match ask {
-            Ask::Float => 0,
-            Ask::Spectrum(role) => 1 + role as u8,
-        };
-        let key = (is_spectrum, name.to_owned(), role, uv);
+        let key = (name.to_owned(), ask, uv);
         if let Some(known) = self.textures.get(&key) {
             return known.clone();
         }
@@ -242,7 +238,7 @@ impl PbrtReader<'_> {
         };
         if ask == Ask::Float {
             let message = "in Étendue, a coloured picture becomes its luminance or one of its channels; in pbrt, it becomes the mean of its channels";
-            self.note_once(&entity.place, message);
+            self.report.note_once(&entity.place, message);
         }
         Ok(Texture::Bitmap(Bitmap {
             to_uv: upside_down() * to_uv?,
@@ -264,7 +260,7 @@ impl PbrtReader<'_> {
         if is_near {
             let message =
                 "filter is approximated by bilinear interpolation of the picture at its full size";
-            self.note_once(entity.place_of("filter"), message);
+            self.report.note_once(entity.place_of("filter"), message);
         }
         Ok(filter)
     }
