@@ -168,8 +168,7 @@ mod tests {
     use etendue_paths::Paths;
     use etendue_theory::shading::Criterion;
     use etendue_world::{
-        Camera, Geometry, Material, MicrofacetDistribution, Projection, Roughness, Shape, Texture,
-        World,
+        Camera, Geometry, Material, MicrofacetDistribution, Roughness, Shape, Texture, World,
     };
     use glam::DAffine3;
 
@@ -179,38 +178,22 @@ mod tests {
 
     /// Returns a rough metal ball before a camera of narrow pixels.
     fn seen() -> (Paths, Camera) {
+        let scale = DAffine3::from_scale(DVec3::splat(RADIUS));
         let world = World {
-            shapes: vec![Shape {
-                name: "ball".to_owned(),
-                geometry: Geometry::Sphere,
-                to_world: DAffine3::from_scale(DVec3::splat(RADIUS)),
-                is_flipped: false,
-                material: 0,
-                emission: None,
-                emits_on_both_sides: false,
-            }],
+            shapes: vec![Shape::new(Geometry::Sphere, scale, 0)],
             materials: vec![Material::Conductor(etendue_world::Conductor {
                 index: None,
                 reflectance: Texture::Constant(1.0),
                 roughness: Some(Roughness {
                     distribution: MicrofacetDistribution::Beckmann,
-                    alpha: [Texture::Constant(ALPHA), Texture::Constant(ALPHA)],
+                    alpha: [ALPHA; 2].map(Texture::Constant),
                 }),
             })],
             ..World::default()
         };
-        let camera = Camera {
-            name: "camera".to_owned(),
-            to_world: DAffine3::from_translation(DVec3::new(0.0, 0.0, -DISTANCE)),
-            size: [801, 801],
-            projection: Projection::Perspective {
-                half_width: 0.2,
-                shift: [0.0; 2],
-                lens: None,
-            },
-            clip: [1e-3, 1e6],
-        };
-        (Paths::new(&world), camera)
+        let points = [-DISTANCE * DVec3::Z, DVec3::ZERO, DVec3::Y];
+        let camera = Camera::pinhole(points, 0.2, [801; 2], [1e-3, 1e6]);
+        (Paths::new(&world), camera.expect("two different points"))
     }
 
     /// Compares the formulas of the theory crate for Eqs. 20 and 21, in the plane of incidence,

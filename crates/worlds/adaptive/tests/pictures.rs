@@ -4,7 +4,7 @@
 use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, Stage, render};
 use etendue_paths::Paths;
 use etendue_theory::shading::COSINE_CUTOFF;
-use etendue_world::{Camera, Geometry, Light, Material, Projection, Shape, Texture, World};
+use etendue_world::{Camera, Geometry, Light, Material, Shape, World};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::Cell;
 
@@ -20,36 +20,16 @@ const ALL: [SampleMethod; 6] = [
 /// Returns a ball of radius 1 and reflectance one half, in uniform light.
 fn ball() -> World {
     World {
-        shapes: vec![Shape {
-            name: "ball".to_owned(),
-            geometry: Geometry::Sphere,
-            to_world: DAffine3::IDENTITY,
-            is_flipped: false,
-            material: 0,
-            emission: None,
-            emits_on_both_sides: false,
-        }],
-        materials: vec![Material::Diffuse {
-            reflectance: Texture::Constant(0.5),
-        }],
+        shapes: vec![Shape::new(Geometry::Sphere, DAffine3::IDENTITY, 0)],
+        materials: vec![Material::diffuse(0.5)],
         lights: vec![Light::Constant { radiance: 3.0 }],
         ..World::default()
     }
 }
 
 fn camera(size: [usize; 2]) -> Camera {
-    let turned = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::Z);
-    Camera {
-        name: "camera".to_owned(),
-        to_world: DAffine3::from_mat3_translation(turned, DVec3::new(0.0, 0.0, -4.0)),
-        size,
-        projection: Projection::Perspective {
-            half_width: 0.4,
-            shift: [0.0; 2],
-            lens: None,
-        },
-        clip: [1e-3, 1e6],
-    }
+    let points = [DVec3::new(0.0, 0.0, -4.0), DVec3::ZERO, DVec3::Y];
+    Camera::pinhole(points, 0.4, size, [1e-3, 1e6]).expect("two different points")
 }
 
 fn picture(world: &World, method: SampleMethod, samples: usize, seed: u64) -> Rendered {
@@ -120,15 +100,6 @@ fn even_light_stays_even() {
 #[test]
 fn the_guide_shows_where_shadows_end() {
     const HEIGHT: f64 = 2.0;
-    let square = |name: &str, material: usize, to_world: DAffine3| Shape {
-        name: name.to_owned(),
-        geometry: Geometry::Rectangle,
-        to_world,
-        is_flipped: false,
-        material,
-        emission: None,
-        emits_on_both_sides: false,
-    };
     // The camera looks along Z: the floor is behind the card, and both face the camera.
     let facing = |z: f64, size: f64| {
         let turned = DMat3::from_diagonal(DVec3::new(size, -size, -1.0));
@@ -136,14 +107,10 @@ fn the_guide_shows_where_shadows_end() {
     };
     let world = World {
         shapes: vec![
-            square("floor", 0, facing(0.0, 4.0)),
-            square("card", 1, facing(-1.0, 0.3)),
+            Shape::new(Geometry::Rectangle, facing(0.0, 4.0), 0),
+            Shape::new(Geometry::Rectangle, facing(-1.0, 0.3), 1),
         ],
-        materials: [0.5, 0.0]
-            .map(|reflectance| Material::Diffuse {
-                reflectance: Texture::Constant(reflectance),
-            })
-            .to_vec(),
+        materials: [0.5, 0.0].map(Material::diffuse).to_vec(),
         lights: vec![Light::Point {
             position: DVec3::new(0.0, 0.0, -HEIGHT),
             intensity: 10.0,
@@ -257,14 +224,10 @@ fn eq_20_doubles_the_curvature_of_all_materials() {
 /// a diffuse material, the mean is 2/15.
 #[test]
 fn the_paper_finds_the_harmonic_distance_at_one_in_twenty_pixels() {
-    let wall = |z: f64| Shape {
-        name: "wall".to_owned(),
-        geometry: Geometry::Rectangle,
-        to_world: DAffine3::from_mat3_translation(
-            DMat3::from_diagonal(DVec3::new(1000.0, -1000.0, -1.0)),
-            DVec3::new(0.0, 0.0, z),
-        ),
-        ..ball().shapes.remove(0)
+    let wall = |z: f64| {
+        let turned = DMat3::from_diagonal(DVec3::new(1000.0, -1000.0, -1.0));
+        let to_world = DAffine3::from_mat3_translation(turned, z * DVec3::Z);
+        Shape::new(Geometry::Rectangle, to_world, 0)
     };
     let world = World {
         shapes: vec![wall(0.0), wall(-5.0)],

@@ -11,9 +11,9 @@
 use etendue_paths::{Paths, Picture};
 use etendue_world::{
     Camera, Conductor, Dielectric, Geometry, Light, Material, MicrofacetDistribution, Plastic,
-    Principled, Projection, Roughness, Shape, Texture, Triangles, World,
+    Principled, Roughness, Shape, Texture, Triangles, World,
 };
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// Pixels along a side of a picture.
@@ -60,14 +60,12 @@ fn plastic(roughness: Option<Roughness>, is_nonlinear: bool) -> Material {
     })
 }
 
-fn white() -> Material {
-    Material::Diffuse {
-        reflectance: constant(1.0),
-    }
+fn two_sided(of: Material) -> Material {
+    of.on_both_sides()
 }
 
-fn two_sided(of: Material) -> Material {
-    Material::TwoSided(Box::new([of.clone(), of]))
+fn white() -> Material {
+    two_sided(Material::diffuse(1.0))
 }
 
 fn blend(first: Material, second: Material) -> Material {
@@ -134,18 +132,18 @@ fn cases() -> Vec<Case> {
         (
             "white and glass",
             Medium(1.5),
-            blend(two_sided(white()), glass(1.5, false, None)),
+            blend(white(), glass(1.5, false, None)),
         ),
         ("thin glass", Same, glass(1.5, true, None)),
         ("thin gap", Same, glass(0.75, true, None)),
         ("masked thin glass", Same, mask(glass(1.5, true, None))),
-        ("masked white", Same, mask(two_sided(white()))),
+        ("masked white", Same, mask(white())),
         (
             "mirror and thin glass",
             Same,
             blend(mirror(), glass(1.5, true, None)),
         ),
-        ("white", Nothing, two_sided(white())),
+        ("white", Nothing, white()),
         (
             "diffuse transmission",
             Same,
@@ -157,11 +155,7 @@ fn cases() -> Vec<Case> {
         ("mirror", Nothing, mirror()),
         ("plastic", Nothing, two_sided(plastic(None, true))),
         ("linear plastic", Nothing, two_sided(plastic(None, false))),
-        (
-            "white and mirror",
-            Nothing,
-            blend(two_sided(white()), mirror()),
-        ),
+        ("white and mirror", Nothing, blend(white(), mirror())),
     ];
     let lossy = [
         ("rough glass", Medium(1.5), glass(1.5, false, ggx(0.2))),
@@ -240,36 +234,15 @@ impl View {
             Self::SphereOutside => (Geometry::Sphere, DVec3::new(0.3, 2.0, 0.5), 0.58),
             Self::SphereInside => (Geometry::Sphere, DVec3::new(0.3, 0.5, 0.2), 1.0),
         };
-        let shape = Shape {
-            name: String::new(),
-            geometry,
-            to_world: DAffine3::IDENTITY,
-            is_flipped: false,
-            material: 0,
-            emission: None,
-            emits_on_both_sides: false,
-        };
         let world = World {
-            shapes: vec![shape],
+            shapes: vec![Shape::new(geometry, DAffine3::IDENTITY, 0)],
             materials: vec![material.clone()],
             lights: vec![Light::Constant { radiance: 1.0 }],
             ..World::default()
         };
-        let along = -from.normalize();
-        let left = along.any_orthonormal_vector();
-        let turned = DMat3::from_cols(left, along.cross(left), along);
-        let camera = Camera {
-            name: "camera".to_owned(),
-            to_world: DAffine3::from_mat3_translation(turned, from),
-            size: [SIDE; 2],
-            projection: Projection::Perspective {
-                half_width,
-                shift: [0.0; 2],
-                lens: None,
-            },
-            clip: [1e-3, 1e6],
-        };
-        Paths::new(&world).picture(&camera, SAMPLES, 5, &|_| {})
+        let points = [from, DVec3::ZERO, from.any_orthogonal_vector()];
+        let camera = Camera::pinhole(points, half_width, [SIDE; 2], [1e-3, 1e6]);
+        Paths::new(&world).picture(&camera.unwrap(), SAMPLES, 5, &|_| {})
     }
 }
 

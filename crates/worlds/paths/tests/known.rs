@@ -12,20 +12,9 @@ use std::sync::Arc;
 
 /// Returns a narrow camera at one point that looks at another point.
 fn camera(from: DVec3, at: DVec3) -> Camera {
-    let along = (at - from).normalize();
-    let left = along.any_orthonormal_vector();
-    let turned = DMat3::from_cols(left, along.cross(left), along);
-    Camera {
-        name: "camera".to_owned(),
-        to_world: DAffine3::from_mat3_translation(turned, from),
-        size: [1, 1],
-        projection: Projection::Perspective {
-            half_width: 1e-6,
-            shift: [0.0; 2],
-            lens: None,
-        },
-        clip: [1e-3, 1e6],
-    }
+    let up = (at - from).any_orthogonal_vector();
+    let camera = Camera::pinhole([from, at, up], 1e-6, [1, 1], [1e-3, 1e6]);
+    camera.expect("two different points")
 }
 
 pub(crate) fn shape(
@@ -35,19 +24,8 @@ pub(crate) fn shape(
     emission: Option<f64>,
 ) -> Shape {
     Shape {
-        name: String::new(),
-        geometry,
-        to_world,
-        is_flipped: false,
-        material,
         emission: emission.map(Texture::Constant),
-        emits_on_both_sides: false,
-    }
-}
-
-pub(crate) fn diffuse(reflectance: f64) -> Material {
-    Material::Diffuse {
-        reflectance: Texture::Constant(reflectance),
+        ..Shape::new(geometry, to_world, material)
     }
 }
 
@@ -65,7 +43,7 @@ pub(crate) fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     shapes.extend(more);
     World {
         shapes,
-        materials: vec![diffuse(0.5), diffuse(0.0)],
+        materials: vec![Material::diffuse(0.5), Material::diffuse(0.0)],
         lights,
         ..World::default()
     }
@@ -88,6 +66,19 @@ pub(crate) fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) 
     assert!(error <= 0.02 * expected, "{mean} ± {error}");
 }
 
+/// Makes the checks of [`assert_seen`] for the origin of a floor with more shapes and lights.
+pub(crate) fn assert_lit(more: Vec<Shape>, lights: Vec<Light>, expected: f64) {
+    assert_seen(&floor(more, lights), ASIDE, DVec3::ZERO, expected);
+}
+
+/// Returns two triangles that cover the square z = 0 with x and y from −1 to 1.
+pub(crate) fn square() -> Geometry {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+    let square = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None, None);
+    Geometry::Mesh(Arc::new(square.expect("corners of a square")))
+}
+
 pub(crate) const ASIDE: DVec3 = DVec3::new(1.0, 0.5, 1.0);
 
 #[test]
@@ -96,7 +87,7 @@ fn a_closed_sphere_gathers_light() {
     inside.is_flipped = true;
     let mut world = World {
         shapes: vec![inside],
-        materials: vec![diffuse(0.5)],
+        materials: vec![Material::diffuse(0.5)],
         ..World::default()
     };
     let at = DVec3::new(0.1, 0.2, -1.9);
@@ -121,35 +112,16 @@ fn lights_shine_by_their_units() {
         position: DVec3::new(0.0, 1.0, 2.0),
         intensity: 3.0,
     };
-    assert_seen(
-        &floor(vec![], vec![point]),
-        ASIDE,
-        DVec3::ZERO,
-        0.5 / PI * 3.0 * 2.0 / 5_f64.powf(1.5),
-    );
+    assert_lit(vec![], vec![point], 0.5 / PI * 3.0 * 2.0 / 5_f64.powf(1.5));
     let direction = DVec3::new(0.6, 0.0, -0.8);
     let sun = Light::Directional {
         direction,
         irradiance: 2.0,
     };
-    assert_seen(
-        &floor(vec![], vec![sun]),
-        ASIDE,
-        DVec3::ZERO,
-        0.5 / PI * 2.0 * 0.8,
-    );
-    assert_seen(
-        &floor(vec![], vec![Light::Constant { radiance: 0.7 }]),
-        ASIDE,
-        DVec3::ZERO,
-        0.35,
-    );
+    assert_lit(vec![], vec![sun], 0.5 / PI * 2.0 * 0.8);
+    assert_lit(vec![], vec![Light::Constant { radiance: 0.7 }], 0.35);
     // The camera sees a point that a spot lights with the reduced intensity between the spot's two
     // angles.
-    let down = DAffine3::from_mat3_translation(
-        DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
-        DVec3::new(0.0, 0.0, 1.0),
-    );
     let cosine = |angle: f64| (angle.cos() - 0.5_f64.cos()) / (0.3_f64.cos() - 0.5_f64.cos());
     let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
     for (falloff, angle, share) in [
@@ -160,7 +132,7 @@ fn lights_shine_by_their_units() {
         (Falloff::SmoothCosine, 0.29, 1.0),
     ] {
         let spot = Light::Spot {
-            to_world: down,
+            to_world: downward(1.0),
             intensity: 4.0,
             beam: 0.3,
             cutoff: 0.5,
@@ -195,52 +167,22 @@ fn errors_under_a_small_light_are_honest() {
 
 #[test]
 fn surfaces_shine_by_their_area() {
-    let turned = |height: f64, scale: f64| {
-        scaled(scale, height)
-            * DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)))
-    };
+    let turned = |height: f64, scale: f64| scaled(scale, height) * downward(0.0);
     // A disc and a sphere above a point of the floor.
     let disc = shape(Geometry::Disc, turned(2.0, 0.5), 1, Some(6.0));
-    assert_seen(
-        &floor(vec![disc], vec![]),
-        ASIDE,
-        DVec3::ZERO,
-        0.5 * 6.0 * 0.25 / 4.25,
-    );
+    assert_lit(vec![disc], vec![], 0.5 * 6.0 * 0.25 / 4.25);
     let sphere = shape(Geometry::Sphere, scaled(0.5, 2.0), 1, Some(6.0));
-    assert_seen(
-        &floor(vec![sphere], vec![]),
-        ASIDE,
-        DVec3::ZERO,
-        0.5 * 6.0 * 0.25 / 4.0,
-    );
+    assert_lit(vec![sphere], vec![], 0.5 * 6.0 * 0.25 / 4.0);
     // The light is a square that emits only on its front. The square is given once as a rectangle
     // and once as two triangles.
-    let square = Triangles::new(
-        vec![
-            DVec3::new(-1.0, -1.0, 0.0),
-            DVec3::new(1.0, -1.0, 0.0),
-            DVec3::new(1.0, 1.0, 0.0),
-            DVec3::new(-1.0, 1.0, 0.0),
-        ],
-        vec![[0, 1, 2], [0, 2, 3]],
-        None,
-        None,
-    );
-    let mesh = Geometry::Mesh(Arc::new(square.unwrap()));
     // This is the form factor of a square of side 1 at height 2, for a point below its centre. It
     // is the sum over four squares of ½ by ½ with a corner above the point (Howell, factor B-3).
     let x = 0.25_f64;
     let factor =
         4.0 / (2.0 * PI) * 2.0 * x / (1.0 + x * x).sqrt() * (x / (1.0 + x * x).sqrt()).atan();
-    for geometry in [Geometry::Rectangle, mesh] {
+    for geometry in [Geometry::Rectangle, square()] {
         let square = shape(geometry.clone(), turned(2.0, 0.5), 1, Some(6.0));
-        assert_seen(
-            &floor(vec![square], vec![]),
-            ASIDE,
-            DVec3::ZERO,
-            0.5 * 6.0 * factor,
-        );
+        assert_lit(vec![square], vec![], 0.5 * 6.0 * factor);
         let away = shape(geometry, scaled(0.5, 2.0), 1, Some(6.0));
         let (mean, _) = seen(&floor(vec![away], vec![]), ASIDE, DVec3::ZERO, 1000);
         assert!(mean.abs() < 1e-300, "{mean}");
@@ -257,10 +199,10 @@ fn lamps_may_emit_on_both_sides() {
     };
     let disc = both(Geometry::Disc, scaled(0.5, 2.0));
     let radiance = 0.5 * 6.0 * 0.25 / 4.25;
-    assert_seen(&floor(vec![disc], vec![]), ASIDE, DVec3::ZERO, radiance);
+    assert_lit(vec![disc], vec![], radiance);
     let ball = both(Geometry::Sphere, scaled(0.5, 2.0));
     let radiance = 0.5 * 6.0 * 0.25 / 4.0;
-    assert_seen(&floor(vec![ball], vec![]), ASIDE, DVec3::ZERO, radiance);
+    assert_lit(vec![ball], vec![], radiance);
     let around = floor(vec![both(Geometry::Sphere, scaled(5.0, 0.0))], vec![]);
     assert_seen(&around, ASIDE, DVec3::ZERO, 0.5 * 6.0);
 }
@@ -437,7 +379,7 @@ fn ellipsoids_have_their_own_normals() {
     };
     let world = World {
         shapes: vec![ellipsoid],
-        materials: vec![diffuse(0.5)],
+        materials: vec![Material::diffuse(0.5)],
         lights: vec![Light::Directional {
             direction: DVec3::NEG_Z,
             irradiance: 2.0,

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::known::{ASIDE, assert_seen, diffuse, downward, floor, scaled, seen, shape};
+use crate::known::{ASIDE, assert_seen, downward, floor, scaled, seen, shape, square};
 use etendue_field::{LatLong, Raster};
 use etendue_import::{Options, import};
-use etendue_world::{Falloff, Geometry, Light, Material, Shape, SkyMap, Texture, Triangles, World};
+use etendue_world::{Falloff, Geometry, Light, Material, Shape, SkyMap, Texture, World};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -48,54 +48,31 @@ fn lights() -> Vec<(&'static str, Vec<Shape>, Vec<Light>, f64)> {
     });
     let constant = Light::Constant { radiance: 0.7 };
     // Emitting shapes have the size of half a metre.
-    let lamp = |geometry, turned| Shape {
-        to_world: scaled(0.5, HEIGHT) * turned,
+    let lamp = |geometry| Shape {
+        to_world: scaled(0.5, HEIGHT) * downward(0.0),
         ..shape(geometry, scaled(1.0, 0.0), 1, Some(6.0))
     };
-    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
-    let mesh = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None, None).unwrap();
     // The form factor of a square, as four squares with a corner above the point (Howell, B-3).
     let x: f64 = 0.5 / HEIGHT;
     let of_square = 4.0 / PI * x / x.hypot(1.0) * (x / x.hypot(1.0)).atan();
-    let emitted = 0.5 * 6.0;
-    vec![
-        ("point", vec![], vec![point], 0.5 / PI * 3.0 / squared),
-        ("spot", vec![], vec![spot], 0.5 / PI * 4.0 / squared),
-        (
-            "projector",
-            vec![],
-            vec![projector],
-            0.5 / PI * 2.0 / squared,
-        ),
-        ("sun", vec![], vec![sun], 0.5 / PI * 2.0 * 0.8),
-        ("constant", vec![], vec![constant], 0.35),
-        ("sky", vec![], vec![sky], 0.35),
-        (
-            "sphere",
-            vec![lamp(Geometry::Sphere, downward(0.0))],
-            vec![],
-            emitted * 0.25 / squared,
-        ),
-        (
-            "disc",
-            vec![lamp(Geometry::Disc, downward(0.0))],
-            vec![],
-            emitted * 0.25 / (squared + 0.25),
-        ),
-        (
-            "square",
-            vec![lamp(Geometry::Rectangle, downward(0.0))],
-            vec![],
-            emitted * of_square,
-        ),
-        (
-            "mesh",
-            vec![lamp(Geometry::Mesh(Arc::new(mesh)), downward(0.0))],
-            vec![],
-            emitted * of_square,
-        ),
-    ]
+    let alone = [
+        ("point", point, 3.0 / PI / squared),
+        ("spot", spot, 4.0 / PI / squared),
+        ("projector", projector, 2.0 / PI / squared),
+        ("sun", sun, 2.0 / PI * 0.8),
+        ("constant", constant, 0.7),
+        ("sky", sky, 0.7),
+    ];
+    let lamps = [
+        ("sphere", Geometry::Sphere, 0.25 / squared),
+        ("disc", Geometry::Disc, 0.25 / (squared + 0.25)),
+        ("square", Geometry::Rectangle, of_square),
+        ("mesh", square(), of_square),
+    ];
+    // The floor reflects one half of the light.
+    let alone = alone.map(|(name, light, sum)| (name, vec![], vec![light], 0.5 * sum));
+    let lamps = lamps.map(|(name, of, factor)| (name, vec![lamp(of)], vec![], 0.5 * 6.0 * factor));
+    alone.into_iter().chain(lamps).collect()
 }
 
 /// Checks that light of each kind loses `1 - share` above the floor of a world. Light that has met
@@ -105,7 +82,7 @@ fn assert_passes(world: &World, share: f64, name: &str) {
         let mut world = world.clone();
         world.depth = Some(1);
         let black = world.materials.len();
-        world.materials.push(diffuse(0.0));
+        world.materials.push(Material::diffuse(0.0));
         world.shapes.extend(shapes.into_iter().map(|shape| Shape {
             material: black,
             ..shape
@@ -126,7 +103,7 @@ fn assert_passes(world: &World, share: f64, name: &str) {
 fn masked(opacity: Texture) -> Material {
     Material::Mask {
         opacity,
-        of: Box::new(diffuse(0.0)),
+        of: Box::new(Material::diffuse(0.0)),
     }
 }
 
@@ -152,14 +129,14 @@ fn each_kind_of_light_passes_with_one_minus_the_opacity() {
     // A quarter of a mixture is half transparent.
     let mixed = Material::Blend {
         weight: Texture::Constant(0.25),
-        of: Box::new([diffuse(0.0), masked(Texture::Constant(0.5))]),
+        of: Box::new([Material::diffuse(0.0), masked(Texture::Constant(0.5))]),
     };
     assert_passes(&sheets(vec![mixed]), 0.125, "a mixture");
 }
 
 #[test]
 fn nothing_passes_an_opaque_sheet() {
-    let opaque = [masked(Texture::Constant(1.0)), diffuse(0.0)];
+    let opaque = [masked(Texture::Constant(1.0)), Material::diffuse(0.0)];
     for material in opaque {
         for (light, shapes, lights, _) in lights() {
             let mut world = sheets(vec![material.clone()]);
@@ -178,7 +155,7 @@ fn nothing_passes_an_opaque_sheet() {
 fn a_sheet_scatters_what_does_not_pass() {
     let mut world = sheets(vec![Material::Mask {
         opacity: Texture::Constant(0.3),
-        of: Box::new(diffuse(0.8)),
+        of: Box::new(Material::diffuse(0.8)),
     }]);
     world.lights = vec![Light::Directional {
         direction: DVec3::NEG_Z,
@@ -217,7 +194,7 @@ fn the_alpha_of_each_format_lets_light_pass() {
     ] {
         let mut world = read(name, &files);
         // pbrt makes a spectrum of each colour, which changes a reflectance slightly.
-        world.materials[world.shapes[0].material] = diffuse(0.5);
+        world.materials[world.shapes[0].material] = Material::diffuse(0.5);
         assert_passes(&world, 0.75, name);
     }
     // With a cutoff, glTF shows the sheet if its alpha is not below the cutoff.

@@ -3,7 +3,7 @@
 use etendue_field::{Crossing, PhotonSource};
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};
 use etendue_world::{
-    Camera, Conductor, Dielectric, Geometry, Light, Material, Projection, Shape, Texture, World,
+    Camera, Conductor, Dielectric, Geometry, Light, Material, Shape, Texture, World,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
@@ -19,53 +19,25 @@ const QUESTION: Question = Question {
 /// Returns a camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
 fn camera() -> Camera {
     let from = DVec3::new(0.0, -3.0, 2.0);
-    let along = -from.normalize();
-    let left = -DVec3::X;
-    let turned = DMat3::from_cols(left, along.cross(left), along);
-    Camera {
-        name: "camera".to_owned(),
-        to_world: DAffine3::from_mat3_translation(turned, from),
-        size: [64, 64],
-        projection: Projection::Perspective {
-            half_width: 0.5,
-            shift: [0.0; 2],
-            lens: None,
-        },
-        clip: [1e-3, 1e6],
-    }
-}
-
-fn shape(geometry: Geometry, to_world: DAffine3, material: usize) -> Shape {
-    Shape {
-        name: String::new(),
-        geometry,
-        to_world,
-        is_flipped: false,
-        material,
-        emission: None,
-        emits_on_both_sides: false,
-    }
+    let camera = Camera::pinhole([from, DVec3::ZERO, DVec3::Z], 0.5, [64; 2], [1e-3, 1e6]);
+    camera.expect("two different points")
 }
 
 fn world(shapes: Vec<Shape>) -> World {
-    let constant = |value| Texture::Constant(value);
     let mirror = Conductor {
         index: None,
-        reflectance: constant(1.0),
+        reflectance: Texture::Constant(1.0),
         roughness: None,
-    };
-    let diffuse = Material::Diffuse {
-        reflectance: constant(0.5),
     };
     World {
         shapes,
-        materials: vec![diffuse, Material::Conductor(mirror)],
+        materials: vec![Material::diffuse(0.5), Material::Conductor(mirror)],
         ..World::default()
     }
 }
 
 fn floor(material: usize) -> Shape {
-    shape(
+    Shape::new(
         Geometry::Rectangle,
         DAffine3::from_scale(DVec3::splat(20.0)),
         material,
@@ -121,25 +93,10 @@ fn assert_even_with(
 ) {
     let paths = Paths::new(world);
     let probe = Probe::new(&paths, &camera(), question).expect("the ray meets something");
-    let rays = BackwardProbe::new(
-        &probe,
-        Budget {
-            each: 4_000,
-            seed: 5,
-        },
-    );
-    let photons = PhotonProbe::new(
-        &probe,
-        Budget {
-            each: photons,
-            seed: 6,
-        },
-    );
-    let budget = Budget {
-        each: 40_000,
-        seed: 7,
-    };
-    let by_bsdf = BackwardProbe::new(&probe, budget).by_bsdf();
+    let budget = |each, seed| Budget { each, seed };
+    let rays = BackwardProbe::new(&probe, budget(4_000, 5));
+    let photons = PhotonProbe::new(&probe, budget(photons, 6));
+    let by_bsdf = BackwardProbe::new(&probe, budget(40_000, 7)).by_bsdf();
     let mut sources: Vec<(&str, &dyn PhotonSource)> = vec![("rays", &rays), ("photons", &photons)];
     sources.extend(
         by_bsdf
@@ -186,7 +143,7 @@ fn light_that_leaves_a_floor() {
         DQuat::from_rotation_arc(DVec3::Z, direction),
         -9.0 * direction,
     );
-    of.shapes.push(shape(Geometry::Rectangle, to_world, 0));
+    of.shapes.push(Shape::new(Geometry::Rectangle, to_world, 0));
     of.lights = vec![Light::Sheet {
         shape: 1,
         exitance: Texture::Constant(3.0),
@@ -197,7 +154,7 @@ fn light_that_leaves_a_floor() {
 #[test]
 fn light_that_arrives_at_a_floor_and_leaves_a_wall() {
     // The mirrored ray continues to an emitting wall.
-    let mut wall = shape(
+    let mut wall = Shape::new(
         Geometry::Rectangle,
         DAffine3::from_translation(DVec3::new(0.0, 4.0, 0.0)),
         0,
@@ -221,7 +178,7 @@ fn light_that_arrives_at_a_floor_and_leaves_a_wall() {
 #[test]
 fn surfaces_curve_as_they_do() {
     let of = |geometry: Geometry, to_world: DAffine3| {
-        let paths = Paths::new(&world(vec![shape(geometry, to_world, 0)]));
+        let paths = Paths::new(&world(vec![Shape::new(geometry, to_world, 0)]));
         let probe = Probe::new(&paths, &camera(), &QUESTION).unwrap();
         probe.stops[0].curvature
     };
@@ -258,7 +215,7 @@ fn the_sky_in_windows_and_mirrors() {
         DQuat::IDENTITY,
         DVec3::new(0.0, 0.0, -20.0),
     );
-    of.shapes = vec![shape(Geometry::Sphere, ball, 1)];
+    of.shapes = vec![Shape::new(Geometry::Sphere, ball, 1)];
     assert_even(&of, &QUESTION, &all, 1.5);
 }
 
@@ -267,7 +224,7 @@ fn an_emitting_wall_in_one_and_two_mirrors() {
     // The ray continues from the floor to a wall, and from a mirror at the wall to a second wall.
     let wall = |y: f64, z: f64, turned: f64, material: usize| {
         let place = DAffine3::from_translation(DVec3::new(0.0, y, z));
-        let mut wall = shape(Geometry::Rectangle, place, material);
+        let mut wall = Shape::new(Geometry::Rectangle, place, material);
         let axes = [DVec3::X, DVec3::Z, -DVec3::Y].map(|axis| turned * axis);
         wall.to_world.matrix3 = DMat3::from_cols(4.0 * DVec3::X, 4.0 * axes[1], 4.0 * axes[2]);
         wall
@@ -323,7 +280,7 @@ fn partly_transparent_sheets_between_lights_floors_and_cameras() {
     for (lights, irradiance) in [(sun(), 2.4), (lamp(), 0.5), (sky(), 1.5 * PI)] {
         for (height, share) in [(3.0, 0.6), (1.0, 0.36)] {
             let place = DAffine3::from_translation(height * DVec3::Z);
-            let sheet = shape(
+            let sheet = Shape::new(
                 Geometry::Rectangle,
                 place * DAffine3::from_scale(DVec3::splat(1e4)),
                 2,
@@ -331,9 +288,7 @@ fn partly_transparent_sheets_between_lights_floors_and_cameras() {
             let mut of = world(vec![floor(0), sheet]);
             of.materials.push(Material::Mask {
                 opacity: Texture::Constant(0.4),
-                of: Box::new(Material::Diffuse {
-                    reflectance: Texture::Constant(0.0),
-                }),
+                of: Box::new(Material::diffuse(0.0)),
             });
             of.lights.clone_from(&lights);
             // Only light that has met the floor counts.
@@ -352,7 +307,7 @@ fn photons_know_what_they_miss() {
         reflectance: Texture::Constant(1.0),
         transmittance: Texture::Constant(1.0),
     });
-    let mut of = world(vec![shape(Geometry::Sphere, DAffine3::IDENTITY, 2)]);
+    let mut of = world(vec![Shape::new(Geometry::Sphere, DAffine3::IDENTITY, 2)]);
     of.materials.push(glass);
     of.lights = vec![Light::Constant { radiance: 1.0 }];
     let paths = Paths::new(&of);

@@ -48,9 +48,7 @@ fn materials() -> Vec<(&'static str, Material)> {
             roughness,
         })
     };
-    let diffuse = || Material::Diffuse {
-        reflectance: constant(0.7),
-    };
+    let diffuse = || Material::diffuse(0.7);
     let black = Material::Plastic(Plastic {
         index: 1.5,
         diffuse: constant(0.0),

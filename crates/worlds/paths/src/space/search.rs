@@ -158,18 +158,10 @@ mod tests {
         ];
         let shapes = (0..10).map(|i| {
             let [x, y, z] = [0, 1, 2].map(|block| numbers(i, block));
-            Shape {
-                name: String::new(),
-                geometry: geometries[usize::try_from(i).unwrap() % 5].clone(),
-                to_world: DAffine3 {
-                    matrix3: glam::DMat3::from_cols(x, y, z),
-                    translation: 3.0 * numbers(i, 3),
-                },
-                is_flipped: false,
-                material: 0,
-                emission: None,
-                emits_on_both_sides: false,
-            }
+            let geometry = geometries[usize::try_from(i).unwrap() % 5].clone();
+            let turned = glam::DMat3::from_cols(x, y, z);
+            let to_world = DAffine3::from_mat3_translation(turned, 3.0 * numbers(i, 3));
+            Shape::new(geometry, to_world, 0)
         });
         // Meshes of one shape are not shared, so that their triangles are pieces.
         shapes.flat_map(|shape| placed(&[shape])).collect()
