@@ -43,7 +43,7 @@ pub(crate) fn read(text: String, file: MainFile<'_>) -> Result<Imported, Refused
     let mut world = World::default();
     if !tree.objects.is_empty() {
         world = reader::MitsubaReader::new(&tree, file.options.color).world();
-        object::tell_unused(&tree.objects, &file.report);
+        object::tell_unused(&tree.objects);
     }
     file.finish(world)
 }

@@ -35,6 +35,12 @@ impl SourcePlace {
         }
     }
 
+    /// Returns a place in a file.
+    pub(crate) fn at(file: &Rc<str>, line: usize, column: usize) -> Self {
+        let file = Rc::clone(file);
+        Self { file, line, column }
+    }
+
     fn note(&self, message: String) -> Note {
         Note {
             file: self.file.to_string(),
@@ -111,8 +117,9 @@ impl Report {
 
     /// Checks whether a message was not given before at a place.
     pub(crate) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
-        let message = place.note(message.to_owned()).to_string();
-        self.told.borrow_mut().insert(message)
+        self.told
+            .borrow_mut()
+            .insert(place.note(message.to_owned()).to_string())
     }
 
     /// Checks whether the scene is refused.
@@ -195,6 +202,16 @@ impl fmt::Display for Refused {
 }
 
 impl std::error::Error for Refused {}
+
+/// Returns the value of a keyword; `Err` lists the allowed keywords.
+pub(crate) fn keyword<T: Copy>(name: &str, word: &str, allowed: &[(&str, T)]) -> Result<T, String> {
+    let found = allowed.iter().find(|(known, _)| *known == word);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
+        let word = quoted(word);
+        format!("{name} is {word}; allowed: {}", words.join(", "))
+    })
+}
 
 /// Quotes a value of the file for a message.
 pub(crate) fn quoted(value: &str) -> String {

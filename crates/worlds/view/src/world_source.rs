@@ -5,8 +5,8 @@ use etendue_paths::Paths;
 use etendue_pipeline::{Progress, Reporter};
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, VERSION, machine};
-use etendue_world::{Camera, Light, Material, Projection, World};
-use glam::{DAffine3, DMat3, DVec3};
+use etendue_world::{Camera, Light, Material, World};
+use glam::DVec3;
 use serde_json::{Value, json as tree_of};
 use std::path::PathBuf;
 
@@ -176,12 +176,10 @@ fn lost_light(world: &World) -> Option<String> {
 
 /// Returns the camera that a viewpoint adds to the scene.
 fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, Failure> {
-    let ahead = (viewpoint.at - viewpoint.from).try_normalize();
-    let frame = ahead.and_then(|ahead| {
-        let left = viewpoint.up.cross(ahead).try_normalize()?;
-        Some(DMat3::from_cols(left, ahead.cross(left), ahead))
-    });
-    let frame = frame.ok_or_else(|| {
+    let Viewpoint { from, at, up, fov } = *viewpoint;
+    let half_width = libm::tan(fov.to_radians() / 2.0);
+    let camera = Camera::pinhole([from, at, up], half_width, [512; 2], [0.0, f64::MAX]);
+    let camera = camera.ok_or_else(|| {
         let [from, at, up] = ["look_from", "look_at", "up"].map(|name| arguments.name(name));
         Failure::bad_input(format!(
             "{from} and {at} are the same point, or {up} is parallel to the line between them"
@@ -189,14 +187,7 @@ fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, 
     })?;
     Ok(Camera {
         name: "command".to_owned(),
-        to_world: DAffine3::from_mat3_translation(frame, viewpoint.from),
-        size: [512; 2],
-        projection: Projection::Perspective {
-            half_width: libm::tan(viewpoint.fov.to_radians() / 2.0),
-            shift: [0.0; 2],
-            lens: None,
-        },
-        clip: [0.0, f64::MAX],
+        ..camera
     })
 }
 

@@ -59,11 +59,11 @@ impl AccessorRows {
 }
 
 impl GltfReader<'_> {
-    /// Returns rows of N finite numbers, or `None` if a cause of refusal was reported.
-    pub(super) fn numbers<const N: usize>(
+    /// Returns vectors of N finite numbers, or `None` if a cause of refusal was reported.
+    pub(super) fn vectors<T: From<[f64; N]>, const N: usize>(
         &mut self,
         index: Index<Accessor>,
-    ) -> Option<Vec<[f64; N]>> {
+    ) -> Option<Vec<T>> {
         let kind = match N {
             1 => Type::Scalar,
             2 => Type::Vec2,
@@ -80,7 +80,7 @@ impl GltfReader<'_> {
             let message = format!("element {bad} is out of range; allowed: up to {MAX_NUMBER:e}");
             return self.refuse(&format!("accessors[{}]", index.value()), message);
         }
-        Some(numbers)
+        Some(numbers.into_iter().map(T::from).collect())
     }
 
     /// Returns indices, or `None` if a cause of refusal was reported.

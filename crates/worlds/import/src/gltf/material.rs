@@ -47,8 +47,8 @@ impl<'a> GltfReader<'a> {
         let opacity = self.opacity(&mut draft);
         let (scatter, emission) = (scatter?, emission?);
         let material = match opacity? {
-            None => scatter,
-            Some(opacity) => {
+            Texture::Constant(1.0..) => scatter,
+            opacity => {
                 if emission.is_some() {
                     let message = "does not affect the emission of the material";
                     self.note(&format!("{}.alphaMode", draft.path), message);
@@ -113,17 +113,14 @@ impl<'a> GltfReader<'a> {
             .map(Some)
     }
 
-    /// Returns the opacity. The inner `None` means an opaque material, and the outer `None` means
-    /// that a cause of refusal was reported.
-    #[expect(
-        clippy::option_option,
-        reason = "the outer `None` means that a cause was reported"
-    )]
-    fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
+    /// Returns the opacity, or `None` if a cause of refusal was reported.
+    fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
         let source = draft.source;
         let factor = f64::from(source.pbr_metallic_roughness.base_color_factor.0[3]);
         let cutoff = match source.alpha_mode {
-            Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => return Some(None),
+            Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => {
+                return Some(Texture::Constant(1.0));
+            }
             Checked::Valid(AlphaMode::Mask) => {
                 Some(source.alpha_cutoff.as_ref().map_or(0.5, |c| f64::from(c.0)))
             }
@@ -135,10 +132,7 @@ impl<'a> GltfReader<'a> {
             let message = "approximated: each pixel is opaque or transparent, with no interpolation between pixels";
             self.note(&format!("{}.alphaCutoff", draft.path), message);
         }
-        Some(match self.textured(draft, info, BASE_COLOR, level)? {
-            Texture::Constant(1.0..) => None,
-            other => Some(other),
-        })
+        self.textured(draft, info, BASE_COLOR, level)
     }
 
     fn tell_dropped_of(&self, draft: &Draft<'_>) {
@@ -277,8 +271,7 @@ impl<'a> GltfReader<'a> {
         }
         let metallic = draft.source.pbr_metallic_roughness.metallic_factor.0;
         if metallic > 0.0 {
-            let message = "approximated: metals transmit like other materials";
-            self.note(&path, message);
+            self.note(&path, "approximated: metals transmit like other materials");
         }
         let glass = self.glass(draft, &path)?;
         if share >= 1.0 {

@@ -97,8 +97,10 @@ impl<'a> GltfReader<'a> {
             return self.cause(path, message);
         }
         if node.skin.is_some() {
-            let message = "is left out: the mesh keeps its bind pose";
-            self.note(&format!("{path}.skin"), message);
+            self.note(
+                &format!("{path}.skin"),
+                "is left out: the mesh keeps its bind pose",
+            );
         }
         if let Some(mesh) = node.mesh {
             self.mesh_of(placed, mesh.value());

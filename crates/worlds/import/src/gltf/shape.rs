@@ -103,10 +103,9 @@ impl<'a> GltfReader<'a> {
             return None;
         };
         self.tell_dropped(primitive, path);
-        let vertices: Vec<[f64; 3]> = self.numbers(attribute(primitive, Semantic::Positions)?)?;
-        let vertices: Vec<DVec3> = vertices.into_iter().map(DVec3::from).collect();
+        let vertices: Vec<DVec3> = self.vectors(attribute(primitive, Semantic::Positions)?)?;
         let normals = match attribute(primitive, Semantic::Normals) {
-            Some(index) => Some(self.numbers::<3>(index)?),
+            Some(index) => Some(self.vectors::<DVec3, 3>(index)?),
             None => None,
         };
         let uvs = match set {
@@ -129,8 +128,8 @@ impl<'a> GltfReader<'a> {
         let mut parts = MeshParts {
             vertices,
             corners: corners(&listed, mode),
-            normals: normals.map(|n| n.into_iter().map(DVec3::from).collect()),
-            uvs: uvs.map(|uvs| uvs.into_iter().map(DVec2::from).collect()),
+            normals,
+            uvs,
         };
         self.finish(&mut parts, path)?;
         Some(parts)
@@ -143,12 +142,12 @@ impl<'a> GltfReader<'a> {
         Some((0..count).collect())
     }
 
-    fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<[f64; 2]>> {
+    fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<DVec2>> {
         let Some(index) = attribute(primitive, Semantic::TexCoords(set)) else {
             let message = format!("has no TEXCOORD_{set}, which its material needs");
             return self.refuse(path, message);
         };
-        self.numbers(index)
+        self.vectors(index)
     }
 
     /// Removes triangles without area, and turns normals to the front.

@@ -4,10 +4,6 @@
 //! of n and k by wavelength, which are from luxpop.com, Palik and others. The rule of this
 //! conversion is stated at [`Color`](crate::Color). Negative components of a colour are set to 0.
 
-use super::object::{MitsubaObject, Value};
-use super::reader::MitsubaReader;
-use crate::report::quoted;
-
 /// The indices are values at about 589 nm (Hecht, Optics, 4th edition), as in Mitsuba.
 const NAMED: [(&str, f64); 23] = [
     ("vacuum", 1.0),
@@ -84,31 +80,11 @@ const METALS: &[(&str, MetalRgb, MetalRgb)] = &[
     ("d-C, d-C_palik", [2.70872, 2.318826, 2.228898], [0.0, 0.0, 0.0]),
 ];
 
-impl<'a> MitsubaReader<'a> {
-    /// Returns the index of refraction inside divided by the index outside. `inside` names the
-    /// default material inside.
-    pub(super) fn relative_index(&self, object: &'a MitsubaObject, inside: &str) -> Option<f64> {
-        let inside = self.one_index(object, "int_ior", inside);
-        let outside = self.one_index(object, "ext_ior", "air");
-        Some(inside? / outside?)
-    }
-
-    fn one_index(&self, object: &'a MitsubaObject, name: &str, default: &str) -> Option<f64> {
-        let word = match self.property(object, name).map(|p| &p.value) {
-            None => default,
-            Some(Value::Text(word)) => word,
-            Some(_) => {
-                return self.number_within(object, name, "a number above 0", |v| v > 0.0);
-            }
-        };
-        let lower = word.to_lowercase();
-        if let Some((_, index)) = NAMED.iter().find(|(known, _)| *known == lower) {
-            return Some(*index);
-        }
-        let word = quoted(word);
-        let message = format!("{name}: no index of refraction is known for {word}");
-        self.fault(object, name, message)
-    }
+/// Returns the index of refraction of a material, or `None` for an unknown name.
+pub(super) fn named_index(name: &str) -> Option<f64> {
+    let name = name.to_lowercase();
+    let found = NAMED.iter().find(|(known, _)| *known == name);
+    found.map(|(_, index)| *index)
 }
 
 /// Returns n and k of a conductor, or `None` for an unknown name.

@@ -1,7 +1,7 @@
 //! Emitters that are not surfaces.
 
 use super::mesh::z_of;
-use super::object::MitsubaObject;
+use super::object::ObjectRef;
 use super::reader::MitsubaReader;
 use super::transform::is_rigid;
 use etendue_field::{LatLong, Raster};
@@ -17,7 +17,7 @@ const ALLOWED: &str = "point, spot, projector, directional, constant, envmap, an
 const CUTOFF: f64 = 20.0;
 
 impl<'a> MitsubaReader<'a> {
-    pub(super) fn light(&mut self, object: &'a MitsubaObject) {
+    pub(super) fn light(&mut self, object: ObjectRef<'a>) {
         object.is_used.set(true);
         let light = match object.plugin.as_str() {
             "point" => self.point(object),
@@ -32,8 +32,7 @@ impl<'a> MitsubaReader<'a> {
         };
         let is_sky = |light: &Light| matches!(light, Light::Constant { .. } | Light::Sky(_));
         if light.as_ref().is_some_and(is_sky) && self.world.lights.iter().any(is_sky) {
-            let message = "a second environment; allowed: one, as in Mitsuba 3";
-            return self.report.cause(&object.place, message);
+            return object.cause("a second environment; allowed: one, as in Mitsuba 3");
         }
         match light {
             Some(light) => self.world.lights.push(light),
@@ -41,7 +40,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn point(&mut self, object: &'a MitsubaObject) -> Option<Light> {
+    fn point(&mut self, object: ObjectRef<'a>) -> Option<Light> {
         let of = |map: DAffine3| Some(map.translation);
         let position = self.either(object, "position", DVec3::ZERO, of);
         let intensity = self.strength(object, "intensity");
@@ -51,12 +50,12 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn directional(&mut self, object: &'a MitsubaObject) -> Option<Light> {
+    fn directional(&mut self, object: ObjectRef<'a>) -> Option<Light> {
         let direction = self.either(object, "direction", DVec3::Z, z_of);
         let irradiance = self.strength(object, "irradiance");
         let direction = direction?.try_normalize();
         if direction.is_none() {
-            self.report.cause(&object.place, "a direction of length 0");
+            object.cause("a direction of length 0");
         }
         Some(Light::Directional {
             direction: direction?,
@@ -68,35 +67,33 @@ impl<'a> MitsubaReader<'a> {
     /// is given. Returns `None` if a cause of refusal was reported.
     fn either(
         &self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         name: &str,
         default: DVec3,
         of: impl Fn(DAffine3) -> Option<DVec3>,
     ) -> Option<DVec3> {
-        match [name, "to_world"].map(|name| self.has(object, name)) {
+        match [name, "to_world"].map(|name| object.has(name)) {
             [true, true] => {
                 let message =
                     format!("{name} is given together with to_world; allowed: one of them");
-                self.report.refuse(&object.place, message)
+                object.refuse(message)
             }
-            [true, false] => self.vector(object, name),
-            [false, true] => of(self.transform(object, "to_world")?).or_else(|| {
-                self.report
-                    .refuse(&object.place, "to_world gives no direction")
-            }),
+            [true, false] => object.vector(name),
+            [false, true] => of(object.transform("to_world")?)
+                .or_else(|| object.refuse("to_world gives no direction")),
             [false, false] => Some(default),
         }
     }
 
-    fn spot(&mut self, object: &'a MitsubaObject) -> Option<Light> {
-        let picture = match self.property(object, "texture") {
+    fn spot(&mut self, object: ObjectRef<'a>) -> Option<Light> {
+        let picture = match object.property("texture") {
             Some(_) => self.reflectance(object, "texture", 1.0).map(Some),
             None => Some(None),
         };
         let intensity = self.strength(object, "intensity");
         let angle = |name, default| {
             let is_angle = |a| (0.0..=90.0).contains(&a);
-            self.number_or(object, name, default, "0 to 90 degrees", is_angle)
+            object.number_or(name, default, "0 to 90 degrees", is_angle)
         };
         let cutoff = angle("cutoff_angle", CUTOFF);
         let beam = angle("beam_width", cutoff.unwrap_or(CUTOFF) * 0.75);
@@ -104,7 +101,7 @@ impl<'a> MitsubaReader<'a> {
         let (cutoff, beam) = (cutoff?, beam?);
         if beam >= cutoff {
             let message = format!("beam_width is {beam}; allowed: below cutoff_angle, {cutoff}");
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         }
         Some(Light::Spot {
             to_world: rigid?,
@@ -116,7 +113,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn projector(&mut self, object: &'a MitsubaObject) -> Option<Light> {
+    fn projector(&mut self, object: ObjectRef<'a>) -> Option<Light> {
         let picture = self.emission(object, "irradiance");
         let scale = self.scale(object);
         let rigid = self.rigid(object);
@@ -135,14 +132,13 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn sky(&mut self, object: &'a MitsubaObject) -> Option<Light> {
+    fn sky(&mut self, object: ObjectRef<'a>) -> Option<Light> {
         let scale = self.scale(object);
         let to_world = self.rigid(object);
         let pixels = self.picture(object, false)?;
         let (scale, to_world) = (scale?, to_world?);
         if pixels.values().iter().any(|v| *v < 0.0) {
-            let message = "the picture has pixels below 0; allowed: 0 or more";
-            return self.report.refuse(&object.place, message);
+            return object.refuse("the picture has pixels below 0; allowed: 0 or more");
         }
         let spent = self.files.spend(size_of_val(pixels.values()) as u64);
         self.report.accept(&object.place, spent)?;
@@ -155,21 +151,21 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Returns the factor on the picture of a projector or of an environment.
-    fn scale(&self, object: &'a MitsubaObject) -> Option<f64> {
-        self.number_or(object, "scale", 1.0, "0 or more", |s| s >= 0.0)
+    fn scale(&self, object: ObjectRef<'a>) -> Option<f64> {
+        object.number_or("scale", 1.0, "0 or more", |s| s >= 0.0)
     }
 
     /// Returns `to_world`, which must preserve lengths and angles, or `None` if a cause of refusal
     /// was reported.
-    pub(super) fn rigid(&self, object: &'a MitsubaObject) -> Option<DAffine3> {
-        if !self.has(object, "to_world") {
+    pub(super) fn rigid(&self, object: ObjectRef<'a>) -> Option<DAffine3> {
+        if !object.has("to_world") {
             return Some(DAffine3::IDENTITY);
         }
-        let map = self.transform(object, "to_world")?;
+        let map = object.transform("to_world")?;
         if is_rigid(map) {
             return Some(map);
         }
         let message = "to_world scales or shears; allowed: rotations, translations and reflections";
-        self.fault(object, "to_world", message)
+        object.fault("to_world", message)
     }
 }

@@ -1,7 +1,7 @@
 //! Materials: `bsdf` elements.
 
 use super::index::metal_index;
-use super::object::MitsubaObject;
+use super::object::ObjectRef;
 use super::reader::MitsubaReader;
 use super::texture::as_number;
 use crate::range::{MAX_MATERIALS, MAX_SHARE};
@@ -21,7 +21,7 @@ const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindiele
 
 impl<'a> MitsubaReader<'a> {
     /// Returns the index of a material, or `None` if a cause of refusal was reported.
-    pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
+    pub(super) fn material(&mut self, object: ObjectRef<'a>) -> Option<usize> {
         let mesh = self.current_mesh.as_ref();
         let mesh = mesh.map_or(0, |mesh| Arc::as_ptr(&mesh.triangles).addr());
         let at = match self.wanted(object).is_empty() {
@@ -49,32 +49,28 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    fn make_material(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+    fn make_material(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Material> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
             if self.made_materials == MAX_MATERIALS + 1 {
                 let message = format!("more than {MAX_MATERIALS} bsdfs, counting repetitions");
-                self.report.cause(&object.place, message);
+                object.cause(message);
             }
             return None;
         }
         if depth > MAX_DEPTH {
             let message =
                 format!("bsdfs are nested more than {MAX_DEPTH} deep, or a bsdf contains itself");
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         }
         match object.plugin.as_str() {
             "diffuse" => Some(Material::Diffuse {
                 reflectance: self.reflectance(object, "reflectance", 0.5)?,
             }),
-            "conductor" => self.conductor(object, false),
-            "roughconductor" => self.conductor(object, true),
-            "dielectric" => self.dielectric(object, false, false),
-            "thindielectric" => self.dielectric(object, false, true),
-            "roughdielectric" => self.dielectric(object, true, false),
-            "plastic" => self.plastic(object, false),
-            "roughplastic" => self.plastic(object, true),
+            "conductor" | "roughconductor" => self.conductor(object),
+            "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(object),
+            "plastic" | "roughplastic" => self.plastic(object),
             "principled" => self.principled(object),
             "phong" => self.phong(object),
             "twosided" => self.two_sided(object, depth),
@@ -88,10 +84,10 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn conductor(&mut self, object: &'a MitsubaObject, is_rough: bool) -> Option<Material> {
+    fn conductor(&mut self, object: ObjectRef<'a>) -> Option<Material> {
         let index = self.metal(object);
         let reflectance = self.reflectance(object, "specular_reflectance", 1.0);
-        let roughness = self.roughness_if(is_rough, object);
+        let roughness = self.roughness(object);
         Some(Material::Conductor(Conductor {
             index: index?,
             reflectance: reflectance?,
@@ -101,20 +97,20 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the complex index of a conductor, n and k. The inner `None` means a perfect
     /// reflector. The outer `None` means that a cause of refusal was reported.
-    fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
-        let name = match self.has(object, "material") {
-            true => self.text(object, "material")?,
+    fn metal(&mut self, object: ObjectRef<'a>) -> Option<Option<[f64; 2]>> {
+        let name = match object.has("material") {
+            true => object.text("material")?,
             false => "none",
         };
-        let has_index = self.has(object, "eta") || self.has(object, "k");
+        let has_index = object.has("eta") || object.has("k");
         if name != "none" && has_index {
             let message = "material is given together with eta or k; allowed: one of them";
-            return self.fault(object, "material", message);
+            return object.fault("material", message);
         }
         if name != "none" {
             let Some(index) = metal_index(name) else {
                 let message = format!("no index of refraction is known for {}", quoted(name));
-                return self.fault(object, "material", message);
+                return object.fault("material", message);
             };
             return Some(Some(index.map(|rgb| self.color.of(rgb))));
         }
@@ -127,47 +123,39 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Reads a number that may also be written as a spectrum.
-    fn one_number(&mut self, object: &'a MitsubaObject, name: &str, default: f64) -> Option<f64> {
+    fn one_number(&mut self, object: ObjectRef<'a>, name: &str, default: f64) -> Option<f64> {
         match self.texture_or(object, name, Role::Number, default)? {
             Texture::Constant(value) if value >= 0.0 => Some(value),
-            _ => {
-                let message = format!("{name} is not a number of 0 or more");
-                self.fault(object, name, message)
-            }
+            _ => object.fault(name, format!("{name} is not a number of 0 or more")),
         }
     }
 
-    fn dielectric(
-        &mut self,
-        object: &'a MitsubaObject,
-        is_rough: bool,
-        is_thin: bool,
-    ) -> Option<Material> {
-        let index = self.relative_index(object, "bk7");
+    fn dielectric(&mut self, object: ObjectRef<'a>) -> Option<Material> {
+        let index = object.relative_index("bk7");
         let reflectance = self.reflectance(object, "specular_reflectance", 1.0);
         let transmittance = self.reflectance(object, "specular_transmittance", 1.0);
-        let roughness = self.roughness_if(is_rough, object);
+        let roughness = self.roughness(object);
         Some(Material::Dielectric(Dielectric {
             index: index?,
             reflectance: reflectance?,
             transmittance: transmittance?,
             roughness: roughness?,
-            is_thin,
+            is_thin: object.plugin == "thindielectric",
         }))
     }
 
-    fn plastic(&mut self, object: &'a MitsubaObject, is_rough: bool) -> Option<Material> {
-        let index = self.relative_index(object, "polypropylene");
+    fn plastic(&mut self, object: ObjectRef<'a>) -> Option<Material> {
+        let index = object.relative_index("polypropylene");
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 1.0);
-        let is_nonlinear = self.truth(object, "nonlinear");
-        let roughness = self.roughness_if(is_rough, object);
+        let is_nonlinear = object.truth("nonlinear");
+        let roughness = self.roughness(object);
         let is_constant = |of: &Roughness| matches!(of.alpha[0], Texture::Constant(_));
         if let Some(Some(of)) = &roughness
             && !is_constant(of)
         {
             let message = "alpha of roughplastic is a texture; allowed: a number";
-            self.report.cause(self.place_of(object, "alpha"), message);
+            object.cause_at("alpha", message);
         }
         Some(Material::Plastic(Plastic {
             index: index?,
@@ -179,18 +167,18 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Reads `phong`, a plugin of Mitsuba 0.6 that Mitsuba 3 does not have.
-    fn phong(&mut self, object: &'a MitsubaObject) -> Option<Material> {
+    fn phong(&mut self, object: ObjectRef<'a>) -> Option<Material> {
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 0.2);
         let exponent = self.texture_or(object, "exponent", Role::Reflectance, 30.0)?;
-        let exponent = self.not_negative(object, "exponent", exponent);
+        let exponent = object.not_negative("exponent", exponent);
         let (diffuse, specular) = (diffuse?, specular?);
         let share = diffuse.largest() + specular.largest();
         if share > MAX_SHARE {
             let message = format!(
                 "diffuse_reflectance and specular_reflectance add up to {share}; allowed: up to 1"
             );
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         }
         Some(Material::Phong {
             diffuse,
@@ -203,57 +191,43 @@ impl<'a> MitsubaReader<'a> {
         clippy::option_option,
         reason = "the inner `None` means a smooth surface; the outer `None` means that a cause was reported"
     )]
-    fn roughness_if(
-        &mut self,
-        is_rough: bool,
-        object: &'a MitsubaObject,
-    ) -> Option<Option<Roughness>> {
-        match is_rough {
-            true => self.roughness(object).map(Some),
-            false => Some(None),
+    fn roughness(&mut self, object: ObjectRef<'a>) -> Option<Option<Roughness>> {
+        if !object.plugin.starts_with("rough") {
+            return Some(None);
         }
-    }
-
-    fn roughness(&mut self, object: &'a MitsubaObject) -> Option<Roughness> {
-        let distribution = self.choice(
-            object,
-            "distribution",
-            &[
-                ("beckmann", MicrofacetDistribution::Beckmann),
-                ("ggx", MicrofacetDistribution::Ggx),
-            ],
-        );
-        let both = ["alpha_u", "alpha_v"].map(|name| self.has(object, name));
+        let known = [
+            ("beckmann", MicrofacetDistribution::Beckmann),
+            ("ggx", MicrofacetDistribution::Ggx),
+        ];
+        let distribution = object.choice("distribution", &known);
+        let both = ["alpha_u", "alpha_v"].map(|name| object.has(name));
         let alpha = match both {
             [false, false] => {
                 let alpha = self.alpha(object, "alpha")?;
                 [alpha.clone(), alpha]
             }
-            [true, true] if !self.has(object, "alpha") => {
+            [true, true] if !object.has("alpha") => {
                 let [u, v] = ["alpha_u", "alpha_v"].map(|name| self.alpha(object, name));
                 [u?, v?]
             }
-            _ => {
-                let message = "allowed: alpha alone, or alpha_u and alpha_v";
-                return self.report.refuse(&object.place, message);
-            }
+            _ => return object.refuse("allowed: alpha alone, or alpha_u and alpha_v"),
         };
-        Some(Roughness {
-            distribution: distribution?,
+        let distribution = distribution?;
+        Some(Some(Roughness {
+            distribution,
             alpha,
-        })
+        }))
     }
 
-    fn alpha(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
+    fn alpha(&mut self, object: ObjectRef<'a>, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Number, 0.1)?;
         if texture.largest() > 0.0 {
             return Some(as_number(texture));
         }
-        let message = format!("{name} is not above 0 anywhere");
-        self.fault(object, name, message)
+        object.fault(name, format!("{name} is not above 0 anywhere"))
     }
 
-    fn two_sided(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+    fn two_sided(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Material> {
         let sides = self.nested(object, depth);
         let both = match <[Material; 2]>::try_from(sides?) {
             Ok(both) => both,
@@ -264,12 +238,12 @@ impl<'a> MitsubaReader<'a> {
         };
         if both.iter().any(lets_through) {
             let message = "twosided contains a bsdf that transmits light; allowed: opaque bsdfs";
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         }
         Some(Material::TwoSided(Box::new(both)))
     }
 
-    fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
+    fn mask(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Material> {
         let opacity = self.share(object, "opacity", Role::Number, 0.5);
         let mut of = self.nested(object, depth)?;
         match (of.pop(), of.pop()) {
@@ -281,9 +255,9 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn blend(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
-        if !self.has(object, "weight") {
-            self.report.cause(&object.place, "blendbsdf without weight");
+    fn blend(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Material> {
+        if !object.has("weight") {
+            object.cause("blendbsdf without weight");
         }
         let weight = self.share(object, "weight", Role::Number, 0.5);
         match <[Material; 2]>::try_from(self.nested(object, depth)?) {
@@ -296,7 +270,7 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
-    fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
+    fn nested(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, "bsdf");
         // All bsdfs are read even after a failure, to find all causes of refusal.
         let all: Vec<Option<Material>> = within
@@ -307,15 +281,15 @@ impl<'a> MitsubaReader<'a> {
         all.into_iter().collect()
     }
 
-    fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
+    fn wrong_number(&self, object: ObjectRef<'a>, allowed: &str) -> Option<Material> {
         let plugin = &object.plugin;
         let message = format!("{plugin} has a wrong number of bsdfs; allowed: {allowed}");
-        self.report.refuse(&object.place, message)
+        object.refuse(message)
     }
 
-    fn principled(&mut self, object: &'a MitsubaObject) -> Option<Material> {
+    fn principled(&mut self, object: ObjectRef<'a>) -> Option<Material> {
         // A tint does not change luminance.
-        let _ = self.property(object, "sheen_tint");
+        let _ = object.property("sheen_tint");
         let transmission = self.parameter(object, "spec_trans", 0.0)?;
         let index = self.principled_index(object);
         let index = index.map(|index| match transmission.largest() > 0.0 {
@@ -353,19 +327,14 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Reads a parameter from 0 to 1.
-    fn parameter(
-        &mut self,
-        object: &'a MitsubaObject,
-        name: &str,
-        default: f64,
-    ) -> Option<Texture> {
+    fn parameter(&mut self, object: ObjectRef<'a>, name: &str, default: f64) -> Option<Texture> {
         self.share(object, name, Role::Number, default)
             .map(as_number)
     }
 
     /// Returns the index that Mitsuba uses in place of 1 for a material that transmits light.
-    fn least_index(&self, object: &'a MitsubaObject) -> f64 {
-        match self.has(object, "eta") {
+    fn least_index(&self, object: ObjectRef<'a>) -> f64 {
+        match object.has("eta") {
             true => 1.001,
             false => of_specular(1e-3),
         }
@@ -373,17 +342,17 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the index of refraction. The file states either the index or `specular`; the
     /// reflectance at normal incidence is then 0.08 `specular`.
-    fn principled_index(&mut self, object: &'a MitsubaObject) -> Option<f64> {
-        if !self.has(object, "eta") {
+    fn principled_index(&mut self, object: ObjectRef<'a>) -> Option<f64> {
+        if !object.has("eta") {
             let is_share = |v| (0.0..=1.0).contains(&v);
-            let specular = self.number_or(object, "specular", 0.5, "0 to 1", is_share)?;
+            let specular = object.number_or("specular", 0.5, "0 to 1", is_share)?;
             return Some(of_specular(specular));
         }
-        if self.has(object, "specular") {
+        if object.has("specular") {
             let message = "specular is given together with eta; allowed: one of them";
-            return self.fault(object, "specular", message);
+            return object.fault("specular", message);
         }
-        self.number_within(object, "eta", "1 or more", |v| v >= 1.0)
+        object.number_within("eta", "1 or more", |v| v >= 1.0)
     }
 }
 

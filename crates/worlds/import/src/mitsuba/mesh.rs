@@ -1,7 +1,7 @@
 //! Shapes that are meshes.
 
 use super::mesh_data::{MitsubaAttributes, MitsubaMesh, MitsubaMeshKey, ReadMesh};
-use super::object::MitsubaObject;
+use super::object::ObjectRef;
 use super::reader::MitsubaReader;
 use super::serialized;
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
@@ -24,32 +24,32 @@ const SIDES: [([f64; 3], [u32; 4]); 6] = [
 ];
 
 impl<'a> MitsubaReader<'a> {
-    pub(super) fn cube(&self, object: &'a MitsubaObject) -> Option<MitsubaMesh> {
+    pub(super) fn cube(&self, object: ObjectRef<'a>) -> Option<MitsubaMesh> {
         let triangles = cube_parts().finish()?;
         Some(MitsubaMesh {
             triangles: Arc::new(triangles),
             attributes: Rc::default(),
-            is_flipped: self.truth(object, "flip_normals"),
+            is_flipped: object.truth("flip_normals"),
         })
     }
 
     /// Reads an OBJ, PLY or serialized mesh.
     pub(super) fn mesh(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         to_world: DAffine3,
     ) -> Option<MitsubaMesh> {
-        let flips = self.truth(object, "flip_normals");
-        let is_flat = self.truth(object, "face_normals");
+        let flips = object.truth("flip_normals");
+        let is_flat = object.truth("face_normals");
         let is_obj = object.plugin == "obj";
         let flips_uv = match object.plugin.as_str() {
             "serialized" => false,
             // By default Mitsuba flips texture coordinates of OBJ files.
-            _ if !self.has(object, "flip_tex_coords") => is_obj,
-            _ => self.truth(object, "flip_tex_coords"),
+            _ if !object.has("flip_tex_coords") => is_obj,
+            _ => object.truth("flip_tex_coords"),
         };
         let number = self.shape_index(object)?;
-        let name = self.file_name(object)?;
+        let name = object.file_name()?;
         let key = MitsubaMeshKey {
             path: self.mesh_path(object, name)?,
             number,
@@ -63,12 +63,11 @@ impl<'a> MitsubaReader<'a> {
         let (triangles, attributes) = match triangles {
             Ok(read) => read,
             Err(error) if error == NO_AREA => {
-                let message = format!("file {} {NO_AREA} and is left out", quoted(name));
-                self.report.note(&object.place, message);
+                object.note(format!("file {} {NO_AREA} and is left out", quoted(name)));
                 self.is_left_out = true;
                 return None;
             }
-            Err(error) => return self.unread(object, name, &error),
+            Err(error) => return object.unread(name, &error),
         };
         // Mitsuba computes missing normals from the placed triangles, so a mirroring placement
         // flips computed normals. Normals from a file are transformed with the mesh.
@@ -80,28 +79,28 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn shape_index(&self, object: &'a MitsubaObject) -> Option<u32> {
-        if object.plugin != "serialized" || !self.has(object, "shape_index") {
+    fn shape_index(&self, object: ObjectRef<'a>) -> Option<u32> {
+        if object.plugin != "serialized" || !object.has("shape_index") {
             return Some(0);
         }
-        let value = self.whole(object, "shape_index")?;
+        let value = object.whole("shape_index")?;
         let number = u32::try_from(value).ok();
         number.or_else(|| {
             let message = format!("shape_index is {value}; allowed: 0 or more");
-            self.fault(object, "shape_index", message)
+            object.fault("shape_index", message)
         })
     }
 
-    fn mesh_path(&self, object: &'a MitsubaObject, name: &str) -> Option<PathBuf> {
+    fn mesh_path(&self, object: ObjectRef<'a>, name: &str) -> Option<PathBuf> {
         let path = match self.files.find(&object.folders, name) {
             Ok(path) => path,
-            Err(error) => return self.unread(object, name, &error),
+            Err(error) => return object.unread(name, &error),
         };
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         let extension = extension.to_ascii_lowercase();
         if object.plugin != "serialized" && extension != object.plugin {
             let error = format!("has extension {}", quoted(&extension));
-            return self.unread(object, name, &error);
+            return object.unread(name, &error);
         }
         Some(path)
     }
@@ -109,7 +108,7 @@ impl<'a> MitsubaReader<'a> {
     /// Returns the triangles of a mesh, and whether their normals were computed.
     fn triangles(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         key: &MitsubaMeshKey,
         to_world: DAffine3,
         is_new: bool,
@@ -168,7 +167,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn finish(
         &self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         (mut parts, mut attributes): (MeshParts, MitsubaAttributes),
         key: &MitsubaMeshKey,
         linear: DMat3,
@@ -188,7 +187,7 @@ impl<'a> MitsubaReader<'a> {
             (false, Some(_)) => {
                 parts.face_normals();
                 if parts.mend_normals() {
-                    self.report.note(&object.place, MENDED);
+                    object.note(MENDED);
                 }
             }
         }

@@ -8,7 +8,9 @@ use std::rc::Rc;
 
 /// An object of the scene, which Mitsuba creates by a plugin.
 #[derive(Debug)]
-pub(super) struct MitsubaObject {
+pub(super) struct MitsubaObject<'a> {
+    /// Where causes and notes are added.
+    pub(super) report: &'a Report,
     /// The name of its element.
     pub(super) kind: &'static str,
     /// The index of the object among all objects.
@@ -26,6 +28,9 @@ pub(super) struct MitsubaObject {
     /// Whether the world uses the object.
     pub(super) is_used: Cell<bool>,
 }
+
+/// An object of the scene, for as long as the scene is read.
+pub(super) type ObjectRef<'a> = &'a MitsubaObject<'a>;
 
 /// A property of an object: a value, or another object.
 #[derive(Debug)]
@@ -61,7 +66,12 @@ pub(super) enum Value {
     Broken,
 }
 
-impl MitsubaObject {
+impl MitsubaObject<'_> {
+    /// Returns the kind and the plugin of the object, for messages.
+    pub(super) fn title(&self) -> String {
+        format!("{} {}", self.kind, quoted(&self.plugin))
+    }
+
     /// Returns the property with the given name, the last one if there are several.
     pub(super) fn last(&self, name: &str) -> Option<&ObjectProperty> {
         self.properties
@@ -117,34 +127,29 @@ impl Value {
 }
 
 /// Adds a note for each property that was not read, and for each object that is not in the world.
-pub(super) fn tell_unused(objects: &[MitsubaObject], report: &Report) {
+pub(super) fn tell_unused(objects: &[MitsubaObject<'_>]) {
     for (at, object) in objects.iter().enumerate() {
         if object.is_used.get() {
-            properties(object, report);
+            properties(object);
         } else if at != object.parent && objects[object.parent].is_used.get() {
             // One note suffices for an unused object and all objects that it contains.
-            let (kind, plugin) = (object.kind, quoted(&object.plugin));
             let id = object.id.as_deref().map(|id| format!(" {}", quoted(id)));
             let id = id.unwrap_or_default();
-            let message = format!("{kind} {plugin}{id} is not used");
-            report.note(&object.place, message);
+            object.note(format!("{}{id} is not used", object.title()));
         }
     }
 }
 
-fn properties(object: &MitsubaObject, report: &Report) {
+fn properties(object: &MitsubaObject<'_>) {
     for property in object.properties.iter().filter(|p| !p.is_read.get()) {
         if let Value::Object(_) = property.value {
             continue;
         }
-        let (name, plugin) = (quoted(&property.name), quoted(&object.plugin));
-        let kind = object.kind;
+        let title = object.title();
         let message = match &property.value {
-            Value::Reference(id) => {
-                format!("reference to {} in {kind} {plugin} is left out", quoted(id))
-            }
-            _ => format!("{name} of {kind} {plugin} is left out"),
+            Value::Reference(id) => format!("reference to {} in {title} is left out", quoted(id)),
+            _ => format!("{} of {title} is left out", quoted(&property.name)),
         };
-        report.note(&property.place, message);
+        object.report.note(&property.place, message);
     }
 }

@@ -1,12 +1,12 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
 use super::mesh_data::{MitsubaMesh, MitsubaMeshKey, ReadMesh};
-use super::object::MitsubaObject;
+use super::object::{MitsubaObject, ObjectRef};
 use super::xml::Tree;
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
-use crate::report::{Report, quoted};
+use crate::report::Report;
 use etendue_world::{Shape, World};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Converts objects to a world.
 pub(super) struct MitsubaReader<'a> {
-    pub(super) objects: &'a [MitsubaObject],
+    pub(super) objects: &'a [MitsubaObject<'a>],
     pub(super) ids: &'a HashMap<String, usize>,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
@@ -90,7 +90,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Marks definitions at the top level as read. Definitions, such as materials and textures, are
     /// converted where the scene uses them.
-    fn definitions(&self, scene: &'a MitsubaObject) {
+    fn definitions(&self, scene: ObjectRef<'a>) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
                 && matches!(object.kind, "bsdf" | "texture" | "film")
@@ -107,16 +107,15 @@ impl<'a> MitsubaReader<'a> {
             // reported.
             let is_outermost = self.objects[object.parent].kind != "medium";
             if matches!(object.kind, "medium" | "volume") && is_outermost {
-                let (kind, plugin) = (object.kind, quoted(&object.plugin));
-                let message = format!("{kind} {plugin}: participating media are not supported");
-                self.report.cause(&object.place, message);
+                let title = object.title();
+                object.cause(format!("{title}: participating media are not supported"));
                 self.drop_all(object);
             }
         }
     }
 
     /// Marks the object and its contents as read, after a message that covers both.
-    pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
+    pub(super) fn drop_all(&self, object: ObjectRef<'a>) {
         object.is_used.set(true);
         for property in &object.properties {
             property.is_read.set(true);
@@ -128,19 +127,16 @@ impl<'a> MitsubaReader<'a> {
 
     /// Reports an object that could not be read, unless a cause of refusal was already added for
     /// it.
-    pub(super) fn lost(&self, object: &'a MitsubaObject) {
+    pub(super) fn lost(&self, object: ObjectRef<'a>) {
         if !self.report.has_causes() {
-            let (kind, plugin) = (object.kind, quoted(&object.plugin));
-            let message = format!("{kind} {plugin} is not understood");
-            self.report.cause(&object.place, message);
+            object.cause(format!("{} is not understood", object.title()));
         }
     }
 
     /// Reports an unsupported plugin, and returns `None` in place of the object.
-    pub(super) fn unsupported<T>(&self, object: &'a MitsubaObject, allowed: &str) -> Option<T> {
-        let (kind, plugin) = (object.kind, quoted(&object.plugin));
-        let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");
+    pub(super) fn unsupported<T>(&self, object: ObjectRef<'a>, allowed: &str) -> Option<T> {
         self.drop_all(object);
-        self.report.refuse(&object.place, message)
+        let title = object.title();
+        object.refuse(format!("{title} is not supported; allowed: {allowed}"))
     }
 }

@@ -1,6 +1,6 @@
 //! Sensors, as cameras, and the integrator of a scene, which limits the depth of paths.
 
-use super::object::MitsubaObject;
+use super::object::{MitsubaObject, ObjectRef};
 use super::reader::MitsubaReader;
 use crate::range::MAX_PIXELS;
 use crate::report::quoted;
@@ -21,10 +21,10 @@ const DIAGONAL: f64 = 43.266_615_305_567_87;
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
-    pub(super) fn sensors(&mut self, scene: &'a MitsubaObject) {
+    pub(super) fn sensors(&mut self, scene: ObjectRef<'a>) {
         let all = self.children(scene, "sensor");
         let is_known =
-            |sensor: &MitsubaObject| ALLOWED.split(", ").any(|known| known == sensor.plugin);
+            |sensor: &MitsubaObject<'_>| ALLOWED.split(", ").any(|known| known == sensor.plugin);
         let knows_any = all.iter().any(|(_, sensor)| is_known(sensor));
         for (_, sensor) in all {
             if is_known(sensor) {
@@ -35,8 +35,7 @@ impl<'a> MitsubaReader<'a> {
                 }
             } else if knows_any {
                 let plugin = quoted(&sensor.plugin);
-                let message = format!("sensor {plugin} is left out; allowed: {ALLOWED}");
-                self.report.note(&sensor.place, message);
+                sensor.note(format!("sensor {plugin} is left out; allowed: {ALLOWED}"));
                 self.drop_all(sensor);
             } else {
                 let _: Option<Camera> = self.unsupported(sensor, ALLOWED);
@@ -44,7 +43,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn camera(&mut self, object: &'a MitsubaObject) -> Option<Camera> {
+    fn camera(&mut self, object: ObjectRef<'a>) -> Option<Camera> {
         let size = self.film(object);
         self.sampler(object);
         let clip = self.clip(object);
@@ -71,39 +70,38 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn clip(&self, object: &'a MitsubaObject) -> Option<[f64; 2]> {
-        let near = self.number(object, "near_clip").unwrap_or(1e-2);
-        let far = self.number(object, "far_clip").unwrap_or(1e4);
+    fn clip(&self, object: ObjectRef<'a>) -> Option<[f64; 2]> {
+        let near = object.number("near_clip").unwrap_or(1e-2);
+        let far = object.number("far_clip").unwrap_or(1e4);
         if 0.0 < near && near < far {
             return Some([near, far]);
         }
         let message = format!("the clip planes are at {near} and {far}; allowed: 0 < near < far");
-        self.report.refuse(&object.place, message)
+        object.refuse(message)
     }
 
     fn perspective(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         size: [usize; 2],
         [_, far]: [f64; 2],
         is_lens: bool,
     ) -> Option<Projection> {
         let half_width = self.half_width(object, size);
         let shift = ["principal_point_offset_x", "principal_point_offset_y"].map(|name| {
-            if is_lens || !self.has(object, name) {
+            if is_lens || !object.has(name) {
                 return 0.0;
             }
             // The sign of the shift is reversed, because Mitsuba shifts the position in the picture
             // and not the picture itself.
-            -self.number(object, name).unwrap_or_default()
+            -object.number(name).unwrap_or_default()
         });
         let lens = if is_lens {
-            let radius = self.number_within(object, "aperture_radius", "0 or more", |r| r >= 0.0);
-            if !self.has(object, "aperture_radius") {
-                self.report
-                    .cause(&object.place, "thinlens without aperture_radius");
+            let radius = object.number_within("aperture_radius", "0 or more", |r| r >= 0.0);
+            if !object.has("aperture_radius") {
+                object.cause("thinlens without aperture_radius");
             }
-            let focus = self.number_or(object, "focus_distance", far, "above 0", |f| f > 0.0);
+            let focus = object.number_or("focus_distance", far, "above 0", |f| f > 0.0);
             let (radius, focus) = (radius?, focus?);
             (radius > 0.0).then_some(Lens { radius, focus })
         } else {
@@ -119,23 +117,21 @@ impl<'a> MitsubaReader<'a> {
     /// Returns half of the width that the picture of a camera or a projector has at distance 1.
     pub(super) fn half_width(
         &self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         [width, height]: [usize; 2],
     ) -> Option<f64> {
         let aspect = width as f64 / height as f64;
         let diagonal = |tangent: f64| tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt();
-        if !self.has(object, "fov") {
+        if !object.has("fov") {
             return self
                 .focal_length(object)
                 .map(|length| diagonal(DIAGONAL / 2.0 / length));
         }
-        if self.has(object, "focal_length") {
+        if object.has("focal_length") {
             let message = "focal_length is given together with fov; allowed: one of them";
-            self.report
-                .cause(self.place_of(object, "focal_length"), message);
+            object.cause_at("focal_length", message);
         }
-        let axis = self.choice(
-            object,
+        let axis = object.choice(
             "fov_axis",
             &[
                 ("x", 'x'),
@@ -146,7 +142,7 @@ impl<'a> MitsubaReader<'a> {
             ],
         );
         let is_angle = |fov: f64| 0.0 < fov && fov < 180.0;
-        let fov = self.number_within(object, "fov", "between 0 and 180 degrees", is_angle)?;
+        let fov = object.number_within("fov", "between 0 and 180 degrees", is_angle)?;
         let tangent = libm::tan(fov.to_radians() / 2.0);
         Some(match axis? {
             'x' => tangent,
@@ -156,28 +152,28 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Returns the focal length in millimetres, for 35 mm film.
-    fn focal_length(&self, object: &'a MitsubaObject) -> Option<f64> {
-        if !self.has(object, "focal_length") {
+    fn focal_length(&self, object: ObjectRef<'a>) -> Option<f64> {
+        if !object.has("focal_length") {
             return Some(50.0);
         }
-        let text = self.text(object, "focal_length")?;
+        let text = object.text("focal_length")?;
         let number = text.strip_suffix("mm").unwrap_or(text);
         match super::value::number(number) {
             Ok(length) if length > 0.0 => Some(length),
             _ => {
                 let message = format!("focal_length is {}; allowed: such as 50mm", quoted(text));
-                self.fault(object, "focal_length", message)
+                object.fault("focal_length", message)
             }
         }
     }
 
     /// Returns the placement of the camera with the axis Z normalised, and the original length of
     /// Z.
-    fn orthographic(&self, object: &'a MitsubaObject) -> Option<(DAffine3, f64)> {
-        if !self.has(object, "to_world") {
+    fn orthographic(&self, object: ObjectRef<'a>) -> Option<(DAffine3, f64)> {
+        if !object.has("to_world") {
             return Some((DAffine3::IDENTITY, 1.0));
         }
-        let mut map = self.transform(object, "to_world")?;
+        let mut map = object.transform("to_world")?;
         let stretch = map.matrix3.z_axis.length();
         let [x, y, z] = [0, 1, 2].map(|i| map.matrix3.col(i).normalize_or_zero());
         let lengths = [map.matrix3.x_axis.length(), map.matrix3.y_axis.length()];
@@ -186,27 +182,26 @@ impl<'a> MitsubaReader<'a> {
             .all(|c| c.abs() < 1e-3);
         let is_even = (lengths[0] - lengths[1]).abs() <= 1e-3 * lengths[0];
         if !is_square || !is_even || [x, y, z].contains(&DVec3::ZERO) {
-            let message = "to_world shears, or scales x and y differently";
-            return self.fault(object, "to_world", message);
+            return object.fault("to_world", "to_world shears, or scales x and y differently");
         }
         map.matrix3.z_axis = z;
         Some((map, stretch))
     }
 
     /// Returns the width and height in pixels.
-    fn film(&self, object: &'a MitsubaObject) -> Option<[usize; 2]> {
+    fn film(&self, object: ObjectRef<'a>) -> Option<[usize; 2]> {
         let Some(film) = self.child(object, "film") else {
             return Some(SIZE);
         };
         let size = ["width", "height"].map(|name| self.pixels(film, name));
         for (name, whole) in [("crop_width", 0), ("crop_height", 1)] {
-            let cropped = self.whole(film, name);
+            let cropped = film.whole(name);
             if cropped.is_some_and(|c| size[whole].is_some_and(|s| usize::try_from(c) != Ok(s))) {
                 self.refuse_crop(film, name);
             }
         }
         for name in ["crop_offset_x", "crop_offset_y"] {
-            if self.whole(film, name).is_some_and(|offset| offset != 0) {
+            if film.whole(name).is_some_and(|offset| offset != 0) {
                 self.refuse_crop(film, name);
             }
         }
@@ -214,49 +209,47 @@ impl<'a> MitsubaReader<'a> {
             if filter.plugin != "box" {
                 let plugin = quoted(&filter.plugin);
                 let message = format!("rfilter {plugin} is approximated by the box filter");
-                self.report.note(&filter.place, message);
+                filter.note(message);
             }
             self.drop_all(filter);
         }
         if self.children(film, "rfilter").is_empty() {
             let message = "rfilter `gaussian`, the default, is approximated by the box filter";
-            self.report.note(&film.place, message);
+            film.note(message);
         }
         let [width, height] = size;
         Some([width?, height?])
     }
 
-    fn refuse_crop(&self, film: &'a MitsubaObject, name: &str) {
-        let message = format!("{name}: parts of a film are not supported");
-        self.report.cause(self.place_of(film, name), message);
+    fn refuse_crop(&self, film: ObjectRef<'a>, name: &str) {
+        film.cause_at(name, format!("{name}: parts of a film are not supported"));
     }
 
-    fn pixels(&self, film: &'a MitsubaObject, name: &str) -> Option<usize> {
-        if !self.has(film, name) {
+    fn pixels(&self, film: ObjectRef<'a>, name: &str) -> Option<usize> {
+        if !film.has(name) {
             return Some(SIZE[usize::from(name == "height")]);
         }
-        let value = self.whole(film, name)?;
+        let value = film.whole(name)?;
         if (1..=MAX_PIXELS).contains(&value) {
             return usize::try_from(value).ok();
         }
         let message = format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}");
-        self.fault(film, name, message)
+        film.fault(name, message)
     }
 
     /// Adds a note on the sampler, which is not needed for a world, and marks the sampler as
     /// read.
-    fn sampler(&self, object: &'a MitsubaObject) {
+    fn sampler(&self, object: ObjectRef<'a>) {
         for (_, sampler) in self.children(object, "sampler") {
             let plugin = quoted(&sampler.plugin);
-            self.report
-                .note(&sampler.place, format!("sampler {plugin} is left out"));
+            sampler.note(format!("sampler {plugin} is left out"));
             self.drop_all(sampler);
         }
     }
 
     /// Reads the depth from the integrator. The other settings of the integrator affect only how
     /// Mitsuba computes, not the result.
-    pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
+    pub(super) fn integrator(&mut self, scene: ObjectRef<'a>) {
         let Some(mut object) = self.child(scene, "integrator") else {
             return;
         };
@@ -281,45 +274,46 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Notes where light passes masks that the integrator of the scene takes for opaque.
-    pub(super) fn note_masks(&self, scene: &'a MitsubaObject) {
-        let is_mask =
-            |of: &MitsubaObject| of.is_used.get() && matches!(of.plugin.as_str(), "mask" | "null");
+    pub(super) fn note_masks(&self, scene: ObjectRef<'a>) {
+        let is_mask = |of: &MitsubaObject<'_>| {
+            of.is_used.get() && matches!(of.plugin.as_str(), "mask" | "null")
+        };
         if let Some((_, object)) = self.children(scene, "integrator").first()
             && !object.plugin.contains("volpath")
             && self.objects.iter().any(is_mask)
         {
             let message = "light passes `mask` and `null` as in volpath: also light of point lights, and without being counted by max_depth";
-            self.report.note(&object.place, message);
+            object.note(message);
         }
     }
 
-    fn hide(&mut self, object: &'a MitsubaObject) {
-        self.world.hides_sources = self.truth(object, "hide_emitters");
+    fn hide(&mut self, object: ObjectRef<'a>) {
+        self.world.hides_sources = object.truth("hide_emitters");
     }
 
-    fn note_depth(&self, object: &'a MitsubaObject) {
+    fn note_depth(&self, object: ObjectRef<'a>) {
         let message = format!(
             "integrator {} is left out: paths have no maximum length",
             quoted(&object.plugin)
         );
-        self.report.note(&object.place, message);
+        object.note(message);
     }
 
     /// Returns the depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and
     /// depth 2 adds direct light.
-    fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
-        match self.whole(object, "max_depth")? {
+    fn depth(&self, object: ObjectRef<'a>) -> Option<u32> {
+        match object.whole("max_depth")? {
             -1 => None,
             // A picture with depth 0 is black, which the depth of a world cannot express.
             0 => {
                 let message = "max_depth is 0, which shows nothing; allowed: -1, or 1 or more";
-                self.fault(object, "max_depth", message)
+                object.fault("max_depth", message)
             }
             depth => match depth.checked_sub(1).map(u32::try_from) {
                 Some(Ok(less)) => Some(less),
                 _ => {
                     let message = format!("max_depth is {depth}; allowed: -1, or 1 or more");
-                    self.fault(object, "max_depth", message)
+                    object.fault("max_depth", message)
                 }
             },
         }

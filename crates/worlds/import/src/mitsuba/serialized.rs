@@ -93,21 +93,21 @@ impl<R: Read> UnpackedStream<R> {
         let vertices = self.count()?;
         let triangles = self.count()?;
         let is_double = flags & IS_DOUBLE != 0;
-        let vertex: Vec<[f64; 3]> = self.rows(vertices, is_double)?;
-        let normals: Option<Vec<[f64; 3]>> = (flags & HAS_NORMALS != 0)
-            .then(|| self.rows(vertices, is_double))
+        let vertex = self.rows::<DVec3, 3>(vertices, is_double)?;
+        let normals = (flags & HAS_NORMALS != 0)
+            .then(|| self.rows::<DVec3, 3>(vertices, is_double))
             .transpose()?;
-        let uvs: Option<Vec<[f64; 2]>> = (flags & HAS_UVS != 0)
-            .then(|| self.rows(vertices, is_double))
+        let uvs = (flags & HAS_UVS != 0)
+            .then(|| self.rows::<DVec2, 2>(vertices, is_double))
             .transpose()?;
         if flags & HAS_COLORS != 0 {
-            let _colors: Vec<[f64; 3]> = self.rows(vertices, is_double)?;
+            self.rows::<DVec3, 3>(vertices, is_double)?;
         }
         Ok(MeshParts {
-            vertices: vertex.into_iter().map(DVec3::from).collect(),
+            vertices: vertex,
             corners: self.corners(triangles, vertices)?,
-            normals: normals.map(|all| all.into_iter().map(DVec3::from).collect()),
-            uvs: uvs.map(|all| all.into_iter().map(DVec2::from).collect()),
+            normals,
+            uvs,
         })
     }
 
@@ -142,11 +142,11 @@ impl<R: Read> UnpackedStream<R> {
 
     /// Reads rows of numbers from the unpacked data. Memory is allocated only as rows are read,
     /// because the number of rows that the file states may be wrong.
-    fn rows<const N: usize>(
+    fn rows<T: From<[f64; N]>, const N: usize>(
         &mut self,
         count: u64,
         is_double: bool,
-    ) -> Result<Vec<[f64; N]>, String> {
+    ) -> Result<Vec<T>, String> {
         let mut rows = Vec::new();
         for i in 0..count {
             let mut row = [0.0; N];
@@ -161,7 +161,7 @@ impl<R: Read> UnpackedStream<R> {
                     ));
                 }
             }
-            rows.push(row);
+            rows.push(row.into());
         }
         Ok(rows)
     }

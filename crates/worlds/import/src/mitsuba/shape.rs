@@ -1,6 +1,6 @@
 //! Shapes, groups of shapes, and instances of groups.
 
-use super::object::MitsubaObject;
+use super::object::ObjectRef;
 use super::reader::MitsubaReader;
 use super::transform::frame;
 use crate::range::{MAX_SHAPES, fault, is_similarity, similar};
@@ -23,7 +23,7 @@ type PlacedGeometry = (Geometry, DAffine3, bool);
 
 impl<'a> MitsubaReader<'a> {
     /// Adds a top-level shape of the scene.
-    pub(super) fn top_shape(&mut self, object: &'a MitsubaObject) {
+    pub(super) fn top_shape(&mut self, object: ObjectRef<'a>) {
         match object.plugin.as_str() {
             // A group is shown only where an instance refers to it.
             "shapegroup" => {}
@@ -36,17 +36,16 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn instance(&mut self, object: &'a MitsubaObject) {
+    fn instance(&mut self, object: ObjectRef<'a>) {
         let to_world = self.to_world(object);
         let groups = self.children(object, "shape");
         let [(_, group)] = groups[..] else {
             let message = "an instance has a wrong number of shapegroups; allowed: one";
-            return self.report.cause(&object.place, message);
+            return object.cause(message);
         };
         if group.plugin != "shapegroup" {
             let plugin = quoted(&group.plugin);
-            let message = format!("an instance of {plugin}; allowed: shapegroup");
-            return self.report.cause(&object.place, message);
+            return object.cause(format!("an instance of {plugin}; allowed: shapegroup"));
         }
         for shape in self.group(group).iter() {
             if !self.has_room(object) {
@@ -63,15 +62,14 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Returns the shapes of a group, which are read once for all instances.
-    fn group(&mut self, group: &'a MitsubaObject) -> Rc<[Shape]> {
+    fn group(&mut self, group: ObjectRef<'a>) -> Rc<[Shape]> {
         if let Some(known) = self.groups.get(&group.number) {
             return Rc::clone(known);
         }
         let mut made = Vec::new();
         for (_, shape) in self.children(group, "shape") {
             if matches!(shape.plugin.as_str(), "shapegroup" | "instance") {
-                let message = format!("{} within a shapegroup", quoted(&shape.plugin));
-                self.report.cause(&shape.place, message);
+                shape.cause(format!("{} within a shapegroup", quoted(&shape.plugin)));
             } else {
                 made.extend(self.shape(shape, true));
             }
@@ -82,20 +80,19 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Checks whether the world can have one more shape; otherwise, adds a cause of refusal.
-    fn has_room(&self, object: &'a MitsubaObject) -> bool {
+    fn has_room(&self, object: ObjectRef<'a>) -> bool {
         if self.world.shapes.len() < MAX_SHAPES {
             return true;
         }
         if !self.report.has_causes() {
-            let message = format!("more than {MAX_SHAPES} shapes, counting instances");
-            self.report.cause(&object.place, message);
+            object.cause(format!("more than {MAX_SHAPES} shapes, counting instances"));
         }
         false
     }
 
     /// Reads one shape. The placement of a shape in a group is not checked, because instances place
     /// the shape.
-    fn shape(&mut self, object: &'a MitsubaObject, is_in_group: bool) -> Option<Shape> {
+    fn shape(&mut self, object: ObjectRef<'a>, is_in_group: bool) -> Option<Shape> {
         object.is_used.set(true);
         let own = self.to_world(object);
         self.is_left_out = false;
@@ -119,7 +116,7 @@ impl<'a> MitsubaReader<'a> {
             && is_smooth(mesh)
         {
             let message = "the mesh emits with vertex normals: light leaves each triangle on its front, while Mitsuba uses the interpolated normal";
-            self.report.note(&object.place, message);
+            object.note(message);
         }
         let emission = match emission {
             Some((plugin, exitance)) if plugin == COLLIMATED => {
@@ -140,12 +137,12 @@ impl<'a> MitsubaReader<'a> {
         (is_in_group || self.is_sound(object, &shape)).then_some(shape)
     }
 
-    fn to_world(&self, object: &'a MitsubaObject) -> DAffine3 {
-        let found = self.transform(object, "to_world");
+    fn to_world(&self, object: ObjectRef<'a>) -> DAffine3 {
+        let found = object.transform("to_world");
         found.unwrap_or(DAffine3::IDENTITY)
     }
 
-    fn geometry(&mut self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
+    fn geometry(&mut self, object: ObjectRef<'a>, own: DAffine3) -> Option<PlacedGeometry> {
         self.current_mesh = match object.plugin.as_str() {
             "cube" => self.cube(object),
             "obj" | "ply" | "serialized" => self.mesh(object, own),
@@ -157,8 +154,8 @@ impl<'a> MitsubaReader<'a> {
             (geometry, own, mesh.is_flipped)
         });
         match object.plugin.as_str() {
-            "rectangle" => Some((Geometry::Rectangle, own, self.truth(object, "flip_normals"))),
-            "disk" => Some((Geometry::Disc, own, self.truth(object, "flip_normals"))),
+            "rectangle" => Some((Geometry::Rectangle, own, object.truth("flip_normals"))),
+            "disk" => Some((Geometry::Disc, own, object.truth("flip_normals"))),
             "sphere" => self.sphere(object, own),
             "cylinder" => self.cylinder(object, own),
             "cube" | "obj" | "ply" | "serialized" => meshed,
@@ -166,15 +163,15 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn sphere(&self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
-        let center = self.vector_or(object, "center", DVec3::ZERO);
+    fn sphere(&self, object: ObjectRef<'a>, own: DAffine3) -> Option<PlacedGeometry> {
+        let center = object.vector_or("center", DVec3::ZERO);
         let radius = self.radius(object)?;
         let placed =
             own * DAffine3::from_translation(center?) * DAffine3::from_scale(DVec3::splat(radius));
         // In Mitsuba, a mirroring transform turns the normals of spheres inwards, but not the
         // normals of cylinders.
         let is_mirrored = own.matrix3.determinant() < 0.0;
-        let is_flipped = self.truth(object, "flip_normals") != is_mirrored;
+        let is_flipped = object.truth("flip_normals") != is_mirrored;
         if is_similarity(placed.matrix3) || placed.matrix3.determinant().abs() <= 0.0 {
             return Some((Geometry::Sphere, placed, is_flipped));
         }
@@ -183,59 +180,47 @@ impl<'a> MitsubaReader<'a> {
         let message = format!(
             "the sphere has different scales along its axes: as in Mitsuba, the scale along its X axis determines the radius, {radius:.6}"
         );
-        self.report.note(&object.place, message);
+        object.note(message);
         let placed = DAffine3::from_mat3_translation(like, placed.translation);
         Some((Geometry::Sphere, placed, is_flipped))
     }
 
-    fn cylinder(&self, object: &'a MitsubaObject, own: DAffine3) -> Option<PlacedGeometry> {
-        let p0 = self.vector_or(object, "p0", DVec3::ZERO);
-        let p1 = self.vector_or(object, "p1", DVec3::Z);
+    fn cylinder(&self, object: ObjectRef<'a>, own: DAffine3) -> Option<PlacedGeometry> {
+        let p0 = object.vector_or("p0", DVec3::ZERO);
+        let p1 = object.vector_or("p1", DVec3::Z);
         let radius = self.radius(object)?;
         let (p0, axis) = (p0?, p1? - p0?);
         let Some(along) = axis.try_normalize() else {
             let message = "p0 and p1 are the same point; allowed: two different points";
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         };
         let scale = DVec3::new(radius, radius, axis.length());
         let linear = frame(along) * DMat3::from_diagonal(scale);
         let placed = own * DAffine3::from_mat3_translation(linear, p0);
-        Some((
-            Geometry::Cylinder,
-            placed,
-            self.truth(object, "flip_normals"),
-        ))
+        Some((Geometry::Cylinder, placed, object.truth("flip_normals")))
     }
 
-    fn radius(&self, object: &'a MitsubaObject) -> Option<f64> {
-        self.number_or(object, "radius", 1.0, "a number above 0", |r| r > 0.0)
-    }
-
-    fn vector_or(&self, object: &'a MitsubaObject, name: &str, default: DVec3) -> Option<DVec3> {
-        match self.has(object, name) {
-            true => self.vector(object, name),
-            false => Some(default),
-        }
+    fn radius(&self, object: ObjectRef<'a>) -> Option<f64> {
+        object.number_or("radius", 1.0, "a number above 0", |r| r > 0.0)
     }
 
     /// Returns whether a shape can have its placement, which `object` states; if it cannot, adds a
     /// cause of refusal.
-    fn is_sound(&self, object: &'a MitsubaObject, shape: &Shape) -> bool {
+    fn is_sound(&self, object: ObjectRef<'a>, shape: &Shape) -> bool {
         let Some(fault) = fault(&shape.geometry, shape.to_world, shape.emission.is_some()) else {
             return true;
         };
         let message = format!("shape {} {fault}", quoted(&object.plugin));
-        self.report
-            .cause(self.place_of(object, "to_world"), message);
+        object.cause_at("to_world", message);
         false
     }
 
     /// Adds the light of the next shape, which emits along its normal.
-    fn sheet(&mut self, object: &'a MitsubaObject, geometry: &Geometry, exitance: Texture) {
+    fn sheet(&mut self, object: ObjectRef<'a>, geometry: &Geometry, exitance: Texture) {
         if !matches!(geometry, Geometry::Rectangle | Geometry::Disc) {
             let plugin = quoted(&object.plugin);
             let message = format!("{COLLIMATED} on {plugin}; allowed: rectangle or disk");
-            self.report.cause(&object.place, message);
+            object.cause(message);
         }
         let shape = self.world.shapes.len();
         self.world.lights.push(Light::Sheet { shape, exitance });
@@ -244,7 +229,7 @@ impl<'a> MitsubaReader<'a> {
     /// Returns the plugin of a shape's emitter, and the radiance, or what else it states.
     fn shape_emission(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         is_in_group: bool,
     ) -> Option<(&'a str, Texture)> {
         let emitter = self.child(object, "emitter")?;
@@ -252,8 +237,7 @@ impl<'a> MitsubaReader<'a> {
             return self.unsupported(emitter, "area or directionalarea, within a shape");
         }
         if is_in_group {
-            self.report
-                .cause(&emitter.place, "an emitter within a shapegroup");
+            emitter.cause("an emitter within a shapegroup");
         }
         let emission = self.emission(emitter, "radiance")?;
         Some((&emitter.plugin, emission))

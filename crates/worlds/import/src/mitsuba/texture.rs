@@ -1,7 +1,7 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
 use super::mesh_data::MitsubaMesh;
-use super::object::{MitsubaObject, ObjectProperty, Value};
+use super::object::{ObjectProperty, ObjectRef, Value};
 use super::reader::MitsubaReader;
 use crate::Color;
 use crate::pictures::TransferCurve;
@@ -23,12 +23,12 @@ impl<'a> MitsubaReader<'a> {
     /// `None` if a cause of refusal was reported.
     pub(super) fn texture_or(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         name: &str,
         role: Role,
         default: f64,
     ) -> Option<Texture> {
-        match self.property(object, name) {
+        match object.property(name) {
             None => Some(Texture::Constant(default)),
             Some(property) => self.texture(property, role),
         }
@@ -37,7 +37,7 @@ impl<'a> MitsubaReader<'a> {
     /// Reads a reflectance, which must be from 0 to 1.
     pub(super) fn reflectance(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         name: &str,
         default: f64,
     ) -> Option<Texture> {
@@ -47,51 +47,34 @@ impl<'a> MitsubaReader<'a> {
     /// Reads a property like [`Self::texture_or`], but its values must be from 0 to 1.
     pub(super) fn share(
         &mut self,
-        object: &'a MitsubaObject,
+        object: ObjectRef<'a>,
         name: &str,
         role: Role,
         default: f64,
     ) -> Option<Texture> {
         let texture = self.texture_or(object, name, role, default)?;
-        let texture = self.not_negative(object, name, texture)?;
+        let texture = object.not_negative(name, texture)?;
         let largest = texture.largest();
         if largest <= MAX_SHARE {
             return Some(texture);
         }
         let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
-        self.fault(object, name, message)
+        object.fault(name, message)
     }
 
     /// Reads the strength of a light, which must be a single number.
-    pub(super) fn strength(&mut self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
+    pub(super) fn strength(&mut self, object: ObjectRef<'a>, name: &str) -> Option<f64> {
         let texture = self.emission(object, name)?;
         match texture {
             Texture::Constant(value) => Some(value),
-            _ => {
-                let message = format!("{name} is a picture; allowed: one value");
-                self.fault(object, name, message)
-            }
+            _ => object.fault(name, format!("{name} is a picture; allowed: one value")),
         }
     }
 
     /// Reads the emission of a surface.
-    pub(super) fn emission(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
+    pub(super) fn emission(&mut self, object: ObjectRef<'a>, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Emission, 1.0)?;
-        self.not_negative(object, name, texture)
-    }
-
-    pub(super) fn not_negative(
-        &self,
-        object: &'a MitsubaObject,
-        name: &str,
-        texture: Texture,
-    ) -> Option<Texture> {
-        let lowest = texture.smallest();
-        if lowest >= 0.0 {
-            return Some(texture);
-        }
-        let message = format!("{name} goes down to {lowest}; allowed: 0 or more");
-        self.fault(object, name, message)
+        object.not_negative(name, texture)
     }
 
     fn texture(&mut self, property: &'a ObjectProperty, role: Role) -> Option<Texture> {
@@ -126,30 +109,27 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn texture_of(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
+    fn texture_of(&mut self, object: ObjectRef<'a>, role: Role) -> Option<Texture> {
         if object.kind != "texture" {
-            let message = format!("{} in place of a texture", object.kind);
-            return self.report.refuse(&object.place, message);
+            return object.refuse(format!("{} in place of a texture", object.kind));
         }
         match object.plugin.as_str() {
             "bitmap" => self.bitmap(object),
             "checkerboard" => self.checkerboard(object, role),
             "mesh_attribute" => self.mesh_attribute(object, role),
-            "uniform" => Some(Texture::Constant(
-                self.number(object, "value").unwrap_or(1.0),
-            )),
+            "uniform" => Some(Texture::Constant(object.number("value").unwrap_or(1.0))),
             "srgb" => self.colored(object, "color").map(Texture::Constant),
             "rawconstant" => self.raw_constant(object),
             "d65" => {
-                let scale = self.number(object, "scale").unwrap_or(1.0);
+                let scale = object.number("scale").unwrap_or(1.0);
                 Some(Texture::Constant(scale * self.colored(object, "color")?))
             }
             _ => self.unsupported(object, ALLOWED),
         }
     }
 
-    fn colored(&self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
-        let Some(property) = self.property(object, name) else {
+    fn colored(&self, object: ObjectRef<'a>, name: &str) -> Option<f64> {
+        let Some(property) = object.property(name) else {
             return Some(1.0);
         };
         match property.value {
@@ -163,20 +143,20 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    fn raw_constant(&self, object: &'a MitsubaObject) -> Option<Texture> {
-        match self.property(object, "value").map(|p| &p.value) {
+    fn raw_constant(&self, object: ObjectRef<'a>) -> Option<Texture> {
+        match object.property("value").map(|p| &p.value) {
             Some(Value::Vector(v)) => Some(Texture::Constant(self.color.of(v.to_array()))),
-            _ => self.number(object, "value").map(Texture::Constant),
+            _ => object.number("value").map(Texture::Constant),
         }
     }
 
-    fn checkerboard(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
+    fn checkerboard(&mut self, object: ObjectRef<'a>, role: Role) -> Option<Texture> {
         let first = self.texture_or(object, "color0", role, 0.4);
         let second = self.texture_or(object, "color1", role, 0.2);
         let to_uv = self.to_uv(object);
         let (Texture::Constant(first), Texture::Constant(second)) = (first?, second?) else {
             let message = "a checkerboard has textures as its colours; allowed: two values";
-            return self.report.refuse(&object.place, message);
+            return object.refuse(message);
         };
         Some(Texture::Checkerboard {
             to_uv,
@@ -184,16 +164,14 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    fn bitmap(&mut self, object: &'a MitsubaObject) -> Option<Texture> {
+    fn bitmap(&mut self, object: ObjectRef<'a>) -> Option<Texture> {
         let to_uv = self.to_uv(object);
-        let raw = self.truth(object, "raw");
-        let filter = self.choice(
-            object,
+        let raw = object.truth("raw");
+        let filter = object.choice(
             "filter_type",
             &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)],
         );
-        let wrap = self.choice(
-            object,
+        let wrap = object.choice(
             "wrap_mode",
             &[
                 ("repeat", Wrap::Repeat),
@@ -211,8 +189,8 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Returns the picture given by `filename`.
-    pub(super) fn picture(&mut self, object: &'a MitsubaObject, raw: bool) -> Option<Arc<Raster>> {
-        let name = self.file_name(object)?;
+    pub(super) fn picture(&mut self, object: ObjectRef<'a>, raw: bool) -> Option<Arc<Raster>> {
+        let name = object.file_name()?;
         let found = self.files.find(&object.folders, name);
         let curve = if raw {
             TransferCurve::Linear
@@ -220,52 +198,11 @@ impl<'a> MitsubaReader<'a> {
             TransferCurve::Srgb
         };
         let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, curve));
-        read.map_or_else(|error| self.unread(object, name, &error), Some)
+        read.map_or_else(|error| object.unread(name, &error), Some)
     }
 
-    /// Reads the property `filename` of an object.
-    pub(super) fn file_name(&self, object: &'a MitsubaObject) -> Option<&'a str> {
-        if !self.has(object, "filename") {
-            let message = format!("{} without filename", quoted(&object.plugin));
-            self.report.cause(&object.place, message);
-        }
-        self.text(object, "filename")
-    }
-
-    /// Reports a file that cannot be used, and returns `None` in place of its content.
-    pub(super) fn unread<T>(
-        &self,
-        object: &'a MitsubaObject,
-        name: &str,
-        error: &str,
-    ) -> Option<T> {
-        self.fault(object, "filename", format!("file {} {error}", quoted(name)))
-    }
-
-    /// Reads one of several keywords; the first keyword is the default. Returns `None` if a cause
-    /// of refusal was reported.
-    pub(super) fn choice<T: Copy>(
-        &self,
-        object: &'a MitsubaObject,
-        name: &str,
-        allowed: &[(&str, T)],
-    ) -> Option<T> {
-        if !self.has(object, name) {
-            return allowed.first().map(|(_, value)| *value);
-        }
-        let word = self.text(object, name)?.to_ascii_lowercase();
-        if let Some((_, value)) = allowed.iter().find(|(known, _)| *known == word) {
-            return Some(*value);
-        }
-        let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
-        let message = format!("{name} is {}; allowed: {}", quoted(&word), words.join(", "));
-        self.fault(object, name, message)
-    }
-
-    fn to_uv(&self, object: &'a MitsubaObject) -> DAffine2 {
-        let map = self
-            .transform(object, "to_uv")
-            .unwrap_or(DAffine3::IDENTITY);
+    fn to_uv(&self, object: ObjectRef<'a>) -> DAffine2 {
+        let map = object.transform("to_uv").unwrap_or(DAffine3::IDENTITY);
         let [x, y] = [map.matrix3.x_axis, map.matrix3.y_axis];
         let linear = DMat2::from_cols(DVec2::new(x.x, x.y), DVec2::new(y.x, y.y));
         DAffine2::from_mat2_translation(linear, map.translation.truncate())
@@ -273,7 +210,7 @@ impl<'a> MitsubaReader<'a> {
 
     /// Returns the names of the attributes that the textures within an object use, in alphabetical
     /// order.
-    pub(super) fn wanted(&mut self, object: &'a MitsubaObject) -> Rc<[String]> {
+    pub(super) fn wanted(&mut self, object: ObjectRef<'a>) -> Rc<[String]> {
         if let Some(known) = self.wanted.get(&object.number) {
             return Rc::clone(known);
         }
@@ -300,22 +237,21 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Reads a texture of type `mesh_attribute`.
-    fn mesh_attribute(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
-        let scale = match self.has(object, "scale") {
-            true => self.number(object, "scale")?,
+    fn mesh_attribute(&mut self, object: ObjectRef<'a>, role: Role) -> Option<Texture> {
+        let scale = match object.has("scale") {
+            true => object.number("scale")?,
             false => 1.0,
         };
-        if !self.has(object, "name") {
-            self.report
-                .cause(&object.place, "mesh_attribute without name");
+        if !object.has("name") {
+            object.cause("mesh_attribute without name");
         }
-        let name = self.text(object, "name")?;
+        let name = object.text("name")?;
         let found = self.current_mesh.clone().ok_or_else(|| {
             "of a shape without a mesh; allowed: vertex_… or face_… of a ply shape".to_owned()
         });
         let values = found.and_then(|mesh| self.values(&mesh, name, scale, role));
         let values = values.map_err(|error| format!("mesh_attribute {} {error}", quoted(name)));
-        let values = self.report.accept(self.place_of(object, "name"), values);
+        let values = self.report.accept(object.place_of("name"), values);
         values.map(Texture::OfMesh)
     }
 

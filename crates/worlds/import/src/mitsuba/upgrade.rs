@@ -26,7 +26,7 @@ pub(super) fn underscored(name: &str) -> String {
 
 /// Replaces properties that have another name or form in Mitsuba 3: the reflectance of diffuse
 /// surfaces, and the scales and offsets of texture coordinates.
-pub(super) fn upgrade(object: &mut MitsubaObject) {
+pub(super) fn upgrade(object: &mut MitsubaObject<'_>) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {
             if property.name == "diffuse_reflectance" {
@@ -57,7 +57,7 @@ pub(super) fn upgrade(object: &mut MitsubaObject) {
     });
 }
 
-fn take(object: &mut MitsubaObject, name: &str) -> Option<(f64, crate::report::SourcePlace)> {
+fn take(object: &mut MitsubaObject<'_>, name: &str) -> Option<(f64, crate::report::SourcePlace)> {
     let at = object.properties.iter().position(|p| p.name == name)?;
     let value = match object.properties[at].value {
         Value::Number(value) => value,

@@ -28,7 +28,7 @@ const MOST_NODES: u32 = 1 << 25;
 /// The content of the files of a scene.
 pub(super) struct Tree<'a> {
     /// The objects of all files; the scene is the first object.
-    pub(super) objects: Vec<MitsubaObject>,
+    pub(super) objects: Vec<MitsubaObject<'a>>,
     /// Objects by their id.
     pub(super) ids: HashMap<String, usize>,
     parameters: Parameters,
@@ -211,6 +211,7 @@ impl<'a> Tree<'a> {
         let id = find(attributes, "id").map(str::to_owned);
         let name = find(attributes, "name").unwrap_or_default().to_owned();
         self.objects.push(MitsubaObject {
+            report: self.report,
             kind,
             number: at,
             plugin: find(attributes, "type").unwrap_or("scene").to_owned(),
@@ -264,8 +265,8 @@ impl<'a> Tree<'a> {
         let properties = &mut self.objects[at].properties;
         let is_value = !matches!(value, Value::Object(_) | Value::Reference(_));
         if is_value && properties.iter().rev().take(1000).any(|p| p.name == name) {
-            let message = format!("property {} is given twice", quoted(&name));
-            self.report.cause(place, message);
+            self.report
+                .cause(place, format!("property {} is given twice", quoted(&name)));
         }
         properties.push(ObjectProperty {
             name,
@@ -369,11 +370,7 @@ impl<'t> LineCursor<'t> {
             }
             self.offset = offset;
         }
-        SourcePlace {
-            file: Rc::clone(file),
-            line: self.line,
-            column: self.column,
-        }
+        SourcePlace::at(file, self.line, self.column)
     }
 }
 
@@ -391,11 +388,7 @@ fn parsed<'t>(text: &'t str, name: &Rc<str>) -> Result<Document<'t>, (SourcePlac
             return (SourcePlace::whole(name), message);
         }
         let at = error.pos();
-        let place = SourcePlace {
-            file: Rc::clone(name),
-            line: at.row as usize,
-            column: at.col as usize,
-        };
+        let place = SourcePlace::at(name, at.row as usize, at.col as usize);
         (place, format!("no XML: {error}"))
     })
 }

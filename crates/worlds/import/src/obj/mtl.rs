@@ -8,6 +8,7 @@ use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// The highest illumination model.
 const MOST_ILLUM: f64 = 10.0;
@@ -226,17 +227,14 @@ pub(super) fn read(
     report: &Report,
     entries: &mut HashMap<String, MtlEntry>,
 ) {
+    let name: Rc<str> = name.into();
     let mut unknown: Vec<(SourcePlace, String, usize)> = Vec::new();
     let mut open: Option<(String, MtlEntry)> = None;
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let end = line.find(char::is_whitespace).unwrap_or(line.len());
         let (word, rest) = (&line[..end], line[end..].trim());
-        let place = SourcePlace {
-            file: name.into(),
-            line: i + 1,
-            column: 1,
-        };
+        let place = SourcePlace::at(&name, i + 1, 1);
         if word.is_empty() {
             continue;
         }

@@ -54,11 +54,7 @@ impl<'a> ObjReader<'a> {
     }
 
     fn at(&self, line: usize) -> SourcePlace {
-        SourcePlace {
-            line,
-            column: 1,
-            ..self.place.clone()
-        }
+        SourcePlace::at(&self.place.file, line, 1)
     }
 
     /// Reads a material library statement: one file with spaces in its name, or several files.
@@ -101,8 +97,9 @@ impl<'a> ObjReader<'a> {
             return self.report.cause(&place, message);
         }
         let Some(mesh) = parts.finish() else {
-            let message = format!("{NO_AREA} and is left out");
-            return self.report.note(&place, message);
+            return self
+                .report
+                .note(&place, format!("{NO_AREA} and is left out"));
         };
         let geometry = Geometry::Mesh(Arc::new(mesh));
         self.world.shapes.push(Shape {

@@ -350,8 +350,8 @@ impl Builder<'_> {
         if let Some((state, level)) = before {
             self.refuse_open(level);
             if self.stack.len() < level {
-                let message = told("closes more blocks than it opens".to_owned());
-                self.report.cause(place, message);
+                self.report
+                    .cause(place, told("closes more blocks than it opens".to_owned()));
             }
             self.state = state;
         }

@@ -66,8 +66,7 @@ impl PbrtReader<'_> {
             _ => return Err(entity.unsupported(ALLOWED)),
         };
         let placed = without_scale(map.inverse()).ok_or_else(|| {
-            let message = "the camera has shear, or different scales along its axes";
-            entity.refuse(message)
+            entity.refuse("the camera has shear, or different scales along its axes")
         });
         self.exposure(entity)?;
         let size = size?;

@@ -128,8 +128,8 @@ impl Builder<'_> {
             return Err("an option has no value".to_owned());
         }
         tokens.next();
-        let message = format!("option {} is left out", quoted(&name));
-        self.report.note(place, message);
+        self.report
+            .note(place, format!("option {} is left out", quoted(&name)));
         Ok(())
     }
 }

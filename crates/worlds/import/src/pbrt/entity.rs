@@ -3,7 +3,7 @@
 
 use super::token::{Token, Tokens, number};
 use crate::range::MAX_NUMBER;
-use crate::report::{Report, SourcePlace, quoted};
+use crate::report::{Report, SourcePlace, keyword, quoted};
 use glam::{DVec2, DVec3};
 use std::cell::Cell;
 use std::rc::Rc;
@@ -112,8 +112,7 @@ impl Entity<'_> {
             return Ok(Some(&parameter.values));
         }
         let (kind, names) = (parameter.kind, kinds.join(", "));
-        let message = format!("{name} is of type {kind}; allowed: {names}");
-        Err(self.fault(name, message))
+        Err(self.fault(name, format!("{name} is of type {kind}; allowed: {names}")))
     }
 
     /// Reads all numbers of a parameter.
@@ -160,10 +159,7 @@ impl Entity<'_> {
         let value = self.float_or(name, default)?;
         match is_allowed(value) {
             true => Ok(value),
-            false => {
-                let message = format!("{name} is {value}; allowed: {allowed}");
-                Err(self.fault(name, message))
-            }
+            false => Err(self.fault(name, format!("{name} is {value}; allowed: {allowed}"))),
         }
     }
 
@@ -208,16 +204,9 @@ impl Entity<'_> {
 
     /// Reads one of several keywords, of which the first is the default.
     pub(super) fn choice<T: Copy>(&self, name: &str, allowed: &[(&str, T)]) -> Read<T> {
-        let word = self.text(name)?;
-        let found = allowed
-            .iter()
-            .find(|(known, _)| word.is_none_or(|word| word == *known));
-        found.map(|(_, value)| *value).ok_or_else(|| {
-            let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
-            let word = quoted(word.unwrap_or_default());
-            let message = format!("{name} is {word}; allowed: {}", words.join(", "));
-            self.fault(name, message)
-        })
+        let default = allowed.first().map(|(word, _)| *word);
+        let word = self.text(name)?.or(default).unwrap_or_default();
+        keyword(name, word, allowed).map_err(|message| self.fault(name, message))
     }
 
     pub(super) fn point_or(&self, name: &str, default: DVec3) -> Read<DVec3> {
@@ -372,7 +361,6 @@ fn checked(
             _ => "threes of numbers",
         },
     };
-    let message = format!("{kind} {name}; allowed: {allowed}");
-    report.cause(place, message);
+    report.cause(place, format!("{kind} {name}; allowed: {allowed}"));
     ParameterValues::Broken
 }

@@ -46,10 +46,8 @@ impl PbrtReader<'_> {
     pub(super) fn wanted(&self, entity: &Entity<'_>, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
-        in_range(factor).map_err(|error| {
-            let message = format!("the factor for {name}: {error}");
-            entity.fault(name, message)
-        })
+        in_range(factor)
+            .map_err(|error| entity.fault(name, format!("the factor for {name}: {error}")))
     }
 
     fn point(&self, entity: &Entity<'_>, to_world: DAffine3) -> Read<Light> {
@@ -97,8 +95,7 @@ impl PbrtReader<'_> {
         let from = entity.point_or("from", DVec3::ZERO);
         let way = self.way(entity, to_world);
         if without_scale(to_world).is_none() {
-            let message = "the spot has shear, or different scales along its axes";
-            return Err(entity.refuse(message));
+            return Err(entity.refuse("the spot has shear, or different scales along its axes"));
         }
         let (cutoff, delta) = (cutoff?, delta?);
         if delta > cutoff {
@@ -127,8 +124,7 @@ impl PbrtReader<'_> {
 
     fn infinite(&mut self, entity: &Entity<'_>, to_world: DAffine3) -> Read<Light> {
         if entity.has("portal") {
-            let message = "portals are not supported";
-            return Err(entity.fault("portal", message));
+            return Err(entity.fault("portal", "portals are not supported"));
         }
         if entity.has("filename") {
             return self.sky(entity, to_world);

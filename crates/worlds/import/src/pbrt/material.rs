@@ -225,10 +225,8 @@ impl PbrtReader<'_> {
 
     fn part(&mut self, entity: &Entity<'_>, name: &str, uv: Uv) -> Read<Material> {
         let known = self.scene.named.get(name);
-        let fault = |what: &str| {
-            let message = format!("material {} {what}", quoted(name));
-            entity.fault("materials", message)
-        };
+        let fault =
+            |what: &str| entity.fault("materials", format!("material {} {what}", quoted(name)));
         let Some(of) = known.and_then(|number| self.scene.materials.get(*number)) else {
             return Err(fault("is not known"));
         };

@@ -44,8 +44,7 @@ impl PbrtReader<'_> {
 
     fn ply(&mut self, entity: &Entity<'_>, needs_uv: bool) -> Read<Arc<Triangles>> {
         if entity.has("displacement") {
-            let message = "displacement of a mesh is not supported";
-            return Err(entity.fault("displacement", message));
+            return Err(entity.fault("displacement", "displacement of a mesh is not supported"));
         }
         let name = self.file_name(entity)?;
         let unread = |error: &String| self.unread(entity, name, error);
@@ -126,8 +125,7 @@ impl PbrtReader<'_> {
         let size = along.length().max(across.length()).max(diagonal.length());
         let volume = along.cross(across).dot(diagonal).abs();
         if volume > FLAT * size * size * size {
-            let message = "a patch is not flat; allowed: flat patches";
-            return Err(entity.fault("P", message));
+            return Err(entity.fault("P", "a patch is not flat; allowed: flat patches"));
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
             let message = "approximated: a patch that is not a parallelogram has the texture coordinates of two triangles";

@@ -104,14 +104,12 @@ impl<'a> PbrtReader<'a> {
         let name = entity.text("filename")?;
         name.ok_or_else(|| {
             let (kind, plugin) = (entity.kind, quoted(&entity.plugin));
-            let message = format!("{kind} {plugin} without filename");
-            entity.fault("filename", message)
+            entity.fault("filename", format!("{kind} {plugin} without filename"))
         })
     }
 
     /// Adds a cause for a file that cannot be used.
     pub(super) fn unread(&self, entity: &Entity<'_>, name: &str, error: &str) -> CauseGiven {
-        let message = format!("file {} {error}", quoted(name));
-        entity.fault("filename", message)
+        entity.fault("filename", format!("file {} {error}", quoted(name)))
     }
 }

@@ -80,10 +80,7 @@ impl PbrtReader<'_> {
     ) -> Read<f64> {
         match self.texture_or(entity, name, ask, default, Uv::Own)? {
             Texture::Constant(value) => Ok(value),
-            _ => {
-                let message = format!("{name} varies; allowed: one value");
-                Err(entity.fault(name, message))
-            }
+            _ => Err(entity.fault(name, format!("{name} varies; allowed: one value"))),
         }
     }
 
@@ -135,8 +132,7 @@ impl PbrtReader<'_> {
     /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or("dimension", 2)? != 2 {
-            let message = "a checkerboard has dimension 3; allowed: 2";
-            return Err(entity.fault("dimension", message));
+            return Err(entity.fault("dimension", "a checkerboard has dimension 3; allowed: 2"));
         }
         let first = self.constant_or(entity, "tex1", ask, 1.0);
         let second = self.constant_or(entity, "tex2", ask, 0.0);

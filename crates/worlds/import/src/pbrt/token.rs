@@ -92,11 +92,7 @@ impl<'a> Tokens<'a> {
 
     /// Returns a place in this file.
     pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
-        SourcePlace {
-            file: Rc::clone(&self.file),
-            line: at.line,
-            column: at.column,
-        }
+        SourcePlace::at(&self.file, at.line, at.column)
     }
 
     /// Returns the current position.
