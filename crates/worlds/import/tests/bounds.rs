@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{causes, folder, notes, read_in};
+use crate::common::{assert_first, causes, folder, notes, read_in};
 use etendue_import::{Color, Options, import};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -75,7 +75,7 @@ fn packed_meshes_unpack_to_a_bounded_size() {
     let causes = read_in(shape, folder.path(), Color::Luminance).unwrap_err();
     let words =
         format!("unpacks to more than {most} bytes; allowed: 64 times the size of the file");
-    assert!(causes[0].contains(&words), "{causes:?}");
+    assert_first(&causes, &words);
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::{assert_close, causes, notes, world};
+use crate::common::{
+    assert_close, assert_first, assert_refused, cases, causes, notes, numbers, world,
+};
 use etendue_world::Camera;
 
 const FILM: &str = "<film type=\"hdrfilm\"><integer name=\"width\" value=\"40\"/><integer name=\"height\" value=\"20\"/><rfilter type=\"box\"/></film>";
@@ -19,42 +21,25 @@ fn along(camera: &Camera) -> [f64; 3] {
 
 #[test]
 fn angles_of_view_have_an_axis() {
-    for (inside, expected) in [
-        (
-            "<float name=\"fov\" value=\"40\"/>",
-            [0.278_89, 0.069_72, 0.957_79],
-        ),
-        (
-            "<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"x\"/>",
-            [0.278_89, 0.069_72, 0.957_79],
-        ),
-        (
-            "<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"y\"/>",
-            [0.499_3, 0.124_83, 0.857_39],
-        ),
-        (
-            "<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"smaller\"/>",
-            [0.499_3, 0.124_83, 0.857_39],
-        ),
-        (
-            "<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"larger\"/>",
-            [0.278_89, 0.069_72, 0.957_79],
-        ),
-        (
-            "<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"diagonal\"/>",
-            [0.251_53, 0.062_88, 0.965_8],
-        ),
-        (
-            "<string name=\"focal_length\" value=\"35mm\"/>",
-            [0.402_43, 0.100_61, 0.909_91],
-        ),
-        ("", [0.294_94, 0.073_73, 0.952_67]),
-        (
-            "<float name=\"fov\" value=\"40\"/><float name=\"principal_point_offset_x\" value=\"0.2\"/><float name=\"principal_point_offset_y\" value=\"-0.1\"/>",
-            [0.143_24, 0.107_43, 0.983_84],
-        ),
-    ] {
-        assert_close(&along(&camera("perspective", inside)), &expected, 1e-5);
+    for (inside, expected) in cases(
+        r#"
+        <float name="fov" value="40"/> => 0.27889 0.06972 0.95779
+        <float name="fov" value="40"/><string name="fov_axis" value="x"/> => 0.27889 0.06972 0.95779
+        <float name="fov" value="40"/><string name="fov_axis" value="y"/> => 0.4993 0.12483 0.85739
+        <float name="fov" value="40"/><string name="fov_axis" value="smaller"/>
+        => 0.4993 0.12483 0.85739
+        <float name="fov" value="40"/><string name="fov_axis" value="larger"/>
+        => 0.27889 0.06972 0.95779
+        <float name="fov" value="40"/><string name="fov_axis" value="diagonal"/>
+        => 0.25153 0.06288 0.9658
+        <string name="focal_length" value="35mm"/> => 0.40243 0.10061 0.90991
+        => 0.29494 0.07373 0.95267
+        <float name="fov" value="40"/><float name="principal_point_offset_x" value="0.2"/><float name="principal_point_offset_y" value="-0.1"/>
+        => 0.14324 0.10743 0.98384
+        "#,
+    ) {
+        let found = along(&camera("perspective", inside));
+        assert_close(&found, &numbers(expected), 1e-5);
     }
 }
 
@@ -94,37 +79,26 @@ fn orthographic_cameras_are_scaled() {
 
 #[test]
 fn unsound_cameras_are_refused() {
-    for (inside, what) in [
-        ("<float name=\"fov\" value=\"180\"/>", "fov is 180"),
-        (
-            "<transform name=\"to_world\"><scale value=\"2\"/></transform>",
-            "to_world scales",
-        ),
-        (
-            "<float name=\"near_clip\" value=\"-1\"/>",
-            "the clip planes are at -1",
-        ),
-        (
-            "<film type=\"hdrfilm\"><integer name=\"width\" value=\"0\"/></film>",
-            "width is 0",
-        ),
-        (
-            "<film type=\"hdrfilm\"><float name=\"width\" value=\"3\"/></film>",
-            "width is a number; allowed: an integer",
-        ),
-        (
-            "<film type=\"hdrfilm\"><integer name=\"crop_width\" value=\"3\"/></film>",
-            "crop_width",
-        ),
-    ] {
-        let found = causes(&format!("<sensor type=\"perspective\">{inside}</sensor>"));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(what), "{found:?}");
+    for (inside, what) in cases(
+        r#"
+        <float name="fov" value="180"/> => fov is 180
+        <transform name="to_world"><scale value="2"/></transform> => to_world scales
+        <float name="near_clip" value="-1"/> => the clip planes are at -1
+        <film type="hdrfilm"><integer name="width" value="0"/></film> => width is 0
+        <film type="hdrfilm"><float name="width" value="3"/></film>
+        => width is a number; allowed: an integer
+        <film type="hdrfilm"><integer name="crop_width" value="3"/></film> => crop_width
+        "#,
+    ) {
+        assert_refused(
+            &causes(&format!("<sensor type=\"perspective\">{inside}</sensor>")),
+            &[what],
+        );
     }
     let other = "<sensor type=\"irradiancemeter\"/>";
-    assert!(causes(other)[0].contains("sensor `irradiancemeter` is not supported"));
+    assert_first(&causes(other), "sensor `irradiancemeter` is not supported");
     let both = format!("{other}<sensor type=\"perspective\">{FILM}</sensor>");
-    assert!(notes(&both)[0].contains("sensor `irradiancemeter` is left out"));
+    assert_first(&notes(&both), "sensor `irradiancemeter` is left out");
 }
 
 #[test]

@@ -4,7 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::common;
-use crate::common::{assert_close, folder, read_in};
+use crate::common::{
+    assert_close, assert_first, assert_near, cases, folder, numbers, png, read_in,
+};
 use etendue_import::Color;
 use etendue_world::{Light, Material, Texture};
 use glam::DVec2;
@@ -14,11 +16,8 @@ const ALL: [Color; 4] = [Color::Luminance, Color::Red, Color::Green, Color::Blue
 
 fn reflectance(property: &str, folder: &Path, color: Color) -> Texture {
     let inside = format!("<shape type=\"sphere\"><bsdf type=\"diffuse\">{property}</bsdf></shape>");
-    let mut world = read_in(&inside, folder, color).unwrap().world;
-    match world.materials.remove(0) {
-        Material::Diffuse { reflectance } => reflectance,
-        other => panic!("{other:?}"),
-    }
+    let world = read_in(&inside, folder, color).unwrap().world;
+    common::reflectance(&world.materials[0]).clone()
 }
 
 fn radiance(property: &str, color: Color) -> f64 {
@@ -47,10 +46,10 @@ fn colours_become_one_number() {
     let uniform = "<spectrum name=\"radiance\" value=\"2\"/>";
     let expected = [2.0, 2.409_59, 1.896_58, 1.817_83];
     assert_close(&ALL.map(|c| radiance(uniform, c)), &expected, 1e-5);
-    assert_close(&[radiance("", Color::Red)], &[1.0], 0.0);
+    assert_near(radiance("", Color::Red), 1.0, 0.0);
     let d65 =
         "<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"2\"/></spectrum>";
-    assert_close(&[radiance(d65, Color::Luminance)], &[2.0], 0.0);
+    assert_near(radiance(d65, Color::Luminance), 2.0, 0.0);
 }
 
 #[test]
@@ -69,9 +68,9 @@ fn spectra_are_weighed_as_in_mitsuba() {
     ] {
         let spectrum = |name: &str| format!("<spectrum name=\"{name}\" value=\"{samples}\"/>");
         let found = reflectance(&spectrum("reflectance"), files.path(), Color::Luminance);
-        assert_close(&[found.largest()], &[reflected], 3e-7);
+        assert_near(found.largest(), reflected, 3e-7);
         let found = radiance(&spectrum("radiance"), Color::Luminance);
-        assert_close(&[found], &[emitted], 3e-6);
+        assert_near(found, emitted, 3e-6);
     }
     let spectrum = "<spectrum name=\"reflectance\" value=\"400:0.3, 500:0.5, 650:0.1, 700:0.5\"/>";
     let found = ALL.map(|c| reflectance(spectrum, files.path(), c).largest());
@@ -86,12 +85,14 @@ fn spectra_are_read_from_files() {
     let files = folder(&[("s.spd", b"# nm value\n300 0.5\n900 0.5 # end\n")]);
     let file = "<spectrum name=\"reflectance\" filename=\"s.spd\"/>";
     let found = reflectance(file, files.path(), Color::Luminance);
-    assert_close(&[found.largest()], &[0.499_446_12], 3e-7);
-    for (value, what) in [
-        ("500:1, 400:1", "not in rising order"),
-        ("500:1", "at least two"),
-        ("0.1, 0.2", "not a pair"),
-    ] {
+    assert_near(found.largest(), 0.499_446_12, 3e-7);
+    for (value, what) in cases(
+        r#"
+        500:1, 400:1 => not in rising order
+        500:1 => at least two
+        0.1, 0.2 => not a pair
+        "#,
+    ) {
         let spectrum = format!(
             "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"{value}\"/></emitter>"
         );
@@ -103,52 +104,28 @@ fn spectra_are_read_from_files() {
 
 #[test]
 fn conductors_have_indices_of_refraction() {
-    for (inside, expected) in [
-        (
-            "<string name=\"material\" value=\"Au\"/>",
-            Some([0.402_895, 2.668_84]),
-        ),
-        (
-            "<string name=\"material\" value=\"Al\"/>",
-            Some([1.019_75, 6.794_42]),
-        ),
-        (
-            "<rgb name=\"eta\" value=\"0.2 0.4 0.8\"/><rgb name=\"k\" value=\"3 2 1.5\"/>",
-            Some([0.386_333, 2.176_59]),
-        ),
-        (
-            "<spectrum name=\"eta\" value=\"400:0.3, 500:0.5, 600:0.1\"/>",
-            Some([0.279_841, 1.0]),
-        ),
-        ("<string name=\"material\" value=\"none\"/>", None),
-        ("", None),
-    ] {
-        let bsdf =
-            format!("<shape type=\"sphere\"><bsdf type=\"conductor\">{inside}</bsdf></shape>");
-        let world = common::world(&bsdf);
+    for (inside, expected) in cases(
+        r#"
+        <string name="material" value="Au"/> => 0.402895 2.66884
+        <string name="material" value="Al"/> => 1.01975 6.79442
+        <rgb name="eta" value="0.2 0.4 0.8"/><rgb name="k" value="3 2 1.5"/> => 0.386333 2.17659
+        <spectrum name="eta" value="400:0.3, 500:0.5, 600:0.1"/> => 0.279841 1
+        <string name="material" value="none"/> => none
+        => none
+        "#,
+    ) {
+        let bsdf = format!(r#"<bsdf type="conductor">{inside}</bsdf>"#);
+        let world = common::world(&format!(r#"<shape type="sphere">{bsdf}</shape>"#));
         let Material::Conductor(metal) = &world.materials[0] else {
             panic!("{:?}", world.materials);
         };
-        assert_eq!(metal.index.is_some(), expected.is_some());
-        assert_close(
-            &metal.index.unwrap_or_default(),
-            &expected.unwrap_or_default(),
-            1e-5,
-        );
+        match metal.index {
+            None => assert_eq!(expected, "none"),
+            Some(index) => assert_close(&index, &numbers(expected), 1e-5),
+        }
     }
     let both = "<shape type=\"sphere\"><bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"eta\" value=\"1\"/></bsdf></shape>";
     assert!(common::causes(both)[0].contains("material is given together with eta or k"));
-}
-
-/// Returns a PNG picture of 2 × 1 pixels.
-fn png() -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&[80, 175, 80, 0, 255, 10]).unwrap();
-    writer.finish().unwrap();
-    bytes
 }
 
 fn bitmap(file: &str, inside: &str) -> String {
@@ -159,7 +136,7 @@ fn bitmap(file: &str, inside: &str) -> String {
 
 #[test]
 fn levels_of_pictures_are_linear_unless_raw() {
-    let picture = png();
+    let picture = png([2, 1], &[80, 175, 80, 0, 255, 10]);
     let files = folder(&[("a.png", &picture)]);
     let linear = [0.080_219_9, 0.428_691, 0.080_219_9];
     let luminance = 0.212_671 * linear[0] + 0.715_160 * linear[1] + 0.072_169 * linear[2];
@@ -196,7 +173,7 @@ fn jpeg_and_radiance_pictures_are_read() {
     };
     let found = ALL.map(|c| at("a.hdr", "", 0.25, c));
     assert_close(&found[1..], &[1.0, 0.5, 0.0], 0.0);
-    assert_close(&[at("a.hdr", "", 0.75, Color::Red)], &[0.0], 0.0);
+    assert_near(at("a.hdr", "", 0.75, Color::Red), 0.0, 0.0);
     // The expected levels are those that Mitsuba decodes; decoders may differ by one level.
     let raw = "<boolean name=\"raw\" value=\"true\"/>";
     for (u, levels) in [(0.25, [200.0, 100.0, 50.0]), (0.75, [30.0, 60.0, 90.0])] {
@@ -232,10 +209,7 @@ fn float_maps_are_read() {
         bitmap("c.pfm", "")
     );
     let causes = read_in(&shape, files.path(), Color::Luminance).unwrap_err();
-    assert!(
-        causes[0].contains("ends before its last pixel"),
-        "{causes:?}"
-    );
+    assert_first(&causes, "ends before its last pixel");
 }
 
 /// The test reads two BMP files of 2 × 2 pixels, one with three bytes per pixel and one with a

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::{assert_close, causes, folder, read_in, world};
+use crate::common::{assert_close, assert_first, assert_near, causes, folder, read_in, world};
 use etendue_import::Color;
 use etendue_world::{Light, Texture};
 use std::f64::consts::PI;
@@ -24,7 +24,7 @@ fn points_have_a_place() {
     assert_close(&place(moved), &[4.0, 0.0, 0.0], 0.0);
     assert_close(&place(named), &[1.0, 2.0, 3.0], 0.0);
     let both = format!("<emitter type=\"point\">{moved}{named}</emitter>");
-    assert!(causes(&both)[0].contains("position is given together with to_world"));
+    assert_first(&causes(&both), "position is given together with to_world");
 }
 
 /// The shape stays, because it blocks light, but it has no radiance.
@@ -46,13 +46,13 @@ fn directionalarea_is_a_sheet() {
         else {
             panic!("{:?}", read.lights)
         };
-        assert_close(&[value], &[3.0], 0.0);
+        assert_near(value, 3.0, 0.0);
         assert!(read.shapes.len() == 2 && read.shapes[1].emission.is_none());
     }
     let refused = causes(&sheet("sphere"));
-    assert!(
-        refused[0].contains("directionalarea on `sphere`; allowed: rectangle or disk"),
-        "{refused:?}"
+    assert_first(
+        &refused,
+        "directionalarea on `sphere`; allowed: rectangle or disk",
     );
 }
 
@@ -63,7 +63,7 @@ fn directional_light_goes_along_z() {
             direction,
             irradiance,
         } => {
-            assert_close(&[irradiance], &[1.0], 0.0);
+            assert_near(irradiance, 1.0, 0.0);
             direction.to_array()
         }
         other => panic!("{other:?}"),
@@ -94,7 +94,7 @@ fn spots_have_two_angles() {
         1e-12,
     );
     let wide = "<emitter type=\"spot\"><float name=\"beam_width\" value=\"20\"/></emitter>";
-    assert!(causes(wide)[0].contains("beam_width is 20"));
+    assert_first(&causes(wide), "beam_width is 20");
     let textured = "<texture name=\"texture\" type=\"checkerboard\"/>";
     let Light::Spot { picture, .. } = light("spot", textured) else {
         panic!("not a spot");

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::folder;
+use crate::common::{assert_first, cases, folder};
 use crate::pbrt_scenes::{causes, notes, read_in, scene, unsettled, world};
 use etendue_import::{Color, Options, import};
 
@@ -71,11 +71,8 @@ fn all_faults_are_found_with_their_places() {
     assert!(found[1].contains("directive `Gizmo` is not known"));
     assert!(found[7].contains("AttributeBegin without AttributeEnd"));
     let early = unsettled("Shape \"sphere\"");
-    assert!(
-        early[0].contains("Shape stands before WorldBegin"),
-        "{early:?}"
-    );
-    assert!(causes("Film \"rgb\"")[0].contains("Film stands after WorldBegin"));
+    assert_first(&early, "Shape stands before WorldBegin");
+    assert_first(&causes("Film \"rgb\""), "Film stands after WorldBegin");
     let medium = causes(
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"",
     );
@@ -84,38 +81,19 @@ fn all_faults_are_found_with_their_places() {
 
 #[test]
 fn types_must_fit() {
-    for (inside, what) in [
-        (
-            "Shape \"sphere\" \"integer radius\" 2",
-            "radius is of type integer; allowed: float",
-        ),
-        (
-            "Shape \"sphere\" \"float radius\" [1 2]",
-            "radius has 2 numbers; allowed: 1",
-        ),
-        (
-            "Material \"dielectric\" \"bool remaproughness\" \"true\" Shape \"disk\"",
-            "without quotation marks",
-        ),
-        (
-            "Shape \"trianglemesh\" \"integer indices\" [0.5]",
-            "integers of 32 bits",
-        ),
-        (
-            "LightSource \"point\" \"spectrum I\" [400 1 300 1]",
-            "not in rising order",
-        ),
-        (
-            "LightSource \"point\" \"spectrum I\" \"none.spd\"",
-            "spectrum `none.spd` is not found",
-        ),
-        (
-            "Shape \"sphere\" \"float radius\" -1",
-            "radius is -1; allowed: above 0",
-        ),
-    ] {
+    for (inside, what) in cases(
+        r#"
+        Shape "sphere" "integer radius" 2 => radius is of type integer; allowed: float
+        Shape "sphere" "float radius" [1 2] => radius has 2 numbers; allowed: 1
+        Material "dielectric" "bool remaproughness" "true" Shape "disk" => without quotation marks
+        Shape "trianglemesh" "integer indices" [0.5] => integers of 32 bits
+        LightSource "point" "spectrum I" [400 1 300 1] => not in rising order
+        LightSource "point" "spectrum I" "none.spd" => spectrum `none.spd` is not found
+        Shape "sphere" "float radius" -1 => radius is -1; allowed: above 0
+        "#,
+    ) {
         let found = causes(inside);
-        assert!(found[0].contains(what), "{found:?}");
+        assert_first(&found, what);
     }
 }
 

@@ -2,18 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::{assert_close, folder};
+use crate::common::{assert_close, assert_first, assert_near, constant, folder, png, reflectance};
 use crate::pbrt_scenes::{causes, material, notes, read_in, scene, world};
 use etendue_import::Color;
-use etendue_world::{Material, MicrofacetDistribution, Texture};
+use etendue_world::{Material, MicrofacetDistribution};
 use glam::DVec2;
-
-fn constant(texture: &Texture) -> f64 {
-    match texture {
-        Texture::Constant(value) => *value,
-        other => panic!("{other:?}"),
-    }
-}
 
 /// Returns α along u and v, or `None` for a mirror.
 fn alpha(parameters: &str) -> Option<[f64; 2]> {
@@ -56,10 +49,7 @@ fn what_reflects_does_so_on_both_sides() {
         assert_eq!(matches!(of, Material::TwoSided(_)), is_both, "{plugin}");
     }
     // pbrt's default material is also diffuse, with reflectance one half.
-    match material("") {
-        Material::Diffuse { reflectance } => assert_close(&[constant(&reflectance)], &[0.5], 0.0),
-        other => panic!("{other:?}"),
-    }
+    assert_near(constant(reflectance(&material(""))), 0.5, 0.0);
 }
 
 #[test]
@@ -96,7 +86,7 @@ fn glass_has_an_index() {
     };
     assert_close(&[index(""), index("\"float eta\" 1.33")], &[1.5, 1.33], 0.0);
     // BK7 has n = 1.5168 at 587.6 nm.
-    assert_close(&[index("\"spectrum eta\" \"glass-BK7\"")], &[1.5168], 1e-3);
+    assert_near(index("\"spectrum eta\" \"glass-BK7\""), 1.5168, 1e-3);
     let eta = "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"sphere\"";
     assert_eq!(
         notes(eta),
@@ -123,9 +113,9 @@ fn translucent_materials_reflect_and_transmit() {
     let bright =
         "\"spectrum reflectance\" [300 0.6 800 0.6] \"spectrum transmittance\" [300 0.6 800 0.6]";
     let found = causes(&format!("{translucent} {bright}\nShape \"sphere\""));
-    assert!(
-        found[0].contains("reflectance and transmittance together go up to 1.19"),
-        "{found:?}"
+    assert_first(
+        &found,
+        "reflectance and transmittance together go up to 1.19",
     );
 }
 
@@ -135,7 +125,7 @@ fn mixtures_have_amounts_of_the_second() {
     let mix = "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.25";
     match material(&format!("{two} {mix}")) {
         Material::Blend { weight, of } => {
-            assert_close(&[constant(&weight)], &[0.25], 0.0);
+            assert_near(constant(&weight), 0.25, 0.0);
             assert!(
                 matches!(&of[1], Material::TwoSided(both) if matches!(both[0], Material::Conductor(_)))
             );
@@ -143,7 +133,7 @@ fn mixtures_have_amounts_of_the_second() {
         other => panic!("{other:?}"),
     }
     let itself = "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"] NamedMaterial \"a\" Shape \"sphere\"";
-    assert!(causes(itself)[0].contains("the material contains itself"));
+    assert_first(&causes(itself), "the material contains itself");
 }
 
 #[test]
@@ -170,13 +160,7 @@ fn interfaces_are_no_surfaces() {
 fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
     let declared = format!("{inside} Material \"diffuse\" \"texture reflectance\" \"t\" {shape}");
     let world = world(&declared);
-    match &world.materials[world.shapes[0].material] {
-        Material::TwoSided(both) => match &both[0] {
-            Material::Diffuse { reflectance } => reflectance.value(&DVec2::from(uv).into()),
-            other => panic!("{other:?}"),
-        },
-        other => panic!("{other:?}"),
-    }
+    reflectance(&world.materials[world.shapes[0].material]).value(&DVec2::from(uv).into())
 }
 
 #[test]
@@ -190,82 +174,50 @@ fn squares_of_a_checkerboard_are_one_unit() {
         ([0.1, 0.6], 0.2),
         ([-0.1, 0.1], 0.2),
     ] {
-        assert_close(&[value(board, mesh, uv)], &[expected], 1e-5);
+        assert_near(value(board, mesh, uv), expected, 1e-5);
     }
     // In pbrt, v of a sphere increases from its lower pole, and u of a disk is the azimuth.
     let rings = "Texture \"t\" \"spectrum\" \"checkerboard\" \"float vscale\" 4 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.2 .2 .2]";
-    assert_close(
-        &[value(rings, "Shape \"sphere\"", [0.5, 0.99])],
-        &[0.8],
-        1e-5,
-    );
-    assert_close(
-        &[value(rings, "Shape \"sphere\"", [0.5, 0.01])],
-        &[0.2],
-        1e-5,
-    );
+    assert_near(value(rings, "Shape \"sphere\"", [0.5, 0.99]), 0.8, 1e-5);
+    assert_near(value(rings, "Shape \"sphere\"", [0.5, 0.01]), 0.2, 1e-5);
     // The edge of a disk has v = 0; in a world, u is the radius.
-    assert_close(&[value(rings, "Shape \"disk\"", [0.99, 0.3])], &[0.8], 1e-5);
-    assert_close(&[value(rings, "Shape \"disk\"", [0.01, 0.3])], &[0.2], 1e-5);
+    assert_near(value(rings, "Shape \"disk\"", [0.99, 0.3]), 0.8, 1e-5);
+    assert_near(value(rings, "Shape \"disk\"", [0.01, 0.3]), 0.2, 1e-5);
 }
 
 #[test]
 fn textures_scale_and_mix() {
     let mesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
     let scale = "Texture \"b\" \"spectrum\" \"checkerboard\" Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"b\" \"float scale\" 0.25";
-    assert_close(&[value(scale, mesh, [0.5, 0.5])], &[0.25], 1e-12);
+    assert_near(value(scale, mesh, [0.5, 0.5]), 0.25, 1e-12);
     let mix = "Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [.4 .4 .4] \"rgb tex2\" [.8 .8 .8] \"float amount\" 0.25";
-    assert_close(&[value(mix, mesh, [0.5, 0.5])], &[0.5], 1e-5);
+    assert_near(value(mix, mesh, [0.5, 0.5]), 0.5, 1e-5);
     let itself = "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"";
-    assert!(
-        causes(itself)[0].contains("contains itself"),
-        "{:?}",
-        causes(itself)
-    );
+    assert_first(&causes(itself), "contains itself");
     let noise = "Texture \"t\" \"spectrum\" \"marble\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"";
-    assert!(causes(noise)[0].contains("texture `marble` is not supported"));
-}
-
-/// Returns a grey picture of 1 × 2 pixels, whose upper pixel is white.
-fn png() -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
-    encoder.set_color(png::ColorType::Grayscale);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&[255, 128]).unwrap();
-    writer.finish().unwrap();
-    bytes
+    assert_first(&causes(noise), "texture `marble` is not supported");
 }
 
 #[test]
 fn pictures_have_an_encoding_and_stand_upright() {
-    let png = png();
-    let folder = folder(&[("a.png", &png)]);
+    // The upper pixel is white.
+    let folder = folder(&[("a.png", &png([1, 2], &[255, 128]))]);
     let value = |parameters: &str, v: f64| {
         let inside = format!(
             "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string filter\" \"point\" {parameters} Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"cylinder\""
         );
         let read = read_in(&scene("", &inside), folder.path(), Color::Luminance).unwrap();
-        match &read.world.materials[read.world.shapes[0].material] {
-            Material::TwoSided(both) => match &both[0] {
-                Material::Diffuse { reflectance } => reflectance.value(&DVec2::new(0.5, v).into()),
-                other => panic!("{other:?}"),
-            },
-            other => panic!("{other:?}"),
-        }
+        let material = &read.world.materials[read.world.shapes[0].material];
+        reflectance(material).value(&DVec2::new(0.5, v).into())
     };
     let grey = 128.0 / 255.0;
     assert_close(&[value("", 0.9), value("", 0.1)], &[1.0, 0.215_861], 1e-6);
-    assert_close(
-        &[value("\"string encoding\" \"linear\"", 0.1)],
-        &[grey],
-        1e-12,
-    );
-    assert_close(
-        &[value("\"string encoding\" \"gamma 3\"", 0.1)],
-        &[grey.powi(3)],
+    assert_near(value("\"string encoding\" \"linear\"", 0.1), grey, 1e-12);
+    assert_near(
+        value("\"string encoding\" \"gamma 3\"", 0.1),
+        grey.powi(3),
         1e-12,
     );
     let inverted = "\"string encoding\" \"linear\" \"bool invert\" true \"float scale\" 0.5";
-    assert_close(&[value(inverted, 0.1)], &[1.0 - grey / 2.0], 1e-12);
+    assert_near(value(inverted, 0.1), 1.0 - grey / 2.0, 1e-12);
 }

@@ -2,19 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::common::{assert_close, folder};
+use crate::common::{
+    PLY, assert_close, assert_first, assert_near, assert_refused, cases, first_triangle, folder,
+    mesh, numbers,
+};
 use crate::pbrt_scenes::{causes, notes, read_in, scene, shape, world};
 use etendue_import::Color;
-use etendue_world::{Geometry, Material, Shape, Texture, Triangles};
+use etendue_world::{Geometry, Material, Shape, Texture};
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
-
-fn mesh(shape: &Shape) -> &Triangles {
-    match &shape.geometry {
-        Geometry::Mesh(triangles) => triangles,
-        other => panic!("{other:?}"),
-    }
-}
 
 /// Returns the front normal of a shape at a point. At this point, a ray from the shape's origin
 /// along `own` leaves the shape. For a mesh, returns the front normal of the first triangle.
@@ -22,7 +18,7 @@ fn front(shape: &Shape, own: DVec3) -> DVec3 {
     let side = if shape.is_flipped { -1.0 } else { 1.0 };
     let normal = match &shape.geometry {
         Geometry::Mesh(mesh) => {
-            let [a, b, c] = mesh.corners()[0].map(|i| mesh.vertices()[i as usize]);
+            let [a, b, c] = first_triangle(mesh);
             (b - a).cross(c - a)
         }
         Geometry::Disc => DVec3::Z,
@@ -35,31 +31,26 @@ fn front(shape: &Shape, own: DVec3) -> DVec3 {
 fn transforms_stand_before_those_they_are_applied_after() {
     let place = |inside: &str| shape(&format!("{inside} Shape \"sphere\"")).to_world;
     let at = |inside: &str| place(inside).transform_point3(DVec3::X).to_array();
-    assert_close(&at("Translate 1 2 3 Scale 2 2 2"), &[3.0, 2.0, 3.0], 0.0);
-    assert_close(
-        &at("Rotate 90 0 0 2 Translate 1 0 0"),
-        &[0.0, 2.0, 0.0],
-        1e-15,
-    );
     // The matrix is given by columns, and takes X to Y.
-    let matrix = "[0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1]";
-    assert_close(&at(&format!("Transform {matrix}")), &[4.0, 6.0, 6.0], 0.0);
-    assert_close(
-        &at(&format!("Translate 1 0 0 Transform {matrix}")),
-        &[4.0, 6.0, 6.0],
-        0.0,
-    );
-    assert_close(
-        &at(&format!("Translate 1 0 0 ConcatTransform {matrix}")),
-        &[5.0, 6.0, 6.0],
-        0.0,
-    );
-    assert_close(&at("Translate 9 9 9 Identity"), &[1.0, 0.0, 0.0], 0.0);
-    let named = "Translate 1 0 0 CoordinateSystem \"a\" Translate 1 1 1 CoordSysTransform \"a\"";
-    assert_close(&at(named), &[2.0, 0.0, 0.0], 0.0);
-    let block =
-        "AttributeBegin Translate 5 5 5 AttributeEnd TransformBegin Scale 3 3 3 TransformEnd";
-    assert_close(&at(block), &[1.0, 0.0, 0.0], 0.0);
+    for (inside, expected) in cases(
+        r#"
+        Translate 1 2 3 Scale 2 2 2 => 3 2 3
+        Rotate 90 0 0 2 Translate 1 0 0 => 0 2 0
+        Transform [0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1] => 4 6 6
+        Translate 1 0 0 Transform [0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1] => 4 6 6
+        Translate 1 0 0 ConcatTransform [0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1] => 5 6 6
+        Translate 9 9 9 Identity => 1 0 0
+        Translate 1 0 0 CoordinateSystem "a" Translate 1 1 1 CoordSysTransform "a" => 2 0 0
+        AttributeBegin Translate 5 5 5 AttributeEnd TransformBegin Scale 3 3 3 TransformEnd => 1 0 0
+        "#,
+    ) {
+        let digits = if inside.starts_with("Rotate") {
+            1e-15
+        } else {
+            0.0
+        };
+        assert_close(&at(inside), &numbers(expected), digits);
+    }
     // `LookAt` gives the map to camera coordinates, in which X points to the right.
     let look = place("LookAt 0 0 5  0 0 0  0 1 0");
     let expected = DMat4::from_cols_array(&[
@@ -71,18 +62,14 @@ fn transforms_stand_before_those_they_are_applied_after() {
 #[test]
 fn fronts_are_where_normals_point() {
     let own = DVec3::new(1.0, 0.0, 0.0);
+    let triangle = r#""trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0]"#;
+    let patch = r#""bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 0]"#;
     for (plugin, outward) in [
         ("\"sphere\"", DVec3::X),
         ("\"cylinder\"", DVec3::X),
         ("\"disk\"", DVec3::Z),
-        (
-            "\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]",
-            DVec3::Z,
-        ),
-        (
-            "\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
-            DVec3::Z,
-        ),
+        (triangle, DVec3::Z),
+        (patch, DVec3::Z),
     ] {
         let of = |before: &str| front(&shape(&format!("{before} Shape {plugin}")), own);
         assert_eq!(of(""), outward, "{plugin}");
@@ -108,7 +95,7 @@ fn fronts_are_where_normals_point() {
     // A mirrored sphere emits light outwards.
     let shining = "Scale -1 1 1 AreaLightSource \"diffuse\" Shape \"sphere\"";
     assert_eq!(front(&shape(shining), own), DVec3::NEG_X);
-    assert!(notes(shining)[0].contains("because of a mirroring transform"));
+    assert_first(&notes(shining), "because of a mirroring transform");
 }
 
 #[test]
@@ -127,30 +114,19 @@ fn quadrics_have_sizes() {
     let cylinder = "Shape \"cylinder\" \"float radius\" 3 \"float zmin\" 4 \"float zmax\" 2";
     assert_close(&at(cylinder, DVec3::Y), &[0.0, 3.0, 2.0], 0.0);
     assert_close(&at(cylinder, DVec3::Z), &[0.0, 0.0, 4.0], 0.0);
-    for (inside, what) in [
-        (
-            "Shape \"sphere\" \"float zmin\" 0",
-            "zmin is 0: parts of spheres",
-        ),
-        ("Shape \"sphere\" \"float phimax\" 0", "phimax is 0"),
-        (
-            "Shape \"disk\" \"float innerradius\" 0.5",
-            "innerradius is 0.5",
-        ),
-        (
-            "Scale 1 2 1 AreaLightSource \"diffuse\" Shape \"sphere\"",
-            "emits, but has shear or different scales along its axes",
-        ),
-        ("Scale 1 0 1 Shape \"disk\"", "scaled to size 0"),
-        ("Shape \"curve\"", "shape `curve` is not supported"),
-        (
-            "Shape \"loopsubdiv\"",
-            "shape `loopsubdiv` is not supported",
-        ),
-    ] {
-        let found = causes(inside);
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(what), "{found:?}");
+    for (inside, what) in cases(
+        r#"
+        Shape "sphere" "float zmin" 0 => zmin is 0: parts of spheres
+        Shape "sphere" "float phimax" 0 => phimax is 0
+        Shape "disk" "float innerradius" 0.5 => innerradius is 0.5
+        Scale 1 2 1 AreaLightSource "diffuse" Shape "sphere"
+        => emits, but has shear or different scales along its axes
+        Scale 1 0 1 Shape "disk" => scaled to size 0
+        Shape "curve" => shape `curve` is not supported
+        Shape "loopsubdiv" => shape `loopsubdiv` is not supported
+        "#,
+    ) {
+        assert_refused(&causes(inside), &[what]);
     }
 }
 
@@ -173,34 +149,30 @@ fn patches_are_two_triangles() {
         assert_close(&[place.x / 2.0, place.y], &uv.to_array(), 0.0);
     }
     let twisted = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 1]";
-    assert!(causes(twisted)[0].contains("a patch is not flat"));
+    assert_first(&causes(twisted), "a patch is not flat");
 }
 
 #[test]
 fn unsound_meshes_are_refused() {
-    for (inside, what) in [
-        (
-            "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
-            "an index is 3, but there are only 3 vertices",
-        ),
-        (
-            "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1]",
-            "2 indices",
-        ),
-        (
-            "\"point3 P\" [0 0 0 1 0 0 2 0 0]",
-            "no triangle with an area",
-        ),
-        ("\"point3 P\" [0 0 0 1e10 0 0 2 1 0]", "-1e9 to 1e9"),
-        ("\"point3 P\" [0 0 0 1 0]", "threes of numbers"),
-    ] {
-        let found = causes(&format!("Shape \"trianglemesh\" {inside}"));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(what), "{found:?}");
+    for (inside, what) in cases(
+        r#"
+        "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 3]
+        => an index is 3, but there are only 3 vertices
+        "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1] => 2 indices
+        "point3 P" [0 0 0 1 0 0 2 0 0] => no triangle with an area
+        "point3 P" [0 0 0 1e10 0 0 2 1 0] => -1e9 to 1e9
+        "point3 P" [0 0 0 1 0] => threes of numbers
+        "#,
+    ) {
+        assert_refused(
+            &causes(&format!("Shape \"trianglemesh\" {inside}")),
+            &[what],
+        );
     }
     let many = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]";
-    assert!(
-        notes(many)[0].contains("N is left out: the mesh has 3 vertices, but N has values for 1")
+    assert_first(
+        &notes(many),
+        "N is left out: the mesh has 3 vertices, but N has values for 1",
     );
 }
 
@@ -226,10 +198,10 @@ fn objects_are_shown_where_instances_are() {
         notes("ObjectBegin \"o\" Shape \"sphere\" ObjectEnd"),
         ["text:3:1: object `o` is not used"]
     );
-    assert!(causes("ObjectInstance \"p\"")[0].contains("object `p` is not known"));
-    assert!(
-        causes("ObjectBegin \"o\" ObjectInstance \"o\" ObjectEnd")[0]
-            .contains("an object contains an instance")
+    assert_first(&causes("ObjectInstance \"p\""), "object `p` is not known");
+    assert_first(
+        &causes("ObjectBegin \"o\" ObjectInstance \"o\" ObjectEnd"),
+        "an object contains an instance",
     );
 }
 
@@ -237,12 +209,10 @@ fn objects_are_shown_where_instances_are() {
 fn alpha_is_a_mask() {
     let masked = world("Shape \"disk\" \"float alpha\" 0.25");
     match &masked.materials[masked.shapes[0].material] {
-        Material::Mask { opacity, .. } => assert_close(&[opacity.largest()], &[0.25], 0.0),
+        Material::Mask { opacity, .. } => assert_near(opacity.largest(), 0.25, 0.0),
         other => panic!("{other:?}"),
     }
 }
-
-const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 #[test]
 fn files_may_be_packed() {

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::common;
-use crate::common::{causes, notes, world};
+use crate::common::{assert_first, causes, notes, world};
 
 #[test]
 fn what_nobody_reads_is_noted_with_its_line() {
@@ -85,7 +85,7 @@ fn references_may_come_before_their_object_but_aliases_not() {
     let early = "<alias id=\"a\" as=\"b\"/><bsdf type=\"diffuse\" id=\"a\"/>";
     assert_eq!(causes(early), ["text:2:1: <alias>: no object has id `a`"]);
     let round = "<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf><shape type=\"sphere\"><ref id=\"a\"/></shape>";
-    assert!(causes(round)[0].contains("a bsdf contains itself"));
+    assert_first(&causes(round), "a bsdf contains itself");
 }
 
 #[test]
@@ -99,11 +99,11 @@ fn names_before_version_2_are_upgraded() {
     let read = read.unwrap();
     assert_eq!(read.notes, []);
     assert_eq!(read.world.depth, Some(3));
-    common::assert_close(&[read.world.shapes[0].to_world.translation.x], &[3.0], 0.0);
+    common::assert_near(read.world.shapes[0].to_world.translation.x, 3.0, 0.0);
     let etendue_world::Material::Dielectric(glass) = &read.world.materials[0] else {
         panic!("{:?}", read.world.materials);
     };
-    common::assert_close(&[glass.index], &[2.0], 0.0);
+    common::assert_near(glass.index, 2.0, 0.0);
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn depths_are_counted_from_the_first_surface() {
     assert_eq!(depth(&path("1")), Some(0));
     assert_eq!(depth(&path("8")), Some(7));
     assert_eq!(depth("<integrator type=\"direct\"/>"), Some(1));
-    assert!(causes(&path("0"))[0].contains("shows nothing"));
+    assert_first(&causes(&path("0")), "shows nothing");
     let hidden =
         "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>";
     assert!(world(hidden).hides_sources && !world("").hides_sources);

@@ -2,30 +2,21 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{causes, folder, world};
-use etendue_import::{Options, import, import_pbrt};
-use std::fs;
-
-/// Checks that a scene has one cause of refusal, which names the line and the allowed values.
-fn assert_refused(causes: &[String], line: &str, words: &str) {
-    assert_eq!(causes.len(), 1, "{causes:?}");
-    assert!(
-        causes[0].contains(line) && causes[0].contains(words),
-        "{causes:?}: {line} {words}"
-    );
-}
+use crate::common::{assert_refused, cases, causes, png, read_files, world};
 
 fn pbrt_causes(text: &str) -> Vec<String> {
-    let folder = tempfile::tempdir().unwrap();
-    let refused = import_pbrt(text, folder.path(), &Options::default()).unwrap_err();
-    refused.causes.iter().map(ToString::to_string).collect()
+    file_causes(&[("a.pbrt", text.as_bytes())])
 }
 
 /// Returns the causes for refusing a scene that consists of the given files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
-    let folder = folder(files);
-    let refused = import(&folder.path().join(files[0].0), &Options::default()).unwrap_err();
-    refused.causes.iter().map(ToString::to_string).collect()
+    read_files(files).map(drop).unwrap_err()
+}
+
+/// Returns the causes for refusing a triangle with the material `a`.
+fn mtl_causes(mtl: &str) -> Vec<String> {
+    let obj = "mtllib a.mtl\nusemtl a\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+    file_causes(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())])
 }
 
 #[test]
@@ -49,7 +40,7 @@ fn numbers_out_of_range_are_refused_at_their_line() {
             "text:2:",
         ),
     ] {
-        assert_refused(&causes(inside), line, range);
+        assert_refused(&causes(inside), &[line, range]);
     }
     let scaled = |scales: &str| {
         format!(
@@ -57,9 +48,9 @@ fn numbers_out_of_range_are_refused_at_their_line() {
         )
     };
     let large = scaled(r#"<scale value="1e6"/><scale value="1e6"/>"#);
-    assert_refused(&causes(&large), "text:3:", "out of range");
+    assert_refused(&causes(&large), &["text:3:", "out of range"]);
     let small = scaled(r#"<scale value="1e-6"/><scale value="1e-6"/>"#);
-    assert_refused(&causes(&small), "text:3:", "scales from 1e-9 to 1e9");
+    assert_refused(&causes(&small), &["text:3:", "scales from 1e-9 to 1e9"]);
     world(&scaled(r#"<scale value="1e9"/><scale value="1e-9"/>"#));
 
     let pbrt = |inside: &str| format!("WorldBegin\n{inside}\nShape \"sphere\"");
@@ -69,76 +60,48 @@ fn numbers_out_of_range_are_refused_at_their_line() {
         "Scale 1e160 1e160 1e160",
         "Scale 1e6 1e6 1e6 Scale 1e6 1e6 1e6",
     ] {
-        assert_refused(&pbrt_causes(&pbrt(inside)), "text:2:", "allowed: ");
+        assert_refused(&pbrt_causes(&pbrt(inside)), &["a.pbrt:2:", "allowed: "]);
         assert!(pbrt_causes(&pbrt(inside))[0].contains("1e9"), "{inside}");
     }
-    let obj: &[u8] = b"mtllib a.mtl\nusemtl a\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
-    let mtl: &[u8] = b"newmtl a\nKd 0.5 0.5 0.5\nKe 1e200 1 1\n";
-    let found = file_causes(&[("a.obj", obj), ("a.mtl", mtl)]);
-    assert_refused(&found, "a.mtl:3:", "from 0 to 1000000000");
+    let found = mtl_causes("newmtl a\nKd 0.5 0.5 0.5\nKe 1e200 1 1\n");
+    assert_refused(&found, &["a.mtl:3:", "from 0 to 1000000000"]);
 }
 
 #[test]
 fn an_illuminance_that_no_factor_reaches_is_refused() {
     // The illuminance of a black picture cannot be scaled to 1.
     let light = r#"LightSource "infinite" "string filename" "a.png" "float illuminance" 1"#;
-    let folder = tempfile::tempdir().unwrap();
-    let black = png(&[0; 4]);
-    fs::write(folder.path().join("a.png"), black).unwrap();
     let text = format!("WorldBegin\n{light}\nShape \"sphere\"");
-    let refused = import_pbrt(&text, folder.path(), &Options::default()).unwrap_err();
-    assert!(
-        refused.to_string().contains("the factor for illuminance"),
-        "{refused}"
-    );
-}
-
-/// Returns a grey picture of two by two pixels.
-fn png(levels: &[u8; 4]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 2);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder
-        .write_header()
-        .unwrap()
-        .write_image_data(levels)
-        .unwrap();
-    bytes
+    let black = png([2, 2], &[0; 4]);
+    let found = file_causes(&[("a.pbrt", text.as_bytes()), ("a.png", &black)]);
+    assert_refused(&found, &["the factor for illuminance"]);
 }
 
 #[test]
 fn surfaces_reflect_no_more_light_than_there_is() {
     let bsdf = |inside: &str| format!("<shape type=\"sphere\">{inside}</shape>");
-    for (inside, words) in [
-        (
-            r#"<bsdf type="diffuse"><rgb name="reflectance" value="1.5"/></bsdf>"#,
-            "reflectance goes up to 1.5; allowed: 0 to 1",
-        ),
-        (
-            r#"<bsdf type="diffuse"><texture name="reflectance" type="checkerboard"><rgb name="color0" value="2"/></texture></bsdf>"#,
-            "allowed: 0 to 1",
-        ),
-        (
-            r#"<bsdf type="roughconductor"><float name="specular_reflectance" value="1.1"/></bsdf>"#,
-            "allowed: 0 to 1",
-        ),
-        (
-            r#"<bsdf type="phong"><float name="diffuse_reflectance" value="0.7"/><float name="specular_reflectance" value="0.7"/></bsdf>"#,
-            "add up to 1.4",
-        ),
-    ] {
-        assert_refused(&causes(&bsdf(inside)), "text:2:", words);
+    for (inside, words) in cases(
+        r#"
+        <bsdf type="diffuse"><rgb name="reflectance" value="1.5"/></bsdf>
+        => reflectance goes up to 1.5; allowed: 0 to 1
+        <bsdf type="diffuse"><texture name="reflectance" type="checkerboard"><rgb name="color0" value="2"/></texture></bsdf>
+        => allowed: 0 to 1
+        <bsdf type="roughconductor"><float name="specular_reflectance" value="1.1"/></bsdf>
+        => allowed: 0 to 1
+        <bsdf type="phong"><float name="diffuse_reflectance" value="0.7"/><float name="specular_reflectance" value="0.7"/></bsdf>
+        => add up to 1.4
+        "#,
+    ) {
+        assert_refused(&causes(&bsdf(inside)), &["text:2:", words]);
     }
     // White pictures and colours have the value 1 up to rounding.
     world(&bsdf(
         r#"<bsdf type="diffuse"><rgb name="reflectance" value="1"/></bsdf>"#,
     ));
     let pbrt = "WorldBegin\nTexture \"two\" \"spectrum\" \"scale\" \"float scale\" 2\nMaterial \"diffuse\" \"texture reflectance\" \"two\"\nShape \"sphere\"";
-    assert_refused(&pbrt_causes(pbrt), "text:3:", "allowed: 0 to 1");
-    let obj: &[u8] = b"mtllib a.mtl\nusemtl a\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
-    let mtl: &[u8] = b"newmtl a\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 20\nillum 2\n";
-    let found = file_causes(&[("a.obj", obj), ("a.mtl", mtl)]);
-    assert_refused(&found, "a.mtl:1:", "1.3000 of the light");
+    assert_refused(&pbrt_causes(pbrt), &["a.pbrt:3:", "allowed: 0 to 1"]);
+    let found = mtl_causes("newmtl a\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 20\nillum 2\n");
+    assert_refused(&found, &["a.mtl:1:", "1.3000 of the light"]);
 }
 
 #[test]
@@ -149,19 +112,17 @@ fn maps_of_normals_are_refused() {
         )
     };
     for plugin in ["bumpmap", "normalmap"] {
-        assert_refused(&causes(&map(plugin)), "text:2:", "is not supported");
+        assert_refused(&causes(&map(plugin)), &["text:2:", "is not supported"]);
     }
     for parameter in [
         "\"texture displacement\" \"t\"",
         "\"string normalmap\" \"n.png\"",
     ] {
         let text = format!("WorldBegin\nMaterial \"diffuse\" {parameter}\nShape \"sphere\"");
-        assert_refused(&pbrt_causes(&text), "text:2:", "is not supported");
+        assert_refused(&pbrt_causes(&text), &["a.pbrt:2:", "is not supported"]);
     }
-    let obj: &[u8] = b"mtllib a.mtl\nusemtl a\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
-    let mtl: &[u8] = b"newmtl a\nmap_Bump -bm 1 bump.png\n";
-    let found = file_causes(&[("a.obj", obj), ("a.mtl", mtl)]);
-    assert_refused(&found, "a.mtl:2:", "is not supported");
+    let found = mtl_causes("newmtl a\nmap_Bump -bm 1 bump.png\n");
+    assert_refused(&found, &["a.mtl:2:", "is not supported"]);
 }
 
 #[test]
@@ -170,7 +131,7 @@ fn normal_maps_of_gltf_are_refused() {
     let points: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let bytes = points.map(f32::to_le_bytes).concat();
     let found = file_causes(&[("a.gltf", json), ("a.bin", &bytes)]);
-    assert_refused(&found, "materials[0].normalTexture", "is not supported");
+    assert_refused(&found, &["materials[0].normalTexture", "is not supported"]);
     let large = bytes.chunks(4).enumerate().flat_map(|(i, x)| match i {
         3 => 1e30_f32.to_le_bytes(),
         _ => [x[0], x[1], x[2], x[3]],
@@ -189,9 +150,6 @@ fn a_second_environment_is_refused() {
     let one = r#"<emitter type="constant"/>"#;
     world(one);
     let two = format!("{one}\n{one}");
-    assert_refused(
-        &causes(&two),
-        "text:3:",
-        "a second environment; allowed: one",
-    );
+    let words = ["text:3:", "a second environment; allowed: one"];
+    assert_refused(&causes(&two), &words);
 }

@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::common;
-use crate::common::{assert_close, folder, read_in, world};
+use crate::common::{
+    assert_close, assert_first, assert_near, cases, first_triangle, folder, mesh, read_in, world,
+};
 use etendue_import::Color;
-use etendue_world::{Geometry, Material, Shape, Texture, Triangles, World};
+use etendue_world::{Material, Shape, Texture, World};
 use flate2::{Compression, write::ZlibEncoder};
 use glam::{DAffine3, DMat3, DVec3};
 use std::io::Write;
@@ -37,13 +39,6 @@ fn read(inside: &str, folder: &Path) -> World {
 
 fn file(plugin: &str, name: &str, inside: &str) -> String {
     format!("<shape type=\"{plugin}\"><string name=\"filename\" value=\"{name}\"/>{inside}</shape>")
-}
-
-fn mesh(shape: &Shape) -> &Arc<Triangles> {
-    match &shape.geometry {
-        Geometry::Mesh(mesh) => mesh,
-        other => panic!("{other:?}"),
-    }
 }
 
 /// Returns the shading normal of a vertex in the world.
@@ -107,10 +102,12 @@ fn spheres_and_cylinders_are_placed() {
         0.0,
     ];
     assert_close(&map.matrix3.to_cols_array(), &expected, 1e-7);
-    for (shape, inside) in [
-        ("cylinder", "<scale x=\"2\"/>"),
-        ("rectangle", "<scale x=\"0\"/>"),
-    ] {
+    for (shape, inside) in cases(
+        r#"
+        cylinder => <scale x="2"/>
+        rectangle => <scale x="0"/>
+        "#,
+    ) {
         let inside = format!(
             "<shape type=\"{shape}\"><transform name=\"to_world\">{inside}</transform></shape>"
         );
@@ -184,8 +181,7 @@ fn normals_of_the_file_say_where_the_front_is() {
     let world = read(&file("obj", "back.obj", ""), files.path());
     let shape = &world.shapes[0];
     assert_close(&shading_normal(shape, 0), &[0.0, 0.0, -1.0], 0.0);
-    let mesh = mesh(shape);
-    let [a, b, c] = mesh.corners()[0].map(|i| mesh.vertices()[i as usize]);
+    let [a, b, c] = first_triangle(mesh(shape));
     assert!((b - a).cross(c - a).z < 0.0);
     let mirrored = read(&file("obj", "back.obj", MIRROR), files.path());
     assert_close(
@@ -279,7 +275,7 @@ fn shapes_without_a_material_are_grey_or_black() {
         });
     assert_close(&reflectances.collect::<Vec<f64>>(), &[0.5, 0.0], 0.0);
     let emission = world.shapes[1].emission.as_ref().map(Texture::largest);
-    assert_close(&[emission.unwrap()], &[2.0], 1e-12);
+    assert_near(emission.unwrap(), 2.0, 1e-12);
     assert!(world.shapes[0].emission.is_none());
 }
 
@@ -339,10 +335,7 @@ fn serialized_files_hold_several_meshes() {
     );
     assert_close(&shading_normal(&world.shapes[1], 1), &[0.0, 0.0, 1.0], 0.0);
     let causes = read_in(&shape(2), files.path(), Color::Luminance).unwrap_err();
-    assert!(
-        causes[0].contains("has 2 meshes, but shape_index is 2"),
-        "{causes:?}"
-    );
+    assert_first(&causes, "has 2 meshes, but shape_index is 2");
 }
 
 /// A mesh whose triangles have no area is left out with its material, also within a group.
@@ -361,8 +354,7 @@ fn meshes_without_area_are_left_out() {
     for inside in [flat + &bend, group] {
         let imported = read_in(&inside, files.path(), Color::Luminance).unwrap();
         assert_eq!(imported.world.shapes.len(), 1);
-        let notes = imported.notes.iter().map(ToString::to_string);
-        let notes: Vec<String> = notes.collect();
+        let notes = common::all_notes(&imported);
         assert!(
             notes[0]
                 .contains("file `flat.obj` has no triangle with an area above 0 and is left out"),
@@ -376,10 +368,7 @@ fn pointers_of_git_lfs_are_named() {
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
     let files = folder(&[("a.obj", pointer), ("a.png", pointer)]);
     let causes = read_in(&file("obj", "a.obj", ""), files.path(), Color::Luminance).unwrap_err();
-    assert!(
-        causes[0].contains("file `a.obj` is a pointer of Git LFS"),
-        "{causes:?}"
-    );
+    assert_first(&causes, "file `a.obj` is a pointer of Git LFS");
 }
 
 #[test]
@@ -391,10 +380,7 @@ fn mesh_files_that_are_damaged_are_causes() {
     let inside = file("obj", "a.obj", "") + &file("obj", "b.obj", "") + &file("ply", "a.obj", "");
     let causes = read_in(&inside, files.path(), Color::Luminance).unwrap_err();
     assert_eq!(causes.len(), 2, "{causes:#?}");
-    assert!(
-        causes[0].contains("line 2, face 1, corner 2"),
-        "{causes:#?}"
-    );
+    assert_first(&causes, "line 2, face 1, corner 2");
     assert!(causes[1].contains("has extension `obj`"), "{causes:#?}");
 }
 

@@ -6,10 +6,10 @@
     reason = "helpers of tests, of which each takes what it needs"
 )]
 
-use crate::common::folder;
+use crate::common::{all_notes, png, read_files};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use etendue_import::{Imported, Options, import};
+use etendue_import::Imported;
 use etendue_world::World;
 
 /// A texture of two rows: white above, level 188 below.
@@ -31,23 +31,14 @@ fn buffer() -> Vec<u8> {
     bytes
 }
 
-fn picture() -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer
-        .write_image_data(&[255, 255, 255, 188, 188, 188])
-        .unwrap();
-    writer.finish().unwrap();
-    bytes
-}
-
 /// Returns a file whose mesh 0 is a triangle of one material.
 pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     let material = if material.is_empty() { "{}" } else { material };
     let data = STANDARD.encode(buffer());
-    let more = more.replace("PICTURE", &STANDARD.encode(picture()));
+    let more = more.replace(
+        "PICTURE",
+        &STANDARD.encode(png([1, 2], &[255, 255, 255, 188, 188, 188])),
+    );
     with(
         nodes,
         &format!(
@@ -84,9 +75,7 @@ pub(crate) fn binary(text: &str) -> Vec<u8> {
 
 /// Imports the bytes of a file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Imported, Vec<String>> {
-    let folder = folder(&[("a.gltf", bytes)]);
-    let read = import(&folder.path().join("a.gltf"), &Options::default());
-    read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
+    read_files(&[("a.gltf", bytes)])
 }
 
 pub(crate) fn world(text: &str) -> World {
@@ -100,6 +89,5 @@ pub(crate) fn causes(text: &str) -> Vec<String> {
 }
 
 pub(crate) fn notes(text: &str) -> Vec<String> {
-    let read = read(text.as_bytes()).unwrap_or_else(|causes| panic!("{causes:#?}"));
-    read.notes.iter().map(ToString::to_string).collect()
+    all_notes(&read(text.as_bytes()).unwrap_or_else(|causes| panic!("{causes:#?}")))
 }

@@ -6,6 +6,7 @@
     reason = "helpers of tests, of which each takes what it needs"
 )]
 
+use crate::common::{all_notes, front_side, told};
 use etendue_import::{Color, Imported, Options, import_pbrt};
 use etendue_world::{Light, Material, Shape, World};
 use std::path::Path;
@@ -21,8 +22,7 @@ pub(crate) fn read_in(text: &str, folder: &Path, color: Color) -> Result<Importe
         color,
         ..Options::default()
     };
-    let read = import_pbrt(text, folder, &options);
-    read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
+    told(import_pbrt(text, folder, &options))
 }
 
 fn read(text: &str) -> Result<Imported, Vec<String>> {
@@ -56,8 +56,7 @@ pub(crate) fn unsettled(before: &str) -> Vec<String> {
 
 /// Returns all notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
-    let read = read(&scene("", inside)).unwrap();
-    read.notes.iter().map(ToString::to_string).collect()
+    all_notes(&read(&scene("", inside)).unwrap())
 }
 
 pub(crate) fn shape(inside: &str) -> Shape {
@@ -71,9 +70,6 @@ pub(crate) fn light(inside: &str) -> Light {
 /// Returns the material of a sphere or, if the material has two equal sides, the material of one
 /// side.
 pub(crate) fn material(declared: &str) -> Material {
-    let mut world = world(&format!("{declared}\nShape \"sphere\""));
-    match world.materials.remove(world.shapes[0].material) {
-        Material::TwoSided(both) => both[0].clone(),
-        other => other,
-    }
+    let world = world(&format!("{declared}\nShape \"sphere\""));
+    front_side(&world.materials[world.shapes[0].material]).clone()
 }
