@@ -67,14 +67,25 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         TransferCurve::Gamma(exponent) => libm::pow(level, exponent),
         TransferCurve::Linear => level,
     };
-    let grey = channels.is_grey();
+    counted(files, weighted(&channels, color, None, curve))
+}
+
+/// Returns one number for each pixel. Its levels are converted by `light`, and multiplied by the
+/// factors of the channels, if there are any.
+pub(crate) fn weighted(
+    channels: &Channels,
+    color: Color,
+    factors: Option<[f64; 3]>,
+    light: impl Fn(f64) -> f64,
+) -> Result<Raster, Fault> {
+    let (is_grey, white) = (channels.is_grey(), factors.map_or(1.0, |of| color.of(of)));
+    let factors = factors.unwrap_or([1.0; 3]);
     // The value of a grey pixel is used directly, because a luminance computed from three equal
     // values would have a rounding error.
-    let number = |rgb: [f64; 3]| match grey {
-        true => rgb[0],
-        false => color.of(rgb),
-    };
-    counted(files, channels.raster(curve, number))
+    channels.raster(light, |rgb| match is_grey {
+        true => rgb[0] * white,
+        false => color.of([0, 1, 2].map(|i| factors[i] * rgb[i])),
+    })
 }
 
 /// Counts the memory of a raster that is kept.

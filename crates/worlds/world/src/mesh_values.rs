@@ -16,23 +16,18 @@ pub struct MeshValues {
 }
 
 impl MeshValues {
-    /// Returns `None` unless there is one number for each vertex.
+    /// Returns the numbers of a mesh. Returns `None` unless there is one number for each vertex or,
+    /// if they do not belong to vertices, for each triangle.
     #[must_use]
-    pub fn of_vertices(mesh: Arc<Triangles>, values: Vec<f64>) -> Option<Self> {
-        (values.len() == mesh.vertices().len()).then(|| Self {
+    pub fn new(mesh: Arc<Triangles>, values: Vec<f64>, is_of_vertices: bool) -> Option<Self> {
+        let count = match is_of_vertices {
+            true => mesh.vertices().len(),
+            false => mesh.corners().len(),
+        };
+        (values.len() == count).then(|| Self {
             mesh,
             values: values.into(),
-            is_of_vertices: true,
-        })
-    }
-
-    /// Returns `None` unless there is one number for each triangle.
-    #[must_use]
-    pub fn of_triangles(mesh: Arc<Triangles>, values: Vec<f64>) -> Option<Self> {
-        (values.len() == mesh.corners().len()).then(|| Self {
-            mesh,
-            values: values.into(),
-            is_of_vertices: false,
+            is_of_vertices,
         })
     }
 
@@ -87,7 +82,7 @@ mod tests {
 
     #[test]
     fn numbers_of_vertices_are_interpolated() {
-        let values = MeshValues::of_vertices(square(), vec![1.0, 2.0, 4.0, 8.0]).unwrap();
+        let values = MeshValues::new(square(), vec![1.0, 2.0, 4.0, 8.0], true).unwrap();
         for (triangle, weights, expected) in [
             (0, [0.0, 0.0], 1.0),
             (0, [1.0, 0.0], 2.0),
@@ -106,7 +101,7 @@ mod tests {
 
     #[test]
     fn numbers_of_triangles_are_constant() {
-        let values = MeshValues::of_triangles(square(), vec![3.0, 5.0]).unwrap();
+        let values = MeshValues::new(square(), vec![3.0, 5.0], false).unwrap();
         for weights in [[0.0, 0.0], [0.25, 0.5]] {
             assert!((at(&values, 0, weights) - 3.0).abs() < 1e-12);
             assert!((at(&values, 1, weights) - 5.0).abs() < 1e-12);
@@ -115,7 +110,7 @@ mod tests {
 
     #[test]
     fn the_number_of_values_must_fit() {
-        assert!(MeshValues::of_vertices(square(), vec![1.0; 2]).is_none());
-        assert!(MeshValues::of_triangles(square(), vec![1.0; 4]).is_none());
+        assert!(MeshValues::new(square(), vec![1.0; 2], true).is_none());
+        assert!(MeshValues::new(square(), vec![1.0; 4], false).is_none());
     }
 }

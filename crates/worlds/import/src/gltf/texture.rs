@@ -154,24 +154,19 @@ impl GltfReader<'_> {
     }
 
     fn numbers_of(&self, channels: &Channels, level: TextureChannel) -> Result<Raster, Fault> {
-        let color = self.color;
-        let is_grey = channels.is_grey();
-        if let TextureChannel::Alpha { factor, cutoff } = level {
-            return channels.alphas(|alpha| cut(factor * alpha, cutoff));
+        let plain = |level: f64| level;
+        match level {
+            TextureChannel::Color(factor) => {
+                pictures::weighted(channels, self.color, Some(factor), pictures::linear)
+            }
+            TextureChannel::GreenSquared(factor) => {
+                channels.raster(plain, |rgb| (factor * rgb[1]) * (factor * rgb[1]))
+            }
+            TextureChannel::Blue(factor) => channels.raster(plain, |rgb| factor * rgb[2]),
+            TextureChannel::Alpha { factor, cutoff } => {
+                channels.alphas(|alpha| cut(factor * alpha, cutoff))
+            }
         }
-        let light = |value: f64| match level {
-            TextureChannel::Color(_) => pictures::linear(value),
-            _ => value,
-        };
-        channels.raster(light, |rgb| match level {
-            // The value of a grey pixel is used directly, because a luminance computed from three
-            // equal values would have a rounding error.
-            TextureChannel::Color(factor) if is_grey => rgb[0] * color.of(factor),
-            TextureChannel::Color(factor) => color.of([0, 1, 2].map(|i| rgb[i] * factor[i])),
-            TextureChannel::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
-            TextureChannel::Blue(factor) => factor * rgb[2],
-            TextureChannel::Alpha { .. } => 1.0,
-        })
     }
 }
 

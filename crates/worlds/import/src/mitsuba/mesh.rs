@@ -4,6 +4,7 @@ use super::mesh_data::{MitsubaAttributes, MitsubaMesh, MitsubaMeshKey, ReadMesh}
 use super::object::ObjectRef;
 use super::reader::MitsubaReader;
 use super::serialized;
+use crate::files::has_extension;
 use crate::meshes::{MENDED, MeshParts, NO_AREA};
 use crate::report::quoted;
 use etendue_meshfile::DetailedMesh;
@@ -58,8 +59,7 @@ impl<'a> MitsubaReader<'a> {
             attributes: self.wanted(object),
             linear: (!is_flat).then(|| bits(to_world.matrix3)),
         };
-        let is_new = !self.meshes.contains_key(&key);
-        let (triangles, is_made) = self.triangles(object, &key, to_world, is_new);
+        let (triangles, is_made) = self.triangles(object, &key, to_world);
         let (triangles, attributes) = match triangles {
             Ok(read) => read,
             Err(error) if error == NO_AREA => {
@@ -111,7 +111,6 @@ impl<'a> MitsubaReader<'a> {
         object: ObjectRef<'a>,
         key: &MitsubaMeshKey,
         to_world: DAffine3,
-        is_new: bool,
     ) -> (ReadMesh, bool) {
         // A mesh that has its own normals can be shared by all its placements.
         let everywhere = MitsubaMeshKey {
@@ -124,7 +123,7 @@ impl<'a> MitsubaReader<'a> {
         {
             return (known.clone(), false);
         }
-        if !is_new && let Some(known) = self.meshes.get(key) {
+        if let Some(known) = self.meshes.get(key) {
             return (known.clone(), true);
         }
         let read = self.parts(key);
@@ -140,20 +139,17 @@ impl<'a> MitsubaReader<'a> {
 
     fn parts(&mut self, key: &MitsubaMeshKey) -> Result<(MeshParts, MitsubaAttributes), String> {
         let bytes = self.mesh_bytes(&key.path)?;
-        let is_packed = key
-            .path
-            .extension()
-            .is_none_or(|e| !e.eq_ignore_ascii_case("obj") && !e.eq_ignore_ascii_case("ply"));
-        match is_packed {
-            true => serialized::read(&bytes, key.number, self.files)
-                .map(|parts| (parts, MitsubaAttributes::default())),
-            false => DetailedMesh::parse_with(&key.path, &bytes, &key.attributes)
-                .map(|mut mesh| {
-                    let attributes = MitsubaAttributes::take(&mut mesh);
-                    (MeshParts::from(mesh), attributes)
-                })
-                .map_err(|fault| format!("is not a valid mesh: {fault}")),
+        if !["obj", "ply"]
+            .map(|e| has_extension(&key.path, e))
+            .contains(&true)
+        {
+            let parts = serialized::read(&bytes, key.number, self.files)?;
+            return Ok((parts, MitsubaAttributes::default()));
         }
+        let read = DetailedMesh::parse_with(&key.path, &bytes, &key.attributes);
+        let mut mesh = read.map_err(|fault| format!("is not a valid mesh: {fault}"))?;
+        let attributes = MitsubaAttributes::take(&mut mesh);
+        Ok((MeshParts::from(mesh), attributes))
     }
 
     fn mesh_bytes(&mut self, path: &Path) -> Result<Arc<[u8]>, String> {

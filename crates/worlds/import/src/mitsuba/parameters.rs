@@ -1,7 +1,7 @@
 //! Values of `$parameters`.
 
 use crate::report::quoted;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum number of bytes that substitution may produce for a file, over all values. Defaults may
 /// contain other parameters, so values could grow without limit.
@@ -10,52 +10,32 @@ const MOST_BYTES: usize = 16 << 20;
 /// Parameters by name, set by the caller or by `<default>`.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
-    values: BTreeMap<String, MitsubaParameter>,
+    values: BTreeMap<String, String>,
+    /// The parameters that the caller has set, and that the file did not use so far. The file must
+    /// use all of them.
+    unused: BTreeSet<String>,
     made: usize,
-}
-
-#[derive(Debug)]
-struct MitsubaParameter {
-    value: String,
-    /// Whether the caller has set the parameter. The file must use every parameter that the caller
-    /// has set.
-    is_set: bool,
-    is_used: bool,
 }
 
 impl Parameters {
     /// Creates the parameters set by the caller.
     pub(super) fn new(set: &[(String, String)]) -> Self {
-        let values = set.iter().map(|(name, value)| {
-            let parameter = MitsubaParameter {
-                value: value.clone(),
-                is_set: true,
-                is_used: false,
-            };
-            (name.clone(), parameter)
-        });
         Self {
-            values: values.collect(),
+            values: set.iter().cloned().collect(),
+            unused: set.iter().map(|(name, _)| name.clone()).collect(),
             made: 0,
         }
     }
 
     /// Sets the value of a parameter, unless the parameter already has a value.
     pub(super) fn default(&mut self, name: &str, value: &str) {
-        self.values
-            .entry(name.to_owned())
-            .or_insert_with(|| MitsubaParameter {
-                value: value.to_owned(),
-                is_set: false,
-                is_used: false,
-            });
+        let known = self.values.entry(name.to_owned());
+        known.or_insert_with(|| value.to_owned());
     }
 
     /// Returns the names that the caller has set but the file does not use.
-    pub(super) fn unused(&self) -> impl Iterator<Item = &str> {
-        let all = self.values.iter();
-        all.filter(|(_, p)| p.is_set && !p.is_used)
-            .map(|(name, _)| name.as_str())
+    pub(super) fn unused(&self) -> impl Iterator<Item = &String> {
+        self.unused.iter()
     }
 
     /// Returns the text after parameters are replaced by their values. `\$` stands for a dollar
@@ -75,10 +55,10 @@ impl Parameters {
             made.push_str(before);
             let name = self.longest(after).ok_or_else(|| undefined(after))?;
             rest = &after[name.len()..];
-            if let Some(parameter) = self.values.get_mut(&name) {
-                parameter.is_used = true;
-                self.made += parameter.value.len();
-                made.push_str(&parameter.value);
+            if let Some(value) = self.values.get(&name) {
+                self.unused.remove(&name);
+                self.made += value.len();
+                made.push_str(value);
             }
             if self.made > MOST_BYTES {
                 return Err(format!(

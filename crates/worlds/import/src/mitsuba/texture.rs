@@ -292,10 +292,7 @@ impl<'a> MitsubaReader<'a> {
             ));
         }
         let mesh = Arc::clone(&mesh.triangles);
-        let made = match of.is_of_vertices {
-            true => MeshValues::of_vertices(mesh, values),
-            false => MeshValues::of_triangles(mesh, values),
-        };
+        let made = MeshValues::new(mesh, values, of.is_of_vertices);
         made.ok_or_else(|| "does not fit the mesh".to_owned())
     }
 }

@@ -17,13 +17,12 @@ const RIGID: f64 = 1e-3;
 /// Returns the map of one element; `Err` describes a fault.
 pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
     match name {
-        "translate" => {
+        "translate" | "scale" => {
             allow(attributes, &["x", "y", "z", "value"])?;
-            Ok(DAffine3::from_translation(vector(attributes, 0.0)?))
-        }
-        "scale" => {
-            allow(attributes, &["x", "y", "z", "value"])?;
-            Ok(DAffine3::from_scale(vector(attributes, 1.0)?))
+            match name {
+                "scale" => Ok(DAffine3::from_scale(vector(attributes, 1.0)?)),
+                _ => Ok(DAffine3::from_translation(vector(attributes, 0.0)?)),
+            }
         }
         "rotate" => {
             allow(attributes, &["x", "y", "z", "value", "angle"])?;

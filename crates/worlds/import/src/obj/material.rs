@@ -2,7 +2,7 @@
 
 use super::mtl::{MtlEntry, MtlMap, ObjSurface};
 use super::reader::ObjReader;
-use crate::pictures::{counted, decode, linear};
+use crate::pictures::{counted, decode, linear, weighted};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
 use crate::report::quoted;
 use etendue_field::Raster;
@@ -171,11 +171,7 @@ impl ObjReader<'_> {
         let bytes = self.files.read(&path)?;
         let channels = decode(&path, &bytes, self.files)?;
         let light = |level: f64| if raw { level } else { linear(level) };
-        let is_grey = channels.is_grey();
-        let raster = channels.raster(light, |rgb| match is_grey {
-            true => rgb[0] * self.color.of(factor),
-            false => self.color.of([0, 1, 2].map(|i| factor[i] * rgb[i])),
-        });
+        let raster = weighted(&channels, self.color, Some(factor), light);
         let raster = counted(self.files, raster)?;
         let is_in_range = |v: &f64| (0.0..=MAX_NUMBER).contains(v);
         if !raster.values().iter().all(is_in_range) {

@@ -234,9 +234,7 @@ impl<'a> Builder<'a> {
             is_used: false.into(),
         }
     }
-}
 
-impl Builder<'_> {
     /// Adds a cause for each unclosed block that is nested deeper than a level.
     fn refuse_open(&mut self, level: usize) {
         while self.stack.len() > level {
@@ -308,9 +306,7 @@ impl Builder<'_> {
         });
         Ok(())
     }
-}
 
-impl Builder<'_> {
     /// Reads a file. `Include` reads a file as if the text of the file replaced the directive.
     /// After `Import`, the graphics state is restored, and only the objects that the file defines
     /// are kept.
