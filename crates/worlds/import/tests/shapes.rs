@@ -7,7 +7,7 @@ use crate::common::{
     assert_close, assert_first, assert_near, cases, first_triangle, folder, mesh, read_in, world,
 };
 use etendue_import::Color;
-use etendue_world::{Material, Shape, Texture, World};
+use etendue_world::{Shape, Texture, World};
 use flate2::{Compression, write::ZlibEncoder};
 use glam::{DAffine3, DMat3, DVec3};
 use std::io::Write;
@@ -35,6 +35,12 @@ fn meshes() -> tempfile::TempDir {
 
 fn read(inside: &str, folder: &Path) -> World {
     read_in(inside, folder, Color::Luminance).unwrap().world
+}
+
+/// Returns a shape with the steps of its placement.
+fn placed(plugin: &str, steps: &str) -> String {
+    let transform = format!("<transform name=\"to_world\">{steps}</transform>");
+    format!("<shape type=\"{plugin}\">{transform}</shape>")
 }
 
 fn file(plugin: &str, name: &str, inside: &str) -> String {
@@ -108,40 +114,28 @@ fn spheres_and_cylinders_are_placed() {
         rectangle => <scale x="0"/>
         "#,
     ) {
-        let inside = format!(
-            "<shape type=\"{shape}\"><transform name=\"to_world\">{inside}</transform></shape>"
-        );
-        assert_eq!(common::causes(&inside).len(), 1);
+        assert_eq!(common::causes(&placed(shape, inside)).len(), 1);
     }
-    world(
-        "<shape type=\"cylinder\"><transform name=\"to_world\"><scale value=\"2 2 5\"/></transform></shape>",
-    );
+    world(&placed("cylinder", "<scale value=\"2 2 5\"/>"));
 }
 
 /// The bounding boxes of Mitsuba 3.9 show that the radius of its sphere is the length of the placed
 /// X axis.
 #[test]
 fn uneven_spheres_are_those_of_mitsuba() {
+    let rotated = r#"<rotate z="1" angle="30"/><scale y="2"/>"#;
     for (scales, radius) in [
         ("<scale x=\"2\"/>", 2.0),
         ("<scale y=\"2\"/>", 1.0),
-        (
-            "<rotate z=\"1\" angle=\"30\"/><scale y=\"2\"/>",
-            1.75_f64.sqrt(),
-        ),
+        (rotated, 1.75_f64.sqrt()),
         ("<scale x=\"-3\"/>", 3.0),
     ] {
-        let inside = format!(
-            "<shape type=\"sphere\"><transform name=\"to_world\">{scales}</transform></shape>"
-        );
+        let inside = placed("sphere", scales);
         let map = world(&inside).shapes[0].to_world.matrix3;
         for axis in [map.x_axis, map.y_axis, map.z_axis] {
             assert!((axis.length() - radius).abs() < 1e-12, "{scales}: {axis}");
         }
-        assert!(
-            common::notes(&inside)[0].contains("as in Mitsuba"),
-            "{scales}"
-        );
+        assert_first(&common::notes(&inside), "as in Mitsuba");
     }
     // An instance makes a true ellipsoid, which may not emit.
     let group = |inside: &str| {
@@ -184,11 +178,8 @@ fn normals_of_the_file_say_where_the_front_is() {
     let [a, b, c] = first_triangle(mesh(shape));
     assert!((b - a).cross(c - a).z < 0.0);
     let mirrored = read(&file("obj", "back.obj", MIRROR), files.path());
-    assert_close(
-        &shading_normal(&mirrored.shapes[0], 0),
-        &[0.0, 0.0, -1.0],
-        0.0,
-    );
+    let normal = shading_normal(&mirrored.shapes[0], 0);
+    assert_close(&normal, &[0.0, 0.0, -1.0], 0.0);
 }
 
 #[test]
@@ -196,12 +187,8 @@ fn textures_of_obj_files_are_turned_over() {
     let files = meshes();
     let last = |plugin: &str, name: &str, inside: &str| {
         let world = read(&file(plugin, name, inside), files.path());
-        mesh(&world.shapes[0])
-            .uvs()
-            .unwrap()
-            .last()
-            .unwrap()
-            .to_array()
+        let uvs = mesh(&world.shapes[0]).uvs().unwrap();
+        uvs.last().unwrap().to_array()
     };
     let flip = |on: bool| format!("<boolean name=\"flip_tex_coords\" value=\"{on}\"/>");
     assert_close(&last("obj", "uvs.obj", ""), &[0.0, 0.0], 0.0);
@@ -213,11 +200,8 @@ fn textures_of_obj_files_are_turned_over() {
 #[test]
 fn instances_share_triangles() {
     let files = meshes();
-    let group = file(
-        "ply",
-        "a.ply",
-        "<transform name=\"to_world\"><translate x=\"1\"/></transform>",
-    );
+    let moved = "<transform name=\"to_world\"><translate x=\"1\"/></transform>";
+    let group = file("ply", "a.ply", moved);
     let instance = |x: i32| {
         format!(
             "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><scale value=\"{x}\"/></transform></shape>"
@@ -266,14 +250,11 @@ fn instances_share_what_their_group_holds() {
 fn shapes_without_a_material_are_grey_or_black() {
     let inside = "<shape type=\"sphere\"/><shape type=\"sphere\"><emitter type=\"area\"><rgb name=\"radiance\" value=\"2\"/></emitter></shape>";
     let world = world(inside);
-    let reflectances = world
-        .shapes
-        .iter()
-        .map(|shape| match &world.materials[shape.material] {
-            Material::Diffuse { reflectance } => reflectance.largest(),
-            other => panic!("{other:?}"),
-        });
-    assert_close(&reflectances.collect::<Vec<f64>>(), &[0.5, 0.0], 0.0);
+    let reflectances = [0, 1].map(|i: usize| {
+        let material = &world.materials[world.shapes[i].material];
+        common::reflectance(material).largest()
+    });
+    assert_close(&reflectances, &[0.5, 0.0], 0.0);
     let emission = world.shapes[1].emission.as_ref().map(Texture::largest);
     assert_near(emission.unwrap(), 2.0, 1e-12);
     assert!(world.shapes[0].emission.is_none());
@@ -293,18 +274,14 @@ fn serialized() -> Vec<u8> {
         put(b"name\0");
         put(&3_u64.to_le_bytes());
         put(&1_u64.to_le_bytes());
-        for value in [0.0, 0.0, z, 1.0, 0.0, z, 0.0, 1.0, z] {
-            put(&value.to_le_bytes());
-        }
-        for value in [0.0, 0.0, 2.0_f32].repeat(3) {
-            put(&value.to_le_bytes());
-        }
-        for value in [0.0, 0.0, 1.0, 0.0, 0.0, 0.75_f32] {
-            put(&value.to_le_bytes());
-        }
-        for corner in [0_u32, 1, 2] {
-            put(&corner.to_le_bytes());
-        }
+        put(&[0.0, 0.0, z, 1.0, 0.0, z, 0.0, 1.0, z]
+            .map(f32::to_le_bytes)
+            .concat());
+        put(&[0.0, 0.0, 2.0].map(f32::to_le_bytes).concat().repeat(3));
+        put(&[0.0, 0.0, 1.0, 0.0, 0.0, 0.75]
+            .map(f32::to_le_bytes)
+            .concat());
+        put(&[0, 1, 2].map(u32::to_le_bytes).concat());
         file.extend(packed.finish().unwrap());
     }
     for offset in offsets {
@@ -319,11 +296,8 @@ fn serialized_files_hold_several_meshes() {
     let bytes = serialized();
     let files = folder(&[("a.serialized", &bytes)]);
     let shape = |i: usize| {
-        file(
-            "serialized",
-            "a.serialized",
-            &format!("<integer name=\"shape_index\" value=\"{i}\"/>"),
-        )
+        let index = format!("<integer name=\"shape_index\" value=\"{i}\"/>");
+        file("serialized", "a.serialized", &index)
     };
     let world = read(&(shape(0) + &shape(1)), files.path());
     let heights = world.shapes.iter().map(|s| mesh(s).vertices()[2].z);
