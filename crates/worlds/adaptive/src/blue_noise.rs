@@ -9,7 +9,7 @@ use crate::metric::Metric;
 use etendue_field::whole;
 use etendue_sampling::DiscreteDistribution;
 use etendue_transform::random::{Stream, unit, words};
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Number of candidates for each point that is kept.
@@ -87,35 +87,15 @@ struct Crowd {
     /// The neighbours of each candidate, with their contributions to its weight.
     neighbours: Vec<Vec<(u32, f64)>>,
     weights: Vec<f64>,
-    queue: BinaryHeap<Candidate>,
+    /// The candidates with the ranks of their weights, which may be outdated because weights
+    /// decrease. Of equal weights, the lowest index is first.
+    queue: BinaryHeap<(i64, Reverse<u32>)>,
 }
 
-/// A candidate with its weight, which may be outdated because weights decrease.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    weight: f64,
-    index: u32,
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Candidate {}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_weight = self.weight.total_cmp(&other.weight);
-        by_weight.then(other.index.cmp(&self.index))
-    }
+/// Returns a number by which weights are ordered, as by [`f64::total_cmp`].
+fn rank(weight: f64) -> i64 {
+    let bits = weight.to_bits().cast_signed();
+    bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
 }
 
 /// Returns the maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
@@ -153,10 +133,8 @@ impl Crowd {
             .iter()
             .map(|near| near.iter().map(|(_, weight)| weight).sum())
             .collect();
-        let entries = weights.iter().zip(0..).map(|(weight, index)| Candidate {
-            weight: *weight,
-            index,
-        });
+        let entries = weights.iter().zip(0..);
+        let entries = entries.map(|(weight, index)| (rank(*weight), Reverse(index)));
         Self {
             queue: entries.collect(),
             neighbours,
@@ -166,16 +144,16 @@ impl Crowd {
 
     fn most_crowded(&mut self, is_kept: &[bool]) -> Option<usize> {
         loop {
-            let entry = self.queue.pop()?;
-            let index = entry.index as usize;
-            if !is_kept[index] {
+            let (before, index) = self.queue.pop()?;
+            let out = index.0 as usize;
+            if !is_kept[out] {
                 continue;
             }
-            let weight = self.weights[index];
-            if weight >= entry.weight {
-                return Some(index);
+            let now = rank(self.weights[out]);
+            if now >= before {
+                return Some(out);
             }
-            self.queue.push(Candidate { weight, ..entry });
+            self.queue.push((now, index));
         }
     }
 
