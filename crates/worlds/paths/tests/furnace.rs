@@ -93,15 +93,8 @@ enum Behind {
     Nothing,
 }
 
-/// A material with its known properties.
-struct Case {
-    name: &'static str,
-    material: Material,
-    is_lossless: bool,
-    behind: Behind,
-}
-
-fn cases() -> Vec<Case> {
+/// Returns materials by name, each with the medium behind it, and whether it absorbs no light.
+fn cases() -> Vec<(&'static str, Behind, Material, bool)> {
     use Behind::{Medium, Nothing, Same};
     let ggx = |alpha| roughness(MicrofacetDistribution::Ggx, [alpha, alpha]);
     let beckmann = || roughness(MicrofacetDistribution::Beckmann, [0.3, 0.15]);
@@ -126,70 +119,44 @@ fn cases() -> Vec<Case> {
             gloss: constant(0.3),
         }))
     };
+    let translucent = Material::DiffuseTransmission {
+        reflectance: constant(0.3),
+        transmittance: constant(0.7),
+    };
+    let smooth = |index| glass(index, false, None);
+    let thin = |index| glass(index, true, None);
+    let (silver, inverse) = (Some([0.2, 3.9]), 1.0 / 1.5);
     let lossless = [
-        ("glass", Medium(1.5), glass(1.5, false, None)),
-        ("bubble", Medium(1.0 / 1.5), glass(1.0 / 1.5, false, None)),
-        (
-            "white and glass",
-            Medium(1.5),
-            blend(white(), glass(1.5, false, None)),
-        ),
-        ("thin glass", Same, glass(1.5, true, None)),
-        ("thin gap", Same, glass(0.75, true, None)),
-        ("masked thin glass", Same, mask(glass(1.5, true, None))),
+        ("glass", Medium(1.5), smooth(1.5)),
+        ("bubble", Medium(inverse), smooth(inverse)),
+        ("white and glass", Medium(1.5), blend(white(), smooth(1.5))),
+        ("thin glass", Same, thin(1.5)),
+        ("thin gap", Same, thin(0.75)),
+        ("masked thin glass", Same, mask(thin(1.5))),
         ("masked white", Same, mask(white())),
-        (
-            "mirror and thin glass",
-            Same,
-            blend(mirror(), glass(1.5, true, None)),
-        ),
+        ("mirror and thin glass", Same, blend(mirror(), thin(1.5))),
         ("white", Nothing, white()),
-        (
-            "diffuse transmission",
-            Same,
-            Material::DiffuseTransmission {
-                reflectance: constant(0.3),
-                transmittance: constant(0.7),
-            },
-        ),
+        ("diffuse transmission", Same, translucent),
         ("mirror", Nothing, mirror()),
         ("plastic", Nothing, two_sided(plastic(None, true))),
         ("linear plastic", Nothing, two_sided(plastic(None, false))),
         ("white and mirror", Nothing, blend(white(), mirror())),
     ];
+    let rough_bubble = glass(inverse, false, beckmann());
     let lossy = [
         ("rough glass", Medium(1.5), glass(1.5, false, ggx(0.2))),
-        (
-            "rough bubble",
-            Medium(1.0 / 1.5),
-            glass(1.0 / 1.5, false, beckmann()),
-        ),
+        ("rough bubble", Medium(inverse), rough_bubble),
         ("rough mirror", Nothing, two_sided(metal(None, beckmann()))),
-        (
-            "rough metal",
-            Nothing,
-            two_sided(metal(Some([0.2, 3.9]), ggx(0.3))),
-        ),
-        (
-            "smooth metal",
-            Nothing,
-            two_sided(metal(Some([0.2, 3.9]), None)),
-        ),
+        ("rough metal", Nothing, two_sided(metal(silver, ggx(0.3)))),
+        ("smooth metal", Nothing, two_sided(metal(silver, None))),
         ("rough plastic", Nothing, two_sided(plastic(ggx(0.2), true))),
         ("phong", Nothing, two_sided(phong)),
         ("principled", Nothing, two_sided(principled(0.4, 0.0))),
         ("transmitting principled", Medium(1.5), principled(0.1, 0.8)),
     ];
-    let case = |is_lossless| {
-        move |(name, behind, material)| Case {
-            name,
-            material,
-            is_lossless,
-            behind,
-        }
-    };
-    let lossless = lossless.map(case(true)).into_iter();
-    lossless.chain(lossy.map(case(false))).collect()
+    let lossless = lossless.map(|(name, behind, of)| (name, behind, of, true));
+    let lossy = lossy.map(|(name, behind, of)| (name, behind, of, false));
+    lossless.into_iter().chain(lossy).collect()
 }
 
 /// A shape with a camera that looks at its middle.
@@ -276,13 +243,7 @@ fn mean(picture: &Picture, of: impl Fn(usize) -> bool) -> (f64, f64) {
 
 #[test]
 fn no_surface_changes_the_energy_of_a_furnace() {
-    for Case {
-        name,
-        material,
-        is_lossless,
-        behind,
-    } in cases()
-    {
+    for (name, behind, material, is_lossless) in cases() {
         for view in View::of(behind) {
             let picture = view.picture(&material);
             let expected = match (view, behind) {

@@ -1,5 +1,6 @@
 //! Tests light fields behind a pixel in scenes where these light fields are known.
 
+use crate::known::scaled;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};
 use etendue_world::{
@@ -37,11 +38,21 @@ fn world(shapes: Vec<Shape>) -> World {
 }
 
 fn floor(material: usize) -> Shape {
-    Shape::new(
-        Geometry::Rectangle,
-        DAffine3::from_scale(DVec3::splat(20.0)),
-        material,
-    )
+    Shape::new(Geometry::Rectangle, scaled(20.0, 0.0), material)
+}
+
+/// Returns an upright square in the plane of a place (y, z). Its front is towards −Y if `turned` is
+/// 1, and towards Y if `turned` is −1.
+fn wall([y, z]: [f64; 2], size: f64, turned: f64, material: usize) -> Shape {
+    let axes = [DVec3::X, turned * DVec3::Z, -turned * DVec3::Y].map(|axis| size * axis);
+    let axes = DMat3::from_cols(axes[0], axes[1], axes[2]);
+    let to_world = DAffine3::from_mat3_translation(axes, DVec3::new(0.0, y, z));
+    Shape::new(Geometry::Rectangle, to_world, material)
+}
+
+fn shining(mut wall: Shape) -> Shape {
+    wall.emission = Some(Texture::Constant(2.0));
+    wall
 }
 
 fn directional() -> Light {
@@ -98,11 +109,9 @@ fn assert_even_with(
     let photons = PhotonProbe::new(&probe, budget(photons, 6));
     let by_bsdf = BackwardProbe::new(&probe, budget(40_000, 7)).by_bsdf();
     let mut sources: Vec<(&str, &dyn PhotonSource)> = vec![("rays", &rays), ("photons", &photons)];
-    sources.extend(
-        by_bsdf
-            .iter()
-            .map(|rays| ("BSDF rays", rays as &dyn PhotonSource)),
-    );
+    if let Some(rays) = &by_bsdf {
+        sources.push(("BSDF rays", rays));
+    }
     for (what, source) in sources {
         let found = sums(&probe, source);
         for (plane, [mean, error]) in probe.planes.iter().zip(found) {
@@ -112,17 +121,10 @@ fn assert_even_with(
             let half = [plane.window.x, plane.window.u].map(|profile| profile.half_width());
             let expected = radiance * half[0].powi(2) * half[1].powi(2);
             let close = (mean - expected).abs() < 5.0 * error + 1e-9 * expected;
-            assert!(
-                close,
-                "{what} at {}: {mean} ± {error}, not {expected}",
-                plane.name
-            );
+            let place = format!("{what} at {}: {mean} ± {error}, not {expected}", plane.name);
+            assert!(close, "{place}");
             // The error is small enough to detect a missing cosine or half-width.
-            assert!(
-                error < 0.06 * expected,
-                "{what} at {}: ± {error} of {expected}",
-                plane.name
-            );
+            assert!(error < 0.06 * expected, "too little to tell: {place}");
         }
     }
 }
@@ -154,14 +156,7 @@ fn light_that_leaves_a_floor() {
 #[test]
 fn light_that_arrives_at_a_floor_and_leaves_a_wall() {
     // The mirrored ray continues to an emitting wall.
-    let mut wall = Shape::new(
-        Geometry::Rectangle,
-        DAffine3::from_translation(DVec3::new(0.0, 4.0, 0.0)),
-        0,
-    );
-    wall.to_world.matrix3 = DMat3::from_cols(8.0 * DVec3::X, 8.0 * DVec3::Z, -8.0 * DVec3::Y);
-    wall.emission = Some(Texture::Constant(2.0));
-    let mut of = world(vec![floor(0), wall]);
+    let mut of = world(vec![floor(0), shining(wall([4.0, 0.0], 8.0, 1.0, 0))]);
     of.depth = Some(1);
     let question = Question {
         surfaces: 2,
@@ -182,8 +177,7 @@ fn surfaces_curve_as_they_do() {
         let probe = Probe::new(&paths, &camera(), &QUESTION).unwrap();
         probe.stops[0].curvature
     };
-    let scaled = |radius: f64| DAffine3::from_scale(DVec3::splat(radius));
-    for k in of(Geometry::Sphere, scaled(0.5)) {
+    for k in of(Geometry::Sphere, scaled(0.5, 0.0)) {
         // Curvatures are finite differences over a few hundredths of the radius.
         assert!((k - 2.0).abs() < 0.03, "{k}");
     }
@@ -196,11 +190,9 @@ fn surfaces_curve_as_they_do() {
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
     // A large sphere is seen from inside.
-    let [along, across] = of(Geometry::Sphere, scaled(5.0));
-    assert!(
-        (along + 0.2).abs() < 0.003 && (across + 0.2).abs() < 0.003,
-        "{along}, {across}"
-    );
+    let [along, across] = of(Geometry::Sphere, scaled(5.0, 0.0));
+    let off = (along + 0.2).abs().max((across + 0.2).abs());
+    assert!(off < 0.003, "{along}, {across}");
 }
 
 #[test]
@@ -210,37 +202,21 @@ fn the_sky_in_windows_and_mirrors() {
     let all = ["camera", "leaving_1", "arriving_1"];
     assert_even(&of, &QUESTION, &all, 1.5);
     // A large mirror ball is seen from outside; all rays of its reflections end in the sky.
-    let ball = DAffine3::from_scale_rotation_translation(
-        DVec3::splat(20.0),
-        DQuat::IDENTITY,
-        DVec3::new(0.0, 0.0, -20.0),
-    );
-    of.shapes = vec![Shape::new(Geometry::Sphere, ball, 1)];
+    of.shapes = vec![Shape::new(Geometry::Sphere, scaled(20.0, -20.0), 1)];
     assert_even(&of, &QUESTION, &all, 1.5);
 }
 
 #[test]
 fn an_emitting_wall_in_one_and_two_mirrors() {
     // The ray continues from the floor to a wall, and from a mirror at the wall to a second wall.
-    let wall = |y: f64, z: f64, turned: f64, material: usize| {
-        let place = DAffine3::from_translation(DVec3::new(0.0, y, z));
-        let mut wall = Shape::new(Geometry::Rectangle, place, material);
-        let axes = [DVec3::X, DVec3::Z, -DVec3::Y].map(|axis| turned * axis);
-        wall.to_world.matrix3 = DMat3::from_cols(4.0 * DVec3::X, 4.0 * axes[1], 4.0 * axes[2]);
-        wall
-    };
-    let shining = |mut wall: Shape| {
-        wall.emission = Some(Texture::Constant(2.0));
-        wall
-    };
     let planes = ["camera", "leaving_1", "arriving_1"];
-    let mut of = world(vec![floor(1), shining(wall(4.0, 0.0, 1.0, 0))]);
+    let mut of = world(vec![floor(1), shining(wall([4.0, 0.0], 4.0, 1.0, 0))]);
     of.depth = Some(1);
     assert_even(&of, &QUESTION, &planes, 2.0);
     let mut of = world(vec![
         floor(1),
-        wall(4.0, 0.0, 1.0, 1),
-        shining(wall(-8.0, 10.0, -1.0, 0)),
+        wall([4.0, 0.0], 4.0, 1.0, 1),
+        shining(wall([-8.0, 10.0], 4.0, -1.0, 0)),
     ]);
     of.depth = Some(2);
     assert_even(&of, &QUESTION, &planes, 2.0);
@@ -268,29 +244,21 @@ fn wide_windows() {
 /// A black sheet with an opacity of 0.4 covers the floor, or also the camera's view of it.
 #[test]
 fn partly_transparent_sheets_between_lights_floors_and_cameras() {
-    let sun = || vec![directional()];
-    let lamp = || {
-        vec![Light::Point {
-            position: DVec3::new(0.0, 0.0, 40.0),
-            intensity: 800.0,
-        }]
+    let lamp = Light::Point {
+        position: DVec3::new(0.0, 0.0, 40.0),
+        intensity: 800.0,
     };
-    let sky = || vec![Light::Constant { radiance: 1.5 }];
+    let sky = Light::Constant { radiance: 1.5 };
     let planes = ["camera", "leaving_1"];
-    for (lights, irradiance) in [(sun(), 2.4), (lamp(), 0.5), (sky(), 1.5 * PI)] {
+    for (light, irradiance) in [(directional(), 2.4), (lamp, 0.5), (sky, 1.5 * PI)] {
         for (height, share) in [(3.0, 0.6), (1.0, 0.36)] {
-            let place = DAffine3::from_translation(height * DVec3::Z);
-            let sheet = Shape::new(
-                Geometry::Rectangle,
-                place * DAffine3::from_scale(DVec3::splat(1e4)),
-                2,
-            );
+            let sheet = Shape::new(Geometry::Rectangle, scaled(1e4, height), 2);
             let mut of = world(vec![floor(0), sheet]);
             of.materials.push(Material::Mask {
                 opacity: Texture::Constant(0.4),
                 of: Box::new(Material::diffuse(0.0)),
             });
-            of.lights.clone_from(&lights);
+            of.lights = vec![light.clone()];
             // Only light that has met the floor counts.
             of.depth = Some(1);
             assert_even(&of, &QUESTION, &planes, share * irradiance * 0.5 / PI);
