@@ -1,10 +1,9 @@
 //! Materials. Opaque materials are the same on both sides.
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::reader::{PbrtReader, Uv};
+use super::reader::{Ask, PbrtReader, Uv};
 use super::scene::MaterialOf;
 use super::spectrum::named_index;
-use super::texture::Ask;
 use crate::range::{MAX_MATERIALS, MAX_SHARE};
 use crate::report::{SourcePlace, quoted};
 use crate::spectrum::Role;

@@ -2,12 +2,12 @@
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::scene::PbrtScene;
-use super::texture::Ask;
 use crate::Color;
 use crate::files::Files;
 use crate::main_file::MainFile;
 use crate::pictures::Pictures;
 use crate::report::{Report, SourcePlace, quoted};
+use crate::spectrum::Role;
 use etendue_world::{Texture, Triangles, World};
 use glam::{DAffine2, DMat2, DVec2};
 use std::collections::{BTreeMap, HashMap};
@@ -50,6 +50,13 @@ impl Uv {
         };
         DAffine2::from_mat2_translation(DMat2::from_cols(x, y), start)
     }
+}
+
+/// The type of a texture. Float textures and spectrum textures have separate names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Ask {
+    Float,
+    Spectrum(Role),
 }
 
 /// The relation between the (u, v) of a surface in pbrt and its (u, v) in a world.

@@ -3,9 +3,8 @@
 use super::entity::{CauseGiven, Entity, Read};
 use super::material::reads_uv;
 use super::mesh::PbrtMesh;
-use super::reader::{PbrtReader, Uv};
+use super::reader::{Ask, PbrtReader, Uv};
 use super::scene::PbrtShape;
-use super::texture::Ask;
 use crate::range::{MAX_SHAPES, fault};
 use crate::report::{SourcePlace, quoted};
 use etendue_world::{EmittedRadiance, Geometry, Material, Texture};

@@ -1,7 +1,7 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
 use super::entity::{CauseGiven, Entity, Read};
-use super::reader::{PbrtReader, Uv};
+use super::reader::{Ask, PbrtReader, Uv};
 use crate::files::has_extension;
 use crate::pictures::TransferCurve;
 use crate::range::MAX_SHARE;
@@ -18,13 +18,6 @@ const MAX_DEPTH: usize = 16;
 
 /// Plugins supported as textures.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
-
-/// The type of a texture. Float textures and spectrum textures have separate names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Ask {
-    Float,
-    Spectrum(Role),
-}
 
 impl PbrtReader<'_> {
     /// Returns the texture of a parameter, or a constant if the parameter is missing.
