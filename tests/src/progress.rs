@@ -2,6 +2,7 @@
 //! line is written after each twentieth of the work.
 
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 use std::time::Duration;
 
 /// Number of progress lines where there is no terminal.
@@ -22,6 +23,21 @@ pub(crate) fn progress(count: u64, things: &'static str) -> CountedProgress {
         bar.set_style(style);
     }
     CountedProgress { bar, things }
+}
+
+/// Returns the results of work on some items, in order, computed in parallel. A bar counts the
+/// items.
+pub(crate) fn in_parallel<N: Send, T: Send>(
+    items: impl IntoIterator<Item = N>,
+    things: &'static str,
+    of: impl Fn(N) -> T + Sync,
+) -> Vec<T> {
+    let items: Vec<N> = items.into_iter().collect();
+    let bar = progress(items.len() as u64, things);
+    let found = items.into_par_iter().map(&of).inspect(|_| bar.one());
+    let found = found.collect();
+    bar.end();
+    found
 }
 
 impl CountedProgress {

@@ -1,11 +1,12 @@
-//! Random choices that define one case of an attack. Each random choice is a function of the
-//! seed, the number of the case, and the number of previous choices.
+//! Random choices that define one case of an attack, or one random scene. Each random choice is a
+//! function of the seed, the number of the case, and the number of previous choices.
 
 use etendue_transform::random::{self, Stream};
 
-/// The random numbers for one case of an attack.
+/// The random numbers for one case.
 #[derive(Debug)]
 pub(crate) struct Dice {
+    stream: Stream,
     seed: u64,
     case: u64,
     block: u32,
@@ -13,7 +14,13 @@ pub(crate) struct Dice {
 
 impl Dice {
     pub(crate) fn new(seed: u64, case: u64) -> Self {
+        Self::of(Stream::Photon, seed, case)
+    }
+
+    /// Creates random choices from a stream of numbers.
+    pub(crate) fn of(stream: Stream, seed: u64, case: u64) -> Self {
         Self {
+            stream,
             seed,
             case,
             block: 0,
@@ -22,7 +29,7 @@ impl Dice {
 
     fn words(&mut self) -> [u32; 4] {
         self.block += 1;
-        random::words(self.seed, Stream::Photon, self.case, self.block)
+        random::words(self.seed, self.stream, self.case, self.block)
     }
 
     /// Returns a number in 0..`n`, or 0 if `n` is 0.
@@ -56,5 +63,10 @@ impl Dice {
     /// Returns a random number in (0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         random::unit(self.words()[0])
+    }
+
+    /// Returns a random number between two bounds.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
     }
 }

@@ -1,6 +1,7 @@
 //! Computes BRDFs from their definitions: Fresnel's equations with complex indices, microfacets
 //! that are described by their slopes, and Smith's masking as an integral.
 
+use super::check::if_planted;
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
 use std::f64::consts::PI;
@@ -79,28 +80,20 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     if cosine <= 0.0 {
         return 0.0;
     }
-    let unit = match fault {
-        "factor (n + 2)/2π" => exponent + 2.0,
-        _ => exponent + 1.0,
-    };
+    let unit = if_planted(fault, "factor (n + 2)/2π", exponent + 2.0, exponent + 1.0);
     unit / (2.0 * PI) * (exponent * cosine.ln()).exp()
 }
 
 /// Returns the microfacet normal that reflects one direction into the other.
 fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
-    match fault {
-        "facet closer to one direction" => unit(plus(from, 1.1, to)),
-        _ => unit(plus(from, 1.0, to)),
-    }
+    let share = if_planted(fault, "facet closer to one direction", 1.1, 1.0);
+    unit(plus(from, share, to))
 }
 
 /// Returns the microfacet BRDF D G F / (4 cos θi cos θo) without its Fresnel factor F (Cook and
 /// Torrance 1982; Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
-    let masks = match fault {
-        "masking in one direction only" => mask(from),
-        _ => mask(from) * mask(to),
-    };
+    let masks = mask(from) * if_planted(fault, "masking in one direction only", 1.0, mask(to));
     density * masks / (4.0 * from[2] * to[2])
 }
 
@@ -108,10 +101,8 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
 /// with variance α²/2. The density of normals per solid angle is the density of slopes times 1/cos⁴
 /// and a constant (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
-    let squared = match fault {
-        "α² is the variance along an axis" => 2.0 * roughness * roughness,
-        _ => roughness * roughness,
-    };
+    let axes = if_planted(fault, "α² is the variance along an axis", 2.0, 1.0);
+    let squared = axes * roughness * roughness;
     let slopes = [facet[0] / facet[2], facet[1] / facet[2]];
     let steep = slopes[0] * slopes[0] + slopes[1] * slopes[1];
     (-steep / squared).exp() / (PI * squared) / facet[2].powi(4)
@@ -123,11 +114,7 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = roughness * roughness;
     let [x, y, z] = facet;
     let stretched = (x * x + y * y) / squared + z * z;
-    let power = if fault == "D to the power 3/2" {
-        1.5
-    } else {
-        2.0
-    };
+    let power = if_planted(fault, "D to the power 3/2", 1.5, 2.0);
     1.0 / (PI * squared * stretched.powf(power))
 }
 
@@ -173,10 +160,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
         Fresnel::Conductor { n, .. } if fault == "k left out" => Complex::new(n, 0.0),
         Fresnel::Conductor { n, k } => Complex::new(n, k),
     };
-    let index = match fault {
-        "media swapped" => 1.0 / index,
-        _ => index,
-    };
+    let index = if_planted(fault, "media swapped", 1.0 / index, index);
     let outside = angle.cos();
     let sine = angle.sin() / index;
     let inside = (1.0 - sine * sine).sqrt();

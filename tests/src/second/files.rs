@@ -1,13 +1,13 @@
 //! Pictures on surfaces as scene files define them: file formats, placement on the surface, and
 //! use as blend and texture.
 
-use super::check::{SecondCheck, worse};
-use super::masks::{against, layer};
+use super::check::{SecondCheck, if_planted, largest};
+use super::masks::{against, layer, misplaced, words};
 use super::pattern::{Levels, Pattern, Varied};
 use super::smooth::Smooth;
 use super::textures::apart;
-use super::vector::{between, scale};
-use super::world::{World, pair, triple};
+use super::vector::scale;
+use super::world::{World, pair};
 use crate::hostile::dice::Dice;
 use etendue_field::{Brdf, Fresnel, Grating, Lobe};
 use etendue_scene::Event;
@@ -70,26 +70,13 @@ type Pictured = fn(&mut Dice, &str, &Path, &Levels) -> f64;
 
 /// Checks masks from pictures. Pixels below one half are opaque, and all outside is clear.
 fn masked(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
-    let size = [between(dice, 0.5, 2.0), between(dice, 0.5, 2.0)];
-    world.blockers = format!(
-        "Picture(name: \"b\", center: {}, file: \"{FILE}\", size: {})",
-        triple(origin),
-        pair(size),
-    );
+    let (mut world, center, place) = layer(dice);
+    let size = [dice.between(0.5, 2.0), dice.between(0.5, 2.0)];
+    world.blockers = format!("Picture({place}, file: \"{FILE}\", size: {})", pair(size));
     let scene = world.scene(folder);
-    let [width, height] = match fault {
-        "sizes swapped" => [size[1], size[0]],
-        _ => size,
-    };
+    let [width, height] = if_planted(fault, "sizes swapped", [size[1], size[0]], size);
     against(dice, &scene, center, |at| {
-        let at = match fault {
-            "left and right swapped" => [-at[0], at[1]],
-            "flipped" => [at[0], -at[1]],
-            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
-            _ => at,
-        };
+        let at = misplaced(at, center, fault);
         let across = (at[0] / width + 0.5) * picture.width as f64;
         let down = (0.5 - at[1] / height) * picture.height as f64;
         let is_opaque = |(i, level): (usize, &f64)| {
@@ -107,8 +94,8 @@ fn masked(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 
 
 fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 {
     let mut world = World::new(dice);
-    let (smooth, words) = Smooth::new(dice, &world, 0.7);
-    let size = [between(dice, 0.3, 0.8), between(dice, 0.3, 0.8)];
+    let (smooth, text) = Smooth::new(dice, &world, 0.7);
+    let size = [dice.between(0.3, 0.8), dice.between(0.3, 0.8)];
     let mut brdf = || {
         let lobe = Lobe::Ggx {
             roughness: scale(dice, 1e-2, 1.0),
@@ -120,19 +107,17 @@ fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f6
     let (one, two) = (brdf(), brdf());
     let grating = Grating {
         axis: 1,
-        frequency: between(dice, 1.0, 9.0),
+        frequency: dice.between(1.0, 9.0),
         modulation: dice.unit(),
         phase: dice.unit(),
     };
     world.surfaces = format!(
-        "{words}Reflects(brdf: {}, other: {}, blend: Picture(file: \"{FILE}\", size: {}), \
-         texture: Cosine(axis: Y, frequency: {:?}, modulation: {:?}, phase: {:?})))",
+        "{text}Reflects(brdf: {}, other: {}, blend: Picture(file: \"{FILE}\", size: {}), \
+         texture: Cosine({})))",
         in_words(&one),
         in_words(&two),
         pair(size),
-        grating.frequency,
-        grating.modulation,
-        grating.phase,
+        words(&grating),
     );
     let scene = world.scene(folder);
     let object = &scene.patches[0];
@@ -145,14 +130,13 @@ fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f6
         blend: Pattern::Picture(picture.clone(), size),
         texture: Pattern::Cosine(grating),
     };
-    let each = (0..EACH).map(|_| {
-        let at = [between(dice, -0.4, 0.4), between(dice, -0.4, 0.4)];
+    largest(EACH, || {
+        let at = [dice.between(-0.4, 0.4), dice.between(-0.4, 0.4)];
         let point = smooth.point(at[0], at[1]);
         let [s, t, _] = smooth.wrong(fault).axes.coordinates(point);
         let place = object.patch.frame.to_local(world.resolved(point).into());
         apart(&reflectance.at(place.x, place.y), varied.at([s, t], fault))
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 fn in_words(brdf: &Brdf) -> String {

@@ -1,7 +1,7 @@
 //! Compares the scene of a further light with the places that the scene file states.
 
-use super::check::{SecondCheck, worse};
-use super::vector::{between, distance, dot, plus};
+use super::check::{SecondCheck, largest, worse};
+use super::vector::{distance, dot, plus};
 use super::world::{World, pair, triple};
 use crate::hostile::dice::Dice;
 use etendue_field::{Light, Shape};
@@ -30,9 +30,9 @@ pub(super) fn checks() -> Vec<SecondCheck> {
 /// world.
 fn rays(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
-    let size = [between(dice, 0.1, 0.5), between(dice, 0.1, 0.5)];
-    let [x, y] = [between(dice, 0.2, 0.6), between(dice, -0.6, -0.2)];
-    let place = [x, y, between(dice, -0.6, 0.4)];
+    let size = [dice.between(0.1, 0.5), dice.between(0.1, 0.5)];
+    let [x, y] = [dice.between(0.2, 0.6), dice.between(-0.6, -0.2)];
+    let place = [x, y, dice.between(-0.6, 0.4)];
     let card = world.light.point([0.0, 0.0, 0.5]);
     world.lamp = format!(
         "{}, other_lights: [Rectangle(center: {}, size: {})]",
@@ -62,9 +62,9 @@ fn rays(dice: &mut Dice, fault: &str) -> f64 {
         _ => place,
     };
     let distances = [other.blockers[0].distance, other.planes[0].distance];
-    let each = (0..EACH).map(|_| {
-        let share = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
-        let slopes = [between(dice, -1.0, 1.0), between(dice, -1.0, 1.0)];
+    largest(EACH, || {
+        let share = [dice.between(-0.5, 0.5), dice.between(-0.5, 0.5)];
+        let slopes = [dice.between(-1.0, 1.0), dice.between(-1.0, 1.0)];
         let from = [0, 1].map(|i| rectangle.center[i] + share[i] * rectangle.size[i]);
         let start = [0, 1].map(|i| place[i] + share[i] * size[i]);
         let start = world.light.point([start[0], start[1], place[2]]);
@@ -80,6 +80,5 @@ fn rays(dice: &mut Dice, fault: &str) -> f64 {
             off = worse(off, worse((fast[0] - x).abs(), (fast[1] - y).abs()));
         }
         off
-    });
-    each.fold(0.0, worse)
+    })
 }

@@ -1,10 +1,10 @@
 //! The BRDFs of the tracers and of theory, compared with the second implementation.
 
 use super::brdf::{self, mirrored};
-use super::check::{SecondCheck, relative};
+use super::check::{SecondCheck, if_planted, relative};
 use super::pattern::cosine;
 use super::textures::grating;
-use super::vector::{Vector, aside, between, direction, scale};
+use super::vector::{Vector, aside, direction, scale};
 use crate::hostile::dice::Dice;
 use etendue_field::{AngleTable, Brdf, Fresnel, Lobe, Mixture, Pattern, Reflectance, Term, Weight};
 use glam::DVec3;
@@ -154,18 +154,18 @@ fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
         weight: Weight::Pattern(Pattern::Cosine(grating(dice))),
     };
     let terms = [2.0, 20.0, 200.0].map(&mut term).to_vec();
-    let at = [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)];
-    let tilt = between(dice, 0.0, 1.2);
+    let at = [dice.between(-0.7, 0.7), dice.between(-0.7, 0.7)];
+    let tilt = dice.between(0.0, 1.2);
     let from = aside(dice, [0.0, 0.0, 1.0], tilt);
     let to = to(dice, Lobe::Phong { exponent: 20.0 }, from);
     let weighted = |i: usize| {
         let Weight::Pattern(Pattern::Cosine(grating)) = &terms[i].weight else {
             return f64::NAN;
         };
-        let of = if fault == "weights swapped" { 2 - i } else { i };
+        let of = if_planted(fault, "weights swapped", 2 - i, i);
         cosine(grating, at, fault) * brdf::value(&terms[of].brdf, from, to, fault)
     };
-    let count = if fault == "a term left out" { 2 } else { 3 };
+    let count = if_planted(fault, "a term left out", 2, 3);
     let expected: f64 = (0..count).map(weighted).sum();
     let reflectance = Reflectance {
         terms: terms.clone(),
@@ -175,7 +175,7 @@ fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
 }
 
 fn compared(fast: Fast, brdf: &Brdf, dice: &mut Dice, fault: &str) -> f64 {
-    let tilt = between(dice, 0.0, 1.55);
+    let tilt = dice.between(0.0, 1.55);
     let from = aside(dice, [0.0, 0.0, 1.0], tilt);
     let to = to(dice, brdf.lobe, from);
     relative(fast(brdf, from, to), brdf::value(brdf, from, to, fault))
@@ -189,7 +189,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
         },
         _ => Fresnel::Conductor {
             n: scale(dice, 0.05, 20.0),
-            k: between(dice, 0.0, 20.0),
+            k: dice.between(0.0, 20.0),
         },
     }
 }
@@ -200,12 +200,12 @@ fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
         Lobe::Lambertian => direction(dice),
         Lobe::Phong { exponent } => {
             let mirror = [-from[0], -from[1], from[2]];
-            let by = between(dice, 0.0, 4.0) / (exponent + 1.0).sqrt();
+            let by = dice.between(0.0, 4.0) / (exponent + 1.0).sqrt();
             aside(dice, mirror, by.min(PI))
         }
         Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => {
-            let tilt = (roughness * between(dice, 0.0, 4.0)).atan();
-            let around = between(dice, 0.0, TAU);
+            let tilt = (roughness * dice.between(0.0, 4.0)).atan();
+            let around = dice.between(0.0, TAU);
             let facet = [
                 tilt.sin() * around.cos(),
                 tilt.sin() * around.sin(),

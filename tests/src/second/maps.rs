@@ -3,7 +3,7 @@
 //! tracers share.
 
 use super::check::{SecondCheck, worse};
-use super::paths::{Legs, Turn};
+use super::paths::Legs;
 use super::smooth::Smooth;
 use super::vector::{Axes, Vector, dot, plus, turned_along, unit};
 use super::views::{Looking, PLANES, View};
@@ -68,9 +68,7 @@ impl Met {
         let (smooth, words) = Smooth::new(dice, &world, 0.7);
         world.surfaces = words + "Mirror)";
         let patch = world.scene(Path::new(".")).patches[0].patch;
-        let (d, n) = (world.light.d, smooth.axes.d);
-        let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
-        let legs = Legs::new(&world.light, smooth.axes.origin, n, mirror, "");
+        let legs = Legs::at_mirror(&world.light, &smooth, "");
         Self {
             world,
             smooth,

@@ -1,14 +1,15 @@
 //! Blockers, slides and windows, compared with their definitions. Blockers and slides are written
 //! in scene files.
 
-use super::check::{SecondCheck, relative, worse};
+use super::check::{SecondCheck, if_planted, largest, relative};
 use super::pattern::cosine;
+use super::plain::is_in_hole;
 use super::textures::grating;
-use super::vector::{Vector, between, scale};
+use super::vector::scale;
 use super::world::{World, pair, triple};
 use crate::hostile::dice::Dice;
 use etendue_field::{Grating, Light, Profile, TwoPlane, Window};
-use etendue_scene::Scene;
+use etendue_scene::{HoleFile, Scene};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -68,17 +69,21 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns the center of a random layer, both as coordinates along X and Y and as a position in
-/// the world.
-pub(super) fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
-    let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
-    ([x, y], world.light.point([x, y, 0.5]))
+/// Returns a world with a wall, the center of a random layer before the wall as coordinates along X
+/// and Y, and the text of the layer's name and center.
+pub(super) fn layer(dice: &mut Dice) -> (World, [f64; 2], String) {
+    let world = World::new(dice).with_wall(1.0);
+    let [x, y] = [dice.between(-0.5, 0.5), dice.between(-0.5, 0.5)];
+    let center = triple(world.light.point([x, y, 0.5]));
+    (world, [x, y], format!("name: \"b\", center: {center}"))
 }
 
 /// Returns a point relative to the center of a layer, wrong if `fault` is a fault of points.
-fn misplaced(at: [f64; 2], center: [f64; 2], fault: &str) -> [f64; 2] {
+pub(super) fn misplaced(at: [f64; 2], center: [f64; 2], fault: &str) -> [f64; 2] {
     match fault {
-        "x and y swapped" => [at[1], at[0]],
+        "x and y swapped" | "axes swapped" => [at[1], at[0]],
+        "left and right swapped" => [-at[0], at[1]],
+        "flipped" => [at[0], -at[1]],
         "from the central ray" => [at[0] + center[0], at[1] + center[1]],
         _ => at,
     }
@@ -92,31 +97,28 @@ pub(super) fn against(
     center: [f64; 2],
     second: impl Fn([f64; 2]) -> f64,
 ) -> f64 {
-    let each = (0..EACH).map(|_| {
-        let at = [between(dice, -1.5, 1.5), between(dice, -1.5, 1.5)];
-        let mask = &scene.blockers[0].mask;
+    let mask = &scene.blockers[0].mask;
+    largest(EACH, || {
+        let at = [dice.between(-1.5, 1.5), dice.between(-1.5, 1.5)];
         let fast = mask.transmittance(center[0] + at[0], center[1] + at[1]);
         (fast - second(at)).abs()
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 /// Checks a layer with a rectangle to the left, a disc to the right, and a half-plane that lies
 /// beyond both shapes on any of four sides.
 fn shapes(dice: &mut Dice, fault: &str) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
-    let rectangle = [between(dice, -0.6, -0.4), between(dice, -0.2, 0.2)];
-    let size = [between(dice, 0.1, 0.3), between(dice, 0.4, 1.0)];
-    let disc = [between(dice, 0.4, 0.6), between(dice, -0.2, 0.2)];
-    let radius = between(dice, 0.1, 0.3);
+    let (mut world, center, place) = layer(dice);
+    let rectangle = [dice.between(-0.6, -0.4), dice.between(-0.2, 0.2)];
+    let size = [dice.between(0.1, 0.3), dice.between(0.4, 1.0)];
+    let disc = [dice.between(0.4, 0.6), dice.between(-0.2, 0.2)];
+    let radius = dice.between(0.1, 0.3);
     let (axis, is_above) = (dice.below(2), dice.one_in(2));
-    let edge = between(dice, 1.0, 1.2) * if is_above { 1.0 } else { -1.0 };
+    let edge = dice.between(1.0, 1.2) * if is_above { 1.0 } else { -1.0 };
     world.blockers = format!(
-        "Shapes(name: \"b\", center: {}, shapes: [Rectangle(center: {}, size: {}), \
+        "Shapes({place}, shapes: [Rectangle(center: {}, size: {}), \
          Disc(center: {}, radius: {radius:?}), \
          HalfPlane(axis: {}, edge: {edge:?}, opaque: {})])",
-        triple(origin),
         pair(rectangle),
         pair(size),
         pair(disc),
@@ -126,11 +128,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
         let [x, y] = misplaced(at, center, fault);
-        let part = if fault == "sizes taken as half-widths" {
-            1.0
-        } else {
-            0.5
-        };
+        let part = if_planted(fault, "sizes taken as half-widths", 1.0, 0.5);
         let in_rectangle = (x - rectangle[0]).abs() <= part * size[0]
             && (y - rectangle[1]).abs() <= part * size[1];
         let in_disc = (x - disc[0]).hypot(y - disc[1]) <= radius;
@@ -150,80 +148,56 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
 
 /// Tests blocking squares on a regular grid around the centre of the layer.
 fn squares(dice: &mut Dice, fault: &str) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
-    let count = [1 + dice.below(8), 1 + dice.below(8)];
-    let (pitch, fill) = (between(dice, 0.1, 0.4), between(dice, 0.2, 0.9));
-    world.blockers = format!(
-        "JitteredSquares(name: \"b\", center: {}, count: ({}, {}), pitch: {pitch:?}, \
-         fill: {fill:?})",
-        triple(origin),
-        count[0],
-        count[1],
-    );
+    let (mut world, center, place) = layer(dice);
+    let count = (1 + dice.below(8), 1 + dice.below(8));
+    let (pitch, fill) = (dice.between(0.1, 0.4), dice.between(0.2, 0.9));
+    world.blockers =
+        format!("JitteredSquares({place}, count: {count:?}, pitch: {pitch:?}, fill: {fill:?})");
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let at = match fault {
-            "x and y swapped" => [at[1], at[0]],
-            "shifted by half a pitch" => [at[0] + 0.5 * pitch, at[1]],
-            _ => at,
-        };
-        let side = if fault == "sides as long as a pitch" {
-            pitch
-        } else {
-            fill * pitch
-        };
-        let within = |axis: usize| {
-            (0..count[axis]).any(|i| {
-                let middle = (i as f64 - (count[axis] as f64 - 1.0) / 2.0) * pitch;
-                (at[axis] - middle).abs() <= side / 2.0
+        let [x, y] = misplaced(at, center, fault);
+        let shift = if_planted(fault, "shifted by half a pitch", 0.5 * pitch, 0.0);
+        let side = if_planted(fault, "sides as long as a pitch", pitch, fill * pitch);
+        let within = |at: f64, count: usize| {
+            (0..count).any(|i| {
+                let middle = (i as f64 - (count as f64 - 1.0) / 2.0) * pitch;
+                (at - middle).abs() <= side / 2.0
             })
         };
-        if within(0) && within(1) { 0.0 } else { 1.0 }
+        let is_opaque = within(x + shift, count.0) && within(y, count.1);
+        if is_opaque { 0.0 } else { 1.0 }
     })
 }
 
 /// Checks bars. They are endless along one axis, and centred at the center of the layer.
 fn bars(dice: &mut Dice, fault: &str) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
+    let (mut world, center, place) = layer(dice);
     let (axis, count) = (dice.below(2), 1 + dice.below(8));
-    let (pitch, fill) = (between(dice, 0.1, 0.4), between(dice, 0.2, 0.9));
+    let (pitch, fill) = (dice.between(0.1, 0.4), dice.between(0.2, 0.9));
     world.blockers = format!(
-        "Bars(name: \"b\", center: {}, axis: {}, count: {count}, pitch: {pitch:?}, fill: {fill:?})",
-        triple(origin),
+        "Bars({place}, axis: {}, count: {count}, pitch: {pitch:?}, fill: {fill:?})",
         ["X", "Y"][axis],
     );
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let at = match fault {
-            "axes swapped" => at[1 - axis],
-            "shifted by half a pitch" => at[axis] + 0.5 * pitch,
-            "from the central ray" => at[axis] + center[axis],
-            _ => at[axis],
-        };
-        let width = if fault == "as wide as a pitch" {
-            pitch
-        } else {
-            fill * pitch
-        };
+        let shift = if_planted(fault, "shifted by half a pitch", 0.5 * pitch, 0.0);
+        let at = misplaced(at, center, fault)[axis] + shift;
+        let width = if_planted(fault, "as wide as a pitch", pitch, fill * pitch);
         let first = -0.5 * (count as f64 - 1.0) * pitch;
         let is_in = |i: usize| (at - first - i as f64 * pitch).abs() <= 0.5 * width;
         if (0..count).any(is_in) { 0.0 } else { 1.0 }
     })
 }
 
-/// Checks apertures. A point is in a polygon if a line from the point to the right crosses its
-/// edges an odd number of times.
+/// Checks apertures.
 fn aperture(dice: &mut Dice, fault: &str) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
-    let middle = [between(dice, -0.3, 0.3), between(dice, -0.3, 0.3)];
-    let size = [between(dice, 0.4, 1.6), between(dice, 0.4, 1.6)];
+    let (mut world, center, place) = layer(dice);
+    let middle = [dice.between(-0.3, 0.3), dice.between(-0.3, 0.3)];
+    let size = [dice.between(0.4, 1.6), dice.between(0.4, 1.6)];
     let count = 3 + dice.below(6);
     let corners: Vec<[f64; 2]> = (0..count)
         .map(|i| {
-            let angle = 2.0 * PI * (i as f64 + between(dice, 0.0, 0.6)) / count as f64;
+            let angle = 2.0 * PI * (i as f64 + dice.between(0.0, 0.6)) / count as f64;
             let (sin, cos) = angle.sin_cos();
             [
                 middle[0] + 0.5 * size[0] * cos,
@@ -231,46 +205,35 @@ fn aperture(dice: &mut Dice, fault: &str) -> f64 {
             ]
         })
         .collect();
-    let kind = dice.below(3);
-    let hole = match kind {
-        0 => format!(
-            "Disc(center: {}, radius: {:?})",
-            pair(middle),
-            0.5 * size[0]
+    let radius = 0.5 * size[0];
+    let (text, hole) = match dice.below(3) {
+        0 => (
+            format!("Disc(center: {}, radius: {radius:?})", pair(middle)),
+            HoleFile::Disc {
+                center: middle,
+                radius,
+            },
         ),
-        1 => format!("Rectangle(center: {}, size: {})", pair(middle), pair(size)),
+        1 => (
+            format!("Rectangle(center: {}, size: {})", pair(middle), pair(size)),
+            HoleFile::Rectangle {
+                center: middle,
+                size,
+            },
+        ),
         _ => {
-            let corners: Vec<String> = corners.iter().map(|corner| pair(*corner)).collect();
-            format!("Polygon(corners: [{}])", corners.join(", "))
+            let texts: Vec<String> = corners.iter().map(|corner| pair(*corner)).collect();
+            let text = format!("Polygon(corners: [{}])", texts.join(", "));
+            (text, HoleFile::Polygon { corners })
         }
     };
-    world.blockers = format!(
-        "Aperture(name: \"b\", center: {}, hole: {hole})",
-        triple(origin)
-    );
+    world.blockers = format!("Aperture({place}, hole: {text})");
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let [x, y] = misplaced(at, center, fault);
-        let factor = if fault == "size off by a tenth" {
-            1.1
-        } else {
-            1.0
-        };
-        let [x, y] = [(x - middle[0]) / factor, (y - middle[1]) / factor];
-        let is_inside = match kind {
-            0 => x.hypot(y) <= 0.5 * size[0],
-            1 => x.abs() <= 0.5 * size[0] && y.abs() <= 0.5 * size[1],
-            _ => {
-                let crossed = (0..count).filter(|i| {
-                    let [a, b] = [corners[*i], corners[(i + 1) % count]]
-                        .map(|p| [p[0] - middle[0], p[1] - middle[1]]);
-                    (a[1] > y) != (b[1] > y)
-                        && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x
-                });
-                crossed.count() % 2 == 1
-            }
-        };
-        let is_open = is_inside != (fault == "opaque inside");
+        let at = misplaced(at, center, fault);
+        let factor = if_planted(fault, "size off by a tenth", 1.1, 1.0);
+        let at = [0, 1].map(|i: usize| middle[i] + (at[i] - middle[i]) / factor);
+        let is_open = is_in_hole(&hole, at) != (fault == "opaque inside");
         if is_open { 1.0 } else { 0.0 }
     })
 }
@@ -278,26 +241,16 @@ fn aperture(dice: &mut Dice, fault: &str) -> f64 {
 /// Checks gratings. Their transmittance is ½ (1 + m cos(2π f t + p)), where t is measured from the
 /// center.
 fn masked_by_grating(dice: &mut Dice, fault: &str) -> f64 {
-    let mut world = World::new(dice).with_wall(1.0);
-    let (center, origin) = layer(dice, &world);
+    let (mut world, center, place) = layer(dice);
     let grating = grating(dice);
-    world.blockers = format!(
-        "Grating(name: \"b\", center: {}, {})",
-        triple(origin),
-        words(&grating)
-    );
+    world.blockers = format!("Grating({place}, {})", words(&grating));
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
-        let at = match fault {
-            "axes swapped" => [at[1], at[0]],
-            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
-            _ => at,
-        };
-        cosine(&grating, at, fault)
+        cosine(&grating, misplaced(at, center, fault), fault)
     })
 }
 
-fn words(grating: &Grating) -> String {
+pub(super) fn words(grating: &Grating) -> String {
     let Grating {
         axis,
         frequency,
@@ -323,21 +276,14 @@ fn slide_of_projector(dice: &mut Dice, fault: &str) -> f64 {
     let Light::Projector { image, .. } = scene.light else {
         return f64::NAN;
     };
-    let widths = match fault {
-        "widths swapped" => [widths[1], widths[0]],
-        _ => widths,
-    };
-    let pi = if fault == "no π" { 1.0 } else { PI };
-    let each = (0..EACH).map(|_| {
-        let at = [between(dice, -0.3, 0.3), between(dice, -0.3, 0.3)];
+    let widths = if_planted(fault, "widths swapped", [widths[1], widths[0]], widths);
+    let pi = if_planted(fault, "no π", 1.0, PI);
+    largest(EACH, || {
+        let at = [dice.between(-0.3, 0.3), dice.between(-0.3, 0.3)];
         let gauss = |axis: usize| (-pi * (at[axis] / widths[axis]).powi(2)).exp();
-        let through = match fault {
-            "axes swapped" => cosine(&grating, [at[1], at[0]], fault),
-            _ => cosine(&grating, at, fault),
-        };
+        let through = cosine(&grating, misplaced(at, [0.0; 2], fault), fault);
         (image.value(at[0], at[1]) - gauss(0) * gauss(1) * through).abs()
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 /// Checks windows with the profiles defined in docs/conventions.md, section Window.
@@ -352,27 +298,28 @@ fn window(dice: &mut Dice, fault: &str) -> f64 {
     });
     let [x, y, u, v] = profiles;
     let fast = Window { x, y, u, v };
-    let half = if fault == "half-width taken as the width" {
-        0.5
-    } else {
-        1.0
-    };
-    let power = if fault == "cosine not squared" { 1 } else { 2 };
-    let pi = if fault == "no π" { 1.0 } else { PI };
-    let value = |profile: &Profile, t: f64| {
-        let (end, inside) = match *profile {
-            Profile::Hann(h) => (h * half, (PI * t / (2.0 * h * half)).cos().powi(power)),
-            Profile::Box(h) => (h * half, 1.0),
-            Profile::Gaussian { width, cut } => (cut * half, (-pi * t * t / (width * width)).exp()),
-        };
-        if t.abs() < end { inside } else { 0.0 }
-    };
-    let each = (0..EACH).map(|_| {
+    largest(EACH, || {
         // Most rays are inside the window, and some are outside.
-        let at = profiles.map(|profile| profile.half_width() * between(dice, -1.05, 1.05));
-        let second: f64 = profiles.iter().zip(at).map(|(p, t)| value(p, t)).product();
+        let at = profiles.map(|profile| profile.half_width() * dice.between(-1.05, 1.05));
+        let second: f64 = profiles
+            .iter()
+            .zip(at)
+            .map(|(p, t)| value(p, t, fault))
+            .product();
         let [x, y, u, v] = at;
         relative(fast.value(&TwoPlane { x, y, u, v }) + 1e-6, second + 1e-6)
-    });
-    each.fold(0.0, worse)
+    })
+}
+
+/// Returns the value of a profile of a window.
+pub(super) fn value(profile: &Profile, t: f64, fault: &str) -> f64 {
+    let half = if_planted(fault, "half-width taken as the width", 0.5, 1.0);
+    let power = if_planted(fault, "cosine not squared", 1, 2);
+    let pi = if_planted(fault, "no π", 1.0, PI);
+    let (end, inside) = match *profile {
+        Profile::Hann(h) => (h * half, (PI * t / (2.0 * h * half)).cos().powi(power)),
+        Profile::Box(h) => (h * half, 1.0),
+        Profile::Gaussian { width, cut } => (cut * half, (-pi * t * t / (width * width)).exp()),
+    };
+    if t.abs() < end { inside } else { 0.0 }
 }

@@ -1,10 +1,8 @@
 //! Compares hits of triangles with solutions of linear equations. Compares meshes that serve as
 //! smooth surfaces with the paraboloids from which they are sampled.
 
-use super::check::{SecondCheck, worse};
-use super::vector::{
-    Axes, Vector, aside, between, cross, direction, distance, dot, plus, times, unit,
-};
+use super::check::{SecondCheck, if_planted, largest, worse};
+use super::vector::{Axes, Vector, aside, cross, direction, distance, dot, plus, times, unit};
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
 use etendue_field::{Frame, TwoPlane, interpolated_normal, triangle_distance};
@@ -56,16 +54,12 @@ pub(super) fn checks() -> Vec<SecondCheck> {
 fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     let corners = [0; 3].map(|_| plus([0.0, 0.0, 2.0], 1.0, direction(dice)));
     let normals = [0; 3].map(|_| {
-        let tilt = between(dice, 0.0, 0.5);
+        let tilt = dice.between(0.0, 0.5);
         aside(dice, [0.0, 0.0, 1.0], tilt)
     });
-    let [x, y, u, v] = [0; 4].map(|_| between(dice, -0.4, 0.4));
+    let [x, y, u, v] = [0; 4].map(|_| dice.between(-0.4, 0.4));
     let fast = triangle_distance(&corners.map(DVec3::from), &TwoPlane { x, y, u, v });
-    let [u, v] = if fault == "u and v swapped" {
-        [v, u]
-    } else {
-        [u, v]
-    };
+    let [u, v] = if_planted(fault, "u and v swapped", [v, u], [u, v]);
     // Cramer's rule solves a + p (b − a) + q (c − a) = (x, y, 0) + d (u, v, 1) for p, q and d.
     let [a, b, c] = corners;
     let (ab, ac, back) = (plus(b, -1.0, a), plus(c, -1.0, a), [-u, -v, -1.0]);
@@ -83,10 +77,8 @@ fn triangle(dice: &mut Dice, fault: &str) -> f64 {
             1.0
         };
     };
-    let [n0, n1, n2] = match fault {
-        "normals in another order" => [normals[1], normals[2], normals[0]],
-        _ => normals,
-    };
+    let order = if_planted(fault, "normals in another order", [1, 2, 0], [0, 1, 2]);
+    let [n0, n1, n2] = order.map(|i: usize| normals[i]);
     let normal = plus(plus(times(1.0 - p - q, n0), p, n1), q, n2);
     let point = plus(plus(a, p, ab), q, ac);
     let smooth = interpolated_normal(
@@ -112,13 +104,13 @@ impl Hill {
     /// Returns a random mesh; the planted fault is in the second implementation, not in the
     /// scene.
     fn new(dice: &mut Dice, fault: &str) -> Self {
-        let tilt = between(dice, 0.0, 0.8);
+        let tilt = dice.between(0.0, 0.8);
         let down = aside(dice, [0.0, 0.0, -1.0], tilt);
         let mut world = World::new(dice);
         world.turn_to(down);
-        let [k, l] = [between(dice, -1.0, 1.0), between(dice, -1.0, 1.0)];
-        let scale = between(dice, 0.5, 2.0);
-        let at = [between(dice, -0.1, 0.1), between(dice, -0.1, 0.1)];
+        let [k, l] = [dice.between(-1.0, 1.0), dice.between(-1.0, 1.0)];
+        let scale = dice.between(0.5, 2.0);
+        let at = [dice.between(-0.1, 0.1), dice.between(-0.1, 0.1)];
         let height = -0.5 * (k * at[0] * at[0] + l * at[1] * at[1]);
         let hit = world.light.point([0.0, 0.0, 3.0]);
         let center = plus(hit, -scale, [at[0], at[1], height]);
@@ -176,9 +168,9 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         return f64::NAN;
     };
     let Frame { x, y, .. } = patch.frame;
-    let largest = hill.curvature[0].abs().max(hill.curvature[1].abs()) / hill.scale;
-    let each = (0..EACH).map(|_| {
-        let around = between(dice, 0.0, TAU);
+    let larger = hill.curvature[0].abs().max(hill.curvature[1].abs()) / hill.scale;
+    largest(EACH, || {
+        let around = dice.between(0.0, TAU);
         let (tangent, second) = hill.along([around.cos(), around.sin()]);
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
@@ -186,7 +178,6 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         // Euler's formula for normal curvature (1760), divided by the squared length of the
         // tangent's projection onto the fitted plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
-        (fast - second).abs() / largest
-    });
-    each.fold(0.0, worse)
+        (fast - second).abs() / larger
+    })
 }

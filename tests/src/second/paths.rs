@@ -1,11 +1,9 @@
 //! The frames of the central ray at a surface and on the legs before and after it, computed from
 //! docs/conventions.md, section Frames.
 
-use super::check::{SecondCheck, worse};
+use super::check::{SecondCheck, if_planted, worse};
 use super::smooth::Smooth;
-use super::vector::{
-    Axes, Vector, across, angle, between, cross, dot, plus, times, turned_along, unit,
-};
+use super::vector::{Axes, Vector, across, angle, cross, dot, plus, times, turned_along, unit};
 use super::world::{World, frames_apart, triple};
 use crate::hostile::dice::Dice;
 use std::path::Path;
@@ -60,6 +58,13 @@ pub(super) fn checks() -> Vec<SecondCheck> {
 }
 
 impl Legs {
+    /// Returns the frames at a mirror.
+    pub(super) fn at_mirror(light: &Axes, smooth: &Smooth, fault: &str) -> Self {
+        let (d, n) = (light.d, smooth.axes.d);
+        let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
+        Self::new(light, smooth.axes.origin, n, mirror, fault)
+    }
+
     pub(super) fn new(light: &Axes, hit: Vector, facing: Vector, turn: Turn, fault: &str) -> Self {
         let before = Axes {
             origin: hit,
@@ -71,11 +76,7 @@ impl Legs {
         let t = across(light.d, normal);
         // The tangent, along −X at normal incidence.
         let t = times(-dot(t, light.x).signum(), t);
-        let t = if fault == "T reversed" {
-            times(-1.0, t)
-        } else {
-            t
-        };
+        let t = if_planted(fault, "T reversed", times(-1.0, t), t);
         let surface = |sign: f64| Axes {
             origin: hit,
             x: times(sign, t),
@@ -85,11 +86,7 @@ impl Legs {
         // The longitude is measured from N towards T.
         let longitude = |axes: &Axes, away: Vector| {
             let theta = dot(away, axes.x).atan2(dot(away, axes.d));
-            if fault == "wrong sign of longitude" {
-                -theta
-            } else {
-                theta
-            }
+            if_planted(fault, "wrong sign of longitude", -theta, theta)
         };
         let arriving = surface(1.0);
         let leaving = match turn {
@@ -109,7 +106,7 @@ impl Legs {
     /// smallest angle to the new direction.
     pub(super) fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
-        let x_sign = if fault == "X not reversed" { 1.0 } else { -1.0 };
+        let x_sign = if_planted(fault, "X not reversed", 1.0, -1.0);
         let (x, y, d, to) = match turn {
             Turn::Through(to) => (before.x, before.y, before.d, to),
             Turn::Back(to) => (
@@ -134,7 +131,7 @@ impl Legs {
 
 /// Returns a direction that leaves a surface on the side of the arriving light.
 fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
-    let tilt = between(dice, 0.0, 1.3);
+    let tilt = dice.between(0.0, 1.3);
     super::vector::aside(dice, normal, tilt)
 }
 
@@ -145,7 +142,7 @@ fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String)
     match dice.below(3) {
         0 => (Turn::Back(mirror), "Mirror".to_owned(), String::new()),
         1 => {
-            let (front, back) = (between(dice, 1.0, 1.2), between(dice, 1.2, 2.0));
+            let (front, back) = (dice.between(1.0, 1.2), dice.between(1.2, 2.0));
             let sine = front / back * angle(light.d, times(-1.0, facing)).sin();
             let aside = across(light.d, facing);
             let inwards = times(-(1.0 - sine * sine).sqrt(), facing);

@@ -1,6 +1,7 @@
 //! Patterns, pictures and sums of BRDFs computed from their definitions (docs of
 //! `etendue_field::Pattern`, docs/scenes.md).
 
+use super::check::if_planted;
 use etendue_field::{Brdf, Grating};
 use std::f64::consts::TAU;
 
@@ -41,26 +42,22 @@ impl Pattern {
 /// Returns the value ½ (1 + m cos(2π f t + p)) of a grating.
 pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     let angle = TAU * grating.frequency * at[grating.axis];
-    let angle = match fault {
-        "phase subtracted" => angle - grating.phase,
-        _ => angle + grating.phase,
-    };
+    let angle = if_planted(
+        fault,
+        "phase subtracted",
+        angle - grating.phase,
+        angle + grating.phase,
+    );
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
 /// Returns a checkerboard. Squares of half a period are counted along both axes from the vertex,
 /// and the value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
-    let side = match fault {
-        "a side taken as a period" => period,
-        _ => period / 2.0,
-    };
+    let side = if_planted(fault, "a side taken as a period", period, period / 2.0);
     let odd = |t: f64| (t / side).floor().rem_euclid(2.0) > 0.5;
     let is_even = odd(at[0]) == odd(at[1]);
-    let is_one = match fault {
-        "parity" => !is_even,
-        _ => is_even,
-    };
+    let is_one = if_planted(fault, "parity", !is_even, is_even);
     if is_one { 1.0 } else { 0.0 }
 }
 
@@ -76,19 +73,14 @@ impl Levels {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
         }
-        let left = match fault {
-            "left and right swapped" => width / 2.0 - s,
-            _ => width / 2.0 + s,
-        };
-        let top = match fault {
-            "flipped" => height / 2.0 + t,
-            _ => height / 2.0 - t,
-        };
-        let off = if fault == "centres at corners" {
-            0.0
-        } else {
-            0.5
-        };
+        let left = if_planted(
+            fault,
+            "left and right swapped",
+            width / 2.0 - s,
+            width / 2.0 + s,
+        );
+        let top = if_planted(fault, "flipped", height / 2.0 + t, height / 2.0 - t);
+        let off = if_planted(fault, "centres at corners", 0.0, 0.5);
         let centres = |count: usize, side: f64| -> Vec<f64> {
             let pitch = side / count as f64;
             (0..count).map(|i| (i as f64 + off) * pitch).collect()
@@ -114,10 +106,8 @@ fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     }
     let before = (0..last).rev().find(|i| centres[*i] <= at).unwrap_or(0);
     let share = (at - centres[before]) / (centres[before + 1] - centres[before]);
-    match fault {
-        "nearest pixel instead of interpolation" => (before, share.round()),
-        _ => (before, share),
-    }
+    let nearest = "nearest pixel instead of interpolation";
+    (before, if_planted(fault, nearest, share.round(), share))
 }
 
 /// Two BRDFs whose weighted sum is the BRDF at each point of a surface.
@@ -140,10 +130,12 @@ impl Varied {
             "the nearer for what is between" => share.round(),
             _ => share,
         };
-        let texture = match fault {
-            "texture left out" => 1.0,
-            _ => self.texture.value(at, fault),
-        };
+        let texture = if_planted(
+            fault,
+            "texture left out",
+            1.0,
+            self.texture.value(at, fault),
+        );
         [
             (texture * share, &self.brdf),
             (texture * (1.0 - share), &self.other),

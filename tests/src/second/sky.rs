@@ -1,8 +1,8 @@
 //! Environments defined in scene files, compared with their definition: axes, pixels and lobes.
 
-use super::check::{SecondCheck, relative, worse};
+use super::check::{SecondCheck, if_planted, largest, relative};
 use super::pattern::Levels;
-use super::vector::{Axes, Vector, angle, aside, between, direction, scale, times};
+use super::vector::{Axes, Vector, angle, aside, direction, scale, times};
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
 use etendue_field::Light;
@@ -51,7 +51,7 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
 /// and X = Y × Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
-    let tilt = between(dice, 0.3, 2.8);
+    let tilt = dice.between(0.3, 2.8);
     let front = aside(dice, up, tilt);
     // In these axes D is up and X points to the front, so Y = D × X is the axis X of the map.
     let text = format!("up: {}, front: {}", triple(up), triple(times(3.0, front)));
@@ -70,10 +70,7 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
 /// Returns the direction from which light comes, opposite to the direction in which light
 /// travels.
 fn origin(along: Vector, fault: &str) -> Vector {
-    match fault {
-        "the way light goes" => along,
-        _ => times(-1.0, along),
-    }
+    if_planted(fault, "the way light goes", along, times(-1.0, along))
 }
 
 /// Returns the radiance of the scene's light along a direction of the world.
@@ -93,12 +90,11 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
         triple(world.light.origin)
     );
     let scene = world.scene(folder);
-    let each = (0..EACH).map(|_| {
+    largest(EACH, || {
         let along = direction(dice);
         let second = map.radiance(seen(&axes, origin(along, fault), fault), fault);
         relative(fast(&world, &scene.light, along), brightness * second)
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 impl Levels {
@@ -117,10 +113,7 @@ impl Levels {
             "centres at corners" => longitude + PI / w,
             _ => longitude,
         };
-        let latitude = match fault {
-            "upside down" => -latitude,
-            _ => latitude,
-        };
+        let latitude = if_planted(fault, "upside down", -latitude, latitude);
         let row = |j: usize| {
             // The two columns adjacent to the direction. The last column of the map precedes the
             // first column.
@@ -153,7 +146,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
     let brightness = scale(dice, 0.1, 10.0);
     let lobes: Vec<(Vector, f64, f64)> = (0..2)
         .map(|_| {
-            let tilt = between(dice, 0.0, 1.0);
+            let tilt = dice.between(0.0, 1.0);
             let from = aside(dice, times(-1.0, world.light.d), tilt);
             (from, scale(dice, 1e-3, 3.0), scale(dice, 0.1, 10.0))
         })
@@ -171,21 +164,23 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
         words.join(", ")
     );
     let scene = world.scene(folder);
-    let each = (0..EACH).map(|_| {
+    largest(EACH, || {
         let (from, width, _) = lobes[dice.below(2)];
-        let tilt = width * between(dice, 0.0, 4.0);
+        let tilt = width * dice.between(0.0, 4.0);
         let along = times(-1.0, aside(dice, from, tilt));
         let second: f64 = lobes
             .iter()
             .map(|(middle, width, radiance)| {
                 // The planted fault uses the numbers in the file as directions of the world.
-                let middle = match fault {
-                    "axes of the world" => seen(&axes, *middle, ""),
-                    _ => *middle,
-                };
+                let middle = if_planted(
+                    fault,
+                    "axes of the world",
+                    seen(&axes, *middle, ""),
+                    *middle,
+                );
                 let gamma = angle(middle, origin(along, fault));
                 let fall = 2.0 * (gamma / 2.0).sin().powi(2);
-                let squared = width * width * if fault == "2 σ² for σ²" { 2.0 } else { 1.0 };
+                let squared = width * width * if_planted(fault, "2 σ² for σ²", 2.0, 1.0);
                 radiance * (-fall / squared).exp()
             })
             .sum();
@@ -195,6 +190,5 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
             fast(&world, &scene.light, along) + 1e-9,
             brightness * second + 1e-9,
         )
-    });
-    each.fold(0.0, worse)
+    })
 }

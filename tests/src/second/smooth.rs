@@ -1,6 +1,6 @@
 //! Defines smooth surfaces as solids: a plane, a ball, a round bar and a paraboloid.
 
-use super::vector::{Axes, Vector, aside, between, dot, length, plus, times, unit};
+use super::vector::{Axes, Vector, aside, dot, length, plus, times, unit};
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
 
@@ -26,13 +26,13 @@ impl Smooth {
     /// Returns a surface with its vertex on the central ray, tilted by up to `most` radians, and
     /// the scene-file text of this surface without its event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
-        let tilt = between(dice, 0.1, most);
+        let tilt = dice.between(0.1, most);
         let facing = aside(dice, times(-1.0, world.light.d), tilt);
-        let lean = between(dice, 0.5, 2.5);
+        let lean = dice.between(0.5, 2.5);
         let along = aside(dice, facing, lean);
         let mut curvature = || {
             let sign = if dice.one_in(2) { 1.0 } else { -1.0 };
-            sign * between(dice, 0.3, 1.0)
+            sign * dice.between(0.3, 1.0)
         };
         let (k, l) = (curvature(), curvature());
         let form = *dice.pick(&[

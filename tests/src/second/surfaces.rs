@@ -1,10 +1,10 @@
 //! Compares smooth surfaces of scene files with equivalent solids. Also compares the directions of
 //! single rays after these surfaces with computed angles.
 
-use super::check::{SecondCheck, worse};
+use super::check::{SecondCheck, if_planted, largest, worse};
 use super::smooth::Smooth;
 use super::vector::{
-    Axes, Vector, angle, between, direction, distance, dot, plus, scale, times, turned, unit,
+    Axes, Vector, angle, direction, distance, dot, plus, scale, times, turned, unit,
 };
 use super::world::World;
 use crate::hostile::dice::Dice;
@@ -73,15 +73,14 @@ fn surface(dice: &mut Dice) -> (World, Smooth, Patch) {
 fn points(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);
-    let each = (0..EACH).map(|_| {
-        let [s, t] = [between(dice, -0.3, 0.3), between(dice, -0.3, 0.3)];
+    largest(EACH, || {
+        let [s, t] = [dice.between(-0.3, 0.3), dice.between(-0.3, 0.3)];
         let fast = patch.point(s, t);
         let second = smooth.point(s, t);
         let normal = world.light.components(smooth.normal(second));
         let apart = distance(fast.to_array(), world.resolved(second));
         worse(apart, distance(patch.normal(fast).to_array(), normal))
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 /// Compares the points where rays hit a smooth surface of a scene file with the points where they
@@ -90,7 +89,7 @@ fn points(dice: &mut Dice, fault: &str) -> f64 {
 fn hits(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);
-    let each = (0..EACH).map(|_| {
+    largest(EACH, || {
         let start = plus(smooth.axes.origin, 1.5, direction(dice));
         let at = plus(smooth.axes.origin, 0.6 * dice.unit(), direction(dice));
         let towards = unit(plus(at, -1.0, start));
@@ -106,8 +105,7 @@ fn hits(dice: &mut Dice, fault: &str) -> f64 {
         }
         let apart = fast.iter().zip(&second).map(|(a, b)| (a - b).abs());
         apart.fold(0.0, worse)
-    });
-    each.fold(0.0, worse)
+    })
 }
 
 fn event(dice: &mut Dice, fault: &str) -> f64 {
@@ -140,19 +138,11 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
         // A mirror reverses the direction and rotates it by half a turn about the normal.
         Specular::Mirror => Some(turned(times(-1.0, along), normal, PI)),
         Specular::Refraction { front, back } => {
-            let indices = if fault == "indices swapped" {
-                [back, front]
-            } else {
-                [front, back]
-            };
+            let indices = if_planted(fault, "indices swapped", [back, front], [front, back]);
             refracted(along, normal, indices)
         }
         Specular::ThinLens { focal_length } => {
-            let sign = if fault == "sign of the focal length" {
-                -1.0
-            } else {
-                1.0
-            };
+            let sign = if_planted(fault, "sign of the focal length", -1.0, 1.0);
             Some(focused(along, &lens, point, sign * focal_length))
         }
     };

@@ -3,7 +3,7 @@
 use super::check::{SecondCheck, worse};
 use super::lobes;
 use super::pattern::{Levels, Pattern, Varied};
-use super::vector::{between, scale};
+use super::vector::scale;
 use crate::hostile::dice::Dice;
 use etendue_field::{self as field, Brdf, Grating, Lobe, Mixture, Raster, Reflectance};
 use std::f64::consts::TAU;
@@ -79,7 +79,7 @@ pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
 }
 
 fn place(dice: &mut Dice) -> [f64; 2] {
-    [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)]
+    [dice.between(-0.7, 0.7), dice.between(-0.7, 0.7)]
 }
 
 /// Converts a pattern to the type of the fast implementation.
@@ -102,7 +102,7 @@ pub(super) fn grating(dice: &mut Dice) -> Grating {
         axis: dice.below(2),
         frequency: scale(dice, 0.1, 50.0),
         modulation: dice.unit(),
-        phase: between(dice, 0.0, TAU),
+        phase: dice.between(0.0, TAU),
     }
 }
 

@@ -118,10 +118,6 @@ impl Axes {
     }
 }
 
-pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
-    low + (high - low) * dice.unit()
-}
-
 /// Returns a random number between two bounds; its logarithm is uniformly distributed.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
@@ -129,8 +125,8 @@ pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
 
 /// Returns a random direction.
 pub(super) fn direction(dice: &mut Dice) -> Vector {
-    let height = between(dice, -1.0, 1.0);
-    let around = between(dice, 0.0, TAU);
+    let height = dice.between(-1.0, 1.0);
+    let around = dice.between(0.0, TAU);
     let across = (1.0 - height * height).sqrt();
     [across * around.cos(), across * around.sin(), height]
 }

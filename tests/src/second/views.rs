@@ -1,8 +1,8 @@
 //! Compares photons at a plane perpendicular to the central ray with the same photons in the
 //! coordinates of planes on a surface.
 
-use super::check::{SecondCheck, relative, worse};
-use super::paths::{Legs, Turn};
+use super::check::{SecondCheck, if_planted, relative, worse};
+use super::paths::Legs;
 use super::smooth::Smooth;
 use super::vector::{Axes, Vector, dot, plus, times, turned_along, unit};
 use super::world::{World, triple};
@@ -76,9 +76,7 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     let mut crossings: Vec<Vec<Crossing>> = vec![Vec::new(); PLANES.len()];
     let mut record = |plane: usize, all: &[Crossing]| crossings[plane].extend(all);
     Tracer::new(&scene).emit(0, &mut record, &|_| {});
-    let (d, n) = (world.light.d, smooth.axes.d);
-    let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
-    let legs = Legs::new(&world.light, smooth.axes.origin, n, mirror, fault);
+    let legs = Legs::at_mirror(&world.light, &smooth, fault);
     let mut largest = 0.0;
     for (i, plane) in PLANES.iter().enumerate() {
         let across = if plane.1 { 0 } else { 4 };
@@ -145,11 +143,7 @@ impl Looking<'_> {
         };
         let [.., u, phi] = second;
         let cosines = (u + self.longitude).cos() * phi.cos() * phi.cos();
-        let per_flux = if fault == "cosines left out" {
-            1.0
-        } else {
-            cosines
-        };
+        let per_flux = if_planted(fault, "cosines left out", 1.0, cosines);
         // Flux Φ has weight Φ (1 + u² + v²)² at the plane perpendicular to the leg, and Φ/(cos θ
         // cos² φ) on the surface.
         let weight = across.weight / (secant_squared * secant_squared) / per_flux;
@@ -169,10 +163,9 @@ impl Looking<'_> {
             return Some([x - z * u, y - z * v, u, v]);
         }
         let (point, normal) = self.met(foot, along, fault)?;
-        let turned = |axis: Vector| match fault {
-            "central normal instead of the local normal" => axis,
-            _ => turned_along(axis, self.surface.d, normal),
-        };
+        let central = "central normal instead of the local normal";
+        let normal = if_planted(fault, central, self.surface.d, normal);
+        let turned = |axis: Vector| turned_along(axis, self.surface.d, normal);
         let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
         let axes = [self.surface.x, self.surface.y, self.surface.d];
         let [t, b, n] = axes.map(|axis| dot(away, turned(axis)));
@@ -203,10 +196,7 @@ impl Looking<'_> {
         let t = hits.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         let point = plus(foot, t, along);
         let normal = self.smooth.normal(point);
-        let point = match fault {
-            "foot on the tangent plane" => tangent(),
-            _ => point,
-        };
+        let point = if_planted(fault, "foot on the tangent plane", tangent(), point);
         Some((point, normal))
     }
 }

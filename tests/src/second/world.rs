@@ -1,7 +1,7 @@
 //! A scene file that follows docs/scenes.md, with its central ray anywhere in the world, and the
 //! resolved scene.
 
-use super::vector::{Axes, Vector, aside, between, direction};
+use super::vector::{Axes, Vector, aside, direction};
 use crate::hostile::dice::Dice;
 use etendue_field::Frame;
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -28,7 +28,7 @@ impl World {
     pub(super) fn new(dice: &mut Dice) -> Self {
         let origin = direction(dice);
         let d = direction(dice);
-        let tilt = between(dice, 0.3, 2.8);
+        let tilt = dice.between(0.3, 2.8);
         let x_axis = aside(dice, d, tilt);
         Self {
             light: Axes::new(origin, d, x_axis),

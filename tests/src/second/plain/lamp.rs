@@ -1,10 +1,9 @@
 //! Lights of the plain tracer, as docs/scene.md describes them.
 
 use super::path::Draws;
-use super::world::{grey, number};
+use super::world::grey;
 use crate::second::pattern::cosine;
 use crate::second::vector::{Axes, Vector, cross, dot, plus, turned, unit};
-use etendue_field::Grating;
 use etendue_scene::{BulbFile, EnvironmentFile, ImageFile, LightFile};
 use std::f64::consts::{PI, TAU};
 
@@ -39,47 +38,35 @@ pub(super) enum Start {
 
 impl Lamp {
     pub(super) fn new(file: &LightFile, axes: impl Fn(Vector) -> Axes) -> Option<Self> {
-        let (center, kind) = match file {
-            LightFile::Rectangle {
-                center,
-                size,
-                radiance,
-            } => (center, Kind::Rectangle(*size, grey(radiance), 0.0)),
+        let kind = match file {
+            LightFile::Rectangle { size, radiance, .. } => {
+                Kind::Rectangle(*size, grey(radiance), 0.0)
+            }
             LightFile::Disc {
-                center,
-                radius,
-                radiance,
-            } => (center, Kind::Disc(*radius, grey(radiance), 0.0)),
+                radius, radiance, ..
+            } => Kind::Disc(*radius, grey(radiance), 0.0),
             LightFile::Spot {
-                center,
                 bulb,
                 radiance,
                 exponent,
-            } => {
-                let radiance = grey(radiance);
-                let kind = match bulb {
-                    BulbFile::Square(side) => Kind::Rectangle([*side; 2], radiance, *exponent),
-                    BulbFile::Disc(radius) => Kind::Disc(*radius, radiance, *exponent),
-                };
-                (center, kind)
-            }
-            LightFile::Point { center, intensity } => (center, Kind::Point(grey(intensity), None)),
+                ..
+            } => match bulb {
+                BulbFile::Square(side) => Kind::Rectangle([*side; 2], grey(radiance), *exponent),
+                BulbFile::Disc(radius) => Kind::Disc(*radius, grey(radiance), *exponent),
+            },
+            LightFile::Point { intensity, .. } => Kind::Point(grey(intensity), None),
             LightFile::Projector {
-                center,
-                intensity,
-                image,
-            } => (center, Kind::Point(grey(intensity), Some(*image))),
+                intensity, image, ..
+            } => Kind::Point(grey(intensity), Some(*image)),
             LightFile::Beam {
-                center,
-                irradiance,
-                image,
-            } => (center, Kind::Beam(grey(irradiance), *image)),
+                irradiance, image, ..
+            } => Kind::Beam(grey(irradiance), *image),
             LightFile::Environment {
-                center,
                 up,
                 front,
                 scale,
                 map: EnvironmentFile::Lobes(lobes),
+                ..
             } => {
                 // The components of a lobe are along up × front, up, and front.
                 let of_map = Axes::new([0.0; 3], *up, *front);
@@ -88,11 +75,11 @@ impl Lamp {
                     let from = unit(of_map.vector([front, x, up]));
                     (from, lobe.width, scale * grey(&lobe.radiance))
                 });
-                (center, Kind::Lobes(lobes.collect()))
+                Kind::Lobes(lobes.collect())
             }
             LightFile::Environment { .. } | LightFile::Rays { .. } => return None,
         };
-        let axes = axes(*center);
+        let axes = axes(file.center());
         Some(Self { axes, kind })
     }
 
@@ -219,13 +206,8 @@ fn around_axis(axis: Vector, aside: Vector, [cosine, around]: [f64; 2]) -> Vecto
 fn picture(image: &ImageFile, at: [f64; 2]) -> f64 {
     let gauss = |i: usize| (-PI * (at[i] / image.width[i]).powi(2)).exp();
     let grating = image.grating.as_ref().map_or(1.0, |grating| {
-        let grating = Grating {
-            axis: number(grating.axis),
-            frequency: grating.frequency,
-            modulation: grating.modulation,
-            phase: grating.phase,
-        };
-        cosine(&grating, at, "")
+        let numbers = [grating.frequency, grating.modulation, grating.phase];
+        cosine(&super::world::grating(grating.axis, numbers), at, "")
     });
     gauss(0) * gauss(1) * grating
 }

@@ -1,6 +1,6 @@
 //! Masks of the plain tracer, as docs/scene.md describes them.
 
-use super::world::number;
+use super::world::{grating, number};
 use crate::second::pattern::cosine;
 use crate::second::vector::{Axes, Vector, dot, plus};
 use etendue_field::Grating;
@@ -71,12 +71,7 @@ impl PlainMask {
                 phase,
                 ..
             } => {
-                let grating = Grating {
-                    axis: number(*axis),
-                    frequency: *frequency,
-                    modulation: *modulation,
-                    phase: *phase,
-                };
+                let grating = grating(*axis, [*frequency, *modulation, *phase]);
                 (center, What::Grating(grating))
             }
             BlockersFile::Picture { .. } | BlockersFile::Mesh { .. } => return None,
@@ -119,7 +114,7 @@ fn contains(shape: &ShapeFile, [x, y]: [f64; 2]) -> bool {
 }
 
 /// A point is in a polygon if a line from it to the right crosses the edges an odd number of times.
-fn is_in_hole(hole: &HoleFile, [x, y]: [f64; 2]) -> bool {
+pub(crate) fn is_in_hole(hole: &HoleFile, [x, y]: [f64; 2]) -> bool {
     match hole {
         HoleFile::Disc { center, radius } => (x - center[0]).hypot(y - center[1]) <= *radius,
         HoleFile::Rectangle { center, size } => {

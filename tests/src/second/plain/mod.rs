@@ -15,15 +15,16 @@ mod tests;
 mod world;
 
 use crate::hostile::dice::Dice;
-use crate::progress::progress;
+use crate::progress::in_parallel;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{traced, traced_backwards};
+use crate::statistics::mean;
 use crate::wild::{MORE_PHOTONS, plain_scene, text};
 use etendue_scene::{Scene, SceneFile, resolve};
 use lamp::Lamp;
+pub(super) use mask::is_in_hole;
 use path::{Choice, NUMBERS};
 use planted::FAULTS;
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 use world::PlainWorld;
@@ -180,22 +181,15 @@ pub(crate) fn plain(options: &PlainOptions) -> io::Result<ReportSection> {
     } else {
         vec![None]
     };
-    let bar = progress(options.scenes * faults.len() as u64, "scenes");
     let tasks = faults.iter().flat_map(|fault| {
         let numbers = options.first..options.first + options.scenes;
         numbers.map(move |number| (*fault, number))
     });
-    let tasks: Vec<_> = tasks.collect();
-    let compared: io::Result<Vec<_>> = tasks
-        .into_par_iter()
-        .map(|(fault, number)| {
-            let found = random(options, number, fault);
-            bar.one();
-            found.map(|found| (fault, number, found))
-        })
-        .collect();
-    bar.end();
-    let compared = compared?;
+    let compared = in_parallel(tasks, "scenes", |(fault, number)| {
+        let found = random(options, number, fault)?;
+        Ok((fault, number, found))
+    });
+    let compared: Vec<_> = compared.into_iter().collect::<io::Result<_>>()?;
     let rows = faults.iter().map(|fault| {
         let of_fault = compared.iter().filter(|(of, ..)| of == fault);
         let pairs = of_fault.filter_map(|(_, number, pair)| Some((*number, (*pair)?)));
@@ -386,10 +380,7 @@ fn shifted(index: u32, shift: &[f64; NUMBERS]) -> [f64; NUMBERS] {
 }
 
 fn estimate(values: &[f64]) -> Estimate {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares = values.iter().map(|value| (value - mean).powi(2));
-    let error = (squares.sum::<f64>() / (count * (count - 1.0))).sqrt();
+    let [mean, error] = mean(values);
     Estimate {
         mean,
         error,

@@ -2,9 +2,8 @@
 
 use super::lamp::{Lamp, Start};
 use super::world::{Leaves, PlainSurface, PlainWorld, START};
+use crate::second::masks::value;
 use crate::second::vector::{Vector, distance, dot, length, plus, times, unit};
-use etendue_field::Profile;
-use std::f64::consts::PI;
 
 /// Numbers that a path may use: four at an environment, two at each surface and at the plane.
 pub(super) const NUMBERS: usize = 14;
@@ -288,7 +287,7 @@ impl PlainWorld {
 
     fn weight(&self, at: [f64; 4]) -> f64 {
         let each = self.window.iter().zip(at);
-        each.map(|(profile, t)| value(profile, t)).product()
+        each.map(|(profile, t)| value(profile, t, "")).product()
     }
 
     /// Returns the distance up to which hits are the origin of a ray itself.
@@ -345,19 +344,5 @@ impl Light<'_> {
             Err(Emitter::Surface(surface, arrived)) => surface.scattered(self.at, *arrived, along),
         };
         self.weight * per_angle * area / distance(self.at, point).powi(2)
-    }
-}
-
-/// Returns a profile of the window (docs/conventions.md, section Window).
-fn value(profile: &Profile, t: f64) -> f64 {
-    let inside = match *profile {
-        Profile::Hann(h) => (PI * t / (2.0 * h)).cos().powi(2),
-        Profile::Box(_) => 1.0,
-        Profile::Gaussian { width, .. } => (-PI * t * t / (width * width)).exp(),
-    };
-    if t.abs() < profile.half_width() {
-        inside
-    } else {
-        0.0
     }
 }

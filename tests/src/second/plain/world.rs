@@ -411,15 +411,19 @@ fn pattern(file: &PatternFile) -> Option<Pattern> {
             frequency,
             modulation,
             phase,
-        } => Pattern::Cosine(Grating {
-            axis: number(*axis),
-            frequency: *frequency,
-            modulation: *modulation,
-            phase: *phase,
-        }),
+        } => Pattern::Cosine(grating(*axis, [*frequency, *modulation, *phase])),
         PatternFile::Checkerboard(period) => Pattern::Checkerboard(*period),
         PatternFile::Picture { .. } => return None,
     })
+}
+
+pub(super) fn grating(axis: AxisName, [frequency, modulation, phase]: [f64; 3]) -> Grating {
+    Grating {
+        axis: number(axis),
+        frequency,
+        modulation,
+        phase,
+    }
 }
 
 pub(super) fn number(axis: AxisName) -> usize {
