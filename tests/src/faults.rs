@@ -5,10 +5,10 @@ mod power;
 mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row};
+use crate::report::{Check, ReportSection, Row, number, word};
 use crate::scenes::{fig9b, named, tampered, traced};
-use etendue_compare::{Residuals, TESTS, radial, sidak};
-use etendue_field::{Complex, Crossing, Mask, Rectangle, Shape, Slices, VirtualPlane};
+use etendue_compare::{Residuals, TESTS, Verdict, radial, sidak};
+use etendue_field::{Complex, Crossing, HalfPlane, Mask, Rectangle, Shape, Slices, VirtualPlane};
 use etendue_predict::chain;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -145,15 +145,7 @@ fn elsewhere() -> Vec<(&'static str, Vec<PredictionFault>)> {
         scaled("frequency of the grating + 1 %", is_frequency, 1.01),
     ];
     let half_plane = fault("missing half-plane", |c| {
-        for operator in &mut c.operators {
-            if let Operator::Visibility {
-                mask: Mask::Opaque { half_planes, .. },
-                ..
-            } = operator
-            {
-                half_planes.clear();
-            }
-        }
+        each_layer(c, |_, half_planes| half_planes.clear());
     });
     let diffuse = vec![
         fault("missing G", |c| {
@@ -238,20 +230,18 @@ fn judged(scene: &Scene, name: &'static str, p_values: &[[Option<f64>; 2]]) -> R
         NONE => Check::p("accepted", Some(least), level),
         _ => Check::new("rejected", least, Below(level)).because("a fault is planted"),
     };
-    let shown = [0, 1].map(|kind| joined(p_values.iter().map(|p| p[kind])));
-    let outcome = if least < level {
-        "rejected"
-    } else {
-        "accepted"
+    let joined = |kind: usize| {
+        let shown: Vec<String> = p_values.iter().map(|p| number(p[kind])).collect();
+        shown.join(", ")
     };
-    let [slices, power] = shown;
+    let [slices, power] = [0, 1].map(joined);
+    let outcome = word(if least < level {
+        Verdict::Fail
+    } else {
+        Verdict::Pass
+    });
     let cells = vec![name.to_owned(), slices, power, outcome.to_owned()];
     Row::new(cells, vec![check])
-}
-
-fn joined(p_values: impl Iterator<Item = Option<f64>>) -> String {
-    let show = |p: Option<f64>| p.map_or("–".to_owned(), |p| format!("{p:.5}"));
-    p_values.map(show).collect::<Vec<_>>().join(", ")
 }
 
 fn unchanged(scene: &Scene, plane: &VirtualPlane) -> Option<Slices> {
@@ -285,7 +275,7 @@ fn predictions() -> Vec<PredictionFault> {
             }),
         ),
         fault("all blockers missing", |c| {
-            each_layer(c, |shapes| shapes.clear());
+            each_layer(c, |shapes, _| shapes.clear());
         }),
         fault("central blocker missing", |c| {
             let radius = |s: &Shape| {
@@ -293,10 +283,10 @@ fn predictions() -> Vec<PredictionFault> {
                 x.hypot(y)
             };
             let mut nearest = f64::INFINITY;
-            each_layer(c, |shapes| {
+            each_layer(c, |shapes, _| {
                 nearest = shapes.iter().map(radius).fold(nearest, f64::min);
             });
-            each_layer(c, |shapes| shapes.retain(|s| radius(s) > nearest));
+            each_layer(c, |shapes, _| shapes.retain(|s| radius(s) > nearest));
         }),
         ("shift of half a bin of 64 along x", moved(1.0 / 64.0)),
         ("window 1 % too wide in x and y", widened(0.01, 0.0)),
@@ -342,20 +332,24 @@ fn scale_travel(chain: &mut Chain, nth: usize, factor: f64) {
     }
 }
 
-fn each_layer(chain: &mut Chain, mut change: impl FnMut(&mut Vec<Shape>)) {
+/// Changes the shapes and half-planes of each opaque mask.
+fn each_layer(chain: &mut Chain, mut change: impl FnMut(&mut Vec<Shape>, &mut Vec<HalfPlane>)) {
     for operator in &mut chain.operators {
         if let Operator::Visibility {
-            mask: Mask::Opaque { shapes, .. },
+            mask: Mask::Opaque {
+                shapes,
+                half_planes,
+            },
             ..
         } = operator
         {
-            change(shapes);
+            change(shapes, half_planes);
         }
     }
 }
 
 fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
-    each_layer(chain, |shapes| {
+    each_layer(chain, |shapes, _| {
         for shape in shapes {
             if let Shape::Rectangle(rectangle) = shape {
                 change(rectangle);

@@ -3,8 +3,8 @@
 use crate::SEED;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
-use etendue_compare::{PlaneReport, Verdict, compare};
+use crate::scenes::{compared, fig9b, predicted, receiver, sampled, traced, words};
+use etendue_compare::{PlaneReport, Verdict};
 use etendue_field::tidy;
 use etendue_predict::test_of;
 use etendue_scene::{Sampling, Scene};
@@ -198,14 +198,9 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// Panics if the scene has too few batches. Every resolved scene has enough batches.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
-    let test = test_of(scene);
-    predicted(scene, None)
-        .iter()
-        .enumerate()
-        .map(|(i, prediction)| {
-            compare(&measurement, i, prediction, &test)
-                .expect("a resolved scene has enough batches")
-                .report
-        })
-        .collect()
+    let level = test_of(scene).level;
+    let predictions = predicted(scene, None);
+    let planes = predictions.iter().enumerate();
+    let report = |(i, prediction)| compared(scene, &measurement, i, prediction, level).report;
+    planes.map(report).collect()
 }

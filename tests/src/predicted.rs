@@ -1,6 +1,10 @@
 //! Slices predicted by theory, with or without a planted modification.
 
+use crate::scenes::compared;
+use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction};
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
 use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::path::{PathChain, rays, scattering};
 use etendue_theory::{Model, Observed, Predicted, RayBudget};
@@ -36,4 +40,35 @@ pub(crate) fn scattered(view: &Observed, plane: &VirtualPlane, chain: &PathChain
         linear.half += &difference.slices.half;
     }
     [found.slices, linear]
+}
+
+/// Compares the photons of a plane with a modified chain, by the rule for first-order chains. The
+/// slices are those of the modified chain, and `defect` is the part of its error that remains. All
+/// else is as in the prediction `sound`, which needs a chain.
+///
+/// # Panics
+/// Panics if the prediction has no chain.
+pub(crate) fn judged_chain(
+    (scene, measurement, plane): (&Scene, &Measurement, usize),
+    sound: &Prediction,
+    slices: Slices,
+    defect: f64,
+) -> FirstOrderReport {
+    // The level of the test of the exact prediction, whose result is not used.
+    const LEVEL: f64 = 0.01;
+    let kept = sound.first_order.as_ref().expect("a chain");
+    let tried = Prediction {
+        first_order: Some(FirstOrder {
+            slices,
+            replicates: Vec::new(),
+            chain: FirstOrderChain {
+                defect,
+                ..kept.chain.clone()
+            },
+        }),
+        parameters: Vec::new(),
+        ..sound.clone()
+    };
+    let compared = compared(scene, measurement, plane, &tried, LEVEL);
+    compared.report.first_order.expect("a chain was given")
 }

@@ -80,6 +80,12 @@ impl Check {
         }
     }
 
+    /// Returns a check that photons are in the window of a plane.
+    pub(crate) fn light(report: &PlaneReport) -> Self {
+        let light = report.in_window as f64;
+        Self::new("light", light, Bound::AtLeast(1.0)).because("p says nothing without light")
+    }
+
     /// Returns a check that a number of occurrences is zero.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0)).because("none may occur")
@@ -114,6 +120,41 @@ fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
 /// Returns the larger of two numbers, where NaN counts as the largest.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+/// Returns a p-value as text, or a dash if there is none.
+pub(crate) fn number(x: Option<f64>) -> String {
+    x.map_or("–".to_owned(), |x| format!("{x:.5}"))
+}
+
+/// Returns a share in per cent, or a dash if there is none.
+pub(crate) fn percent(x: Option<f64>) -> String {
+    x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x))
+}
+
+/// Returns the cells on the comparison of photons with the exact prediction and the chain of a
+/// plane: photons in the window, noise, p, and the error, the excess, the bound of the excess and
+/// the resolvable excess of the chain.
+pub(crate) fn plane_cells(report: &PlaneReport) -> [String; 7] {
+    let first = report.first_order.as_ref();
+    [
+        report.in_window.to_string(),
+        percent(report.noise_limit),
+        number(report.p_value),
+        percent(first.map(|first| first.chain.error)),
+        percent(first.and_then(|first| first.excess)),
+        percent(first.and_then(|first| first.excess_bound)),
+        percent(first.and_then(|first| first.resolvable)),
+    ]
+}
+
+/// Returns the verdict on a prediction in words.
+pub(crate) const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "accepted",
+        Verdict::Fail => "rejected",
+        Verdict::Undecided => "undecided",
+    }
 }
 
 /// A row of a results table, with the checks of this row.

@@ -25,13 +25,17 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
     sound(name.rsplit('/').next().unwrap_or(name), file)
 }
 
-/// Returns the text of `scenes/NAME.ron`.
+/// Returns the text of `scenes/NAME.ron` after the given replacements, made in the given order.
 ///
 /// # Panics
-/// Panics if there is no such scene file.
-pub(crate) fn text(name: &str) -> String {
+/// Panics if there is no such scene file, or if it does not contain one of the texts.
+pub(crate) fn text(name: &str, edits: &[(&str, &str)]) -> String {
     let path = format!("{}/../scenes/{name}.ron", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).expect("a file of the repository")
+    let text = std::fs::read_to_string(path).expect("a file of the repository");
+    edits.iter().fold(text, |text, (old, new)| {
+        assert!(text.contains(old), "{name} has no {old}");
+        text.replace(old, new)
+    })
 }
 
 /// Reads `scenes/NAME.ron`, and sets fields of the file, as `--set` does.
@@ -39,7 +43,7 @@ pub(crate) fn text(name: &str) -> String {
 /// # Panics
 /// Panics if there is no such scene file, or if it has no such field.
 pub(crate) fn read(name: &str, fields: &[(&str, String)]) -> SceneFile {
-    let text = text(name);
+    let text = text(name, &[]);
     let fields = fields
         .iter()
         .map(|(path, value)| ((*path).to_owned(), value.clone()));

@@ -1,9 +1,10 @@
 //! Compares photons with the prediction and with backward rays, for every scene of the repository.
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
-use crate::report::{Check, ReportSection, Row};
+use crate::report::{Check, ReportSection, Row, percent};
 use crate::scenes::{ComparedScene, SUITE, named};
 use etendue_compare::{PlaneReport, TESTS, Verdict, sidak};
+use etendue_field::Complex;
 use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -50,7 +51,6 @@ fn table(outcomes: &[ComparedScene], planes: usize, level: f64) -> ReportSection
 }
 
 fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -> Row {
-    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
     let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
     let cells = vec![
         scene.name.clone(),
@@ -65,11 +65,8 @@ fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -
         number(report.p_value),
         number(backward),
     ];
-    let (agrees, decided) = match report.verdict {
-        Verdict::Pass => (true, true),
-        Verdict::Fail => (false, true),
-        Verdict::Undecided => (true, false),
-    };
+    let agrees = report.verdict != Verdict::Fail;
+    let decided = report.verdict != Verdict::Undecided;
     let mut checks = vec![
         Check::fact("agrees", agrees, "judged as in a run"),
         Check::fact("decided", decided, "judged as in a run"),
@@ -109,8 +106,6 @@ fn occluders(outcomes: &[ComparedScene]) -> ReportSection {
         let checks = vec![check(AtLeast(wanted as f64)), check(AtMost(most))];
         rows.push(Row::new(cells, checks));
     }
-    let norm =
-        |of: &dyn Fn(usize) -> f64, n: usize| (0..n).map(|i| of(i).powi(2)).sum::<f64>().sqrt();
     let (sum, blind) = match (
         at("fig7_one"),
         at("fig7_other"),
@@ -126,28 +121,16 @@ fn occluders(outcomes: &[ComparedScene]) -> ReportSection {
             };
             let plane = &both.scene.planes[2];
             let open = etendue_theory::slices(&open, &plane.window, &plane.grid);
-            let cells: Vec<_> = open
-                .half
-                .iter()
-                .zip(&one.predicted.half)
-                .zip(&other.predicted.half)
-                .collect();
-            let n = cells.len();
-            let whole = norm(&|i| cells[i].0.0.norm(), n);
-            let sum = norm(
-                &|i| {
-                    let ((f, a), b) = cells[i];
-                    (a + b - f).norm()
-                },
-                n,
-            );
-            let blind = norm(
-                &|i| {
-                    let ((f, a), b) = cells[i];
-                    a.norm() + b.norm() - f.norm()
-                },
-                n,
-            );
+            let norm = |of: fn([&Complex; 3]) -> f64| {
+                let pairs = one.predicted.half.iter().zip(&other.predicted.half);
+                let all = open.half.iter().zip(pairs);
+                all.map(|(f, (a, b))| of([f, a, b]).powi(2))
+                    .sum::<f64>()
+                    .sqrt()
+            };
+            let whole = norm(|[f, ..]| f.norm());
+            let sum = norm(|[f, a, b]| (a + b - f).norm());
+            let blind = norm(|[f, a, b]| a.norm() + b.norm() - f.norm());
             (sum / whole, blind / whole)
         }
         _ => (f64::NAN, f64::NAN),

@@ -12,19 +12,23 @@ pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
     vec![criteria(run), larger_curvature(run)]
 }
 
+/// Returns the criterion at an eye 0.5 m from a glossy surface, in the mirror direction.
+fn criterion(curvature: f64, incidence: f64, blocker_distance: Option<f64>) -> Criterion {
+    Criterion {
+        curvature,
+        incidence,
+        outgoing: -incidence,
+        distance: 0.5,
+        blocker_distance,
+        lobe_cutoff: PlanarLobe::Phong { exponent: 1000.0 }.cutoff(0.95),
+        environment_cutoff: f64::INFINITY,
+    }
+}
+
 /// Compares the sampling criterion, which assumes light of all frequencies, with measurements for
 /// lights of increasing size.
 fn criteria(run: ClaimRun) -> Claim {
-    let lobe = 1000.0;
-    let criterion = Criterion {
-        curvature: 0.5,
-        incidence: 0.5,
-        outgoing: -0.5,
-        distance: 0.5,
-        blocker_distance: Some(0.6),
-        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
-        environment_cutoff: f64::INFINITY,
-    };
+    let criterion = criterion(0.5, 0.5, Some(0.6));
     let sizes = [0.003, 0.02, 0.05, 0.1];
     let shares = sizes.map(|size| {
         let seen = run.seen("criterion", &[("light.size", format!("({size}, {size})"))]);
@@ -53,16 +57,7 @@ fn criteria(run: ClaimRun) -> Claim {
 /// Measures light reflected by three surfaces: a cylinder curved in the plane of incidence, a
 /// cylinder curved across this plane, and a sphere.
 fn larger_curvature(run: ClaimRun) -> Claim {
-    let lobe = 1000.0;
-    let criterion = Criterion {
-        curvature: 0.8,
-        incidence: 0.7,
-        outgoing: -0.7,
-        distance: 0.5,
-        blocker_distance: None,
-        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
-        environment_cutoff: f64::INFINITY,
-    };
+    let criterion = criterion(0.8, 0.7, None);
     let forms = [
         ["Cylinder(0.8)", "(1, 0, 0)"],
         ["Cylinder(0.8)", "(0, 1, 0)"],

@@ -3,7 +3,7 @@
 use super::{Predict, chained, each_rectangle, moved, scale_travel, unchanged, widened};
 use crate::progress::progress;
 use crate::report::Bound::Below;
-use crate::report::{Check, ReportSection, Row};
+use crate::report::{Check, ReportSection, Row, percent};
 use crate::scenes::{fig9b, sampled, tampered, traced};
 use etendue_compare::{Residuals, TESTS, sidak};
 use etendue_field::{Crossing, VirtualPlane};
@@ -80,9 +80,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
             let size = size.unwrap_or(f64::INFINITY);
             Check::new("size", size, Below(LARGEST)).because("the largest planted size is rejected")
         });
-        let shown = sizes
-            .iter()
-            .map(|size| size.map_or("–".to_owned(), |s| format!("{:.3} %", 100.0 * s)));
+        let shown = sizes.iter().copied().map(percent);
         let cells = std::iter::once((*name).to_owned()).chain(shown).collect();
         rows.push(Row::new(cells, checks.collect()));
     }

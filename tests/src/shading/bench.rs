@@ -3,7 +3,9 @@
 use crate::predicted;
 use crate::scenes::{tampered, traced};
 use etendue_compare::Residuals;
-use etendue_field::{Complex, Crossing, Reflectance, Slices, VirtualPlane};
+use etendue_field::{
+    Complex, Crossing, Grating, Pattern, Reflectance, Slices, Term, VirtualPlane, Weight,
+};
 use etendue_predict::path;
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate};
@@ -104,6 +106,17 @@ pub(super) fn reflectance(scene: &mut Scene) -> &mut Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,
         Event::Specular(_) => panic!("a surface with a BRDF"),
+    }
+}
+
+/// Changes every grating among the weights of BRDFs.
+pub(super) fn each_weight(reflectance: &mut Reflectance, change: impl Fn(&mut Grating)) {
+    for Term { weight, .. } in &mut reflectance.terms {
+        if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
+            weight
+        {
+            change(grating);
+        }
     }
 }
 

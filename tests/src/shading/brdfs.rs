@@ -5,7 +5,7 @@ use super::light::{PrimalSurface, frequencies, light, light_hat};
 use super::operators::OperatorComparison;
 use super::planar::{
     Factor, Lattice, PlanarReflection, ReflectionStep, Schlick, SeparableTerm, TextureWave,
-    semi_convolution, texture,
+    semi_convolution, table_hat, texture,
 };
 use crate::rows::Line;
 use crate::table1::apart;
@@ -14,11 +14,11 @@ use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{PlanarLobe, cosine_hat, cosine_squared_hat};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-pub(super) const THETA0: f64 = 0.5;
+const THETA0: f64 = 0.5;
 pub(super) const THETA1: f64 = -0.4;
 pub(super) const K: f64 = 0.5;
 
-const GLOSS: PlanarLobe = PlanarLobe::Gaussian { deviation: 0.12 };
+pub(super) const GLOSS: PlanarLobe = PlanarLobe::Gaussian { deviation: 0.12 };
 const PHONG: PlanarLobe = PlanarLobe::Phong { exponent: 30.0 };
 const SCHLICK: Schlick = Schlick(0.04);
 
@@ -87,216 +87,183 @@ pub(super) fn lopsided_hat(q: f64) -> Complex {
 /// Returns the comparisons that involve all steps of a reflection at a surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = separable();
-    rows.extend(listed());
-    rows.push(sum());
-    rows.push(weighted());
+    rows.extend(sums());
     rows.push(textured());
     rows.push(varying());
     rows
 }
 
-fn separable() -> Vec<OperatorComparison> {
-    let gaussian = |_: f64, d: f64| GLOSS.value(d);
-    let row = |line,
-               operator,
-               surface: &PrimalSurface<'_>,
-               right: SeparableTerm<'_>,
-               name,
-               wrong: SeparableTerm<'_>| {
-        let traced = primal(surface);
-        OperatorComparison {
-            operator,
-            line: Some(line),
-            compared: "reflection after step 7".to_owned(),
-            off: apart(&chain(&reflection(vec![right])), &traced),
-            fault: (name, apart(&chain(&reflection(vec![wrong])), &traced)),
-        }
-    };
-    let squared = |q: f64| Complex::from(cosine_squared_hat(q));
-    let conjugate = |q: f64| lopsided_hat(-q);
-    let after = |t: f64| t.cos().powi(2);
-    let schlick = |t: f64| SCHLICK.reflectance(t) * t.cos();
-    let glossy = |before| term(before, Some(GLOSS));
-    vec![
-        row(
-            Line::Mirror,
-            "ideal mirror, δ/cos θ",
-            &PrimalSurface {
-                before: &|_| 1.0,
-                horizon: PI,
-                ..surface(None)
-            },
-            term(Factor::One, None),
-            "δ without 1/cos θ",
-            term(Factor::Cosine, None),
-        ),
-        row(
-            Line::Brdf,
-            "cosine and Gaussian lobe",
-            &surface(Some(&gaussian)),
-            glossy(Factor::Cosine),
-            "no cosine",
-            glossy(Factor::One),
-        ),
-        row(
-            Line::Brdf,
-            "cosine and Phong lobe",
-            &surface(Some(&|_, d| PHONG.value(d))),
-            term(Factor::Cosine, Some(PHONG)),
-            "exponent 5 % off",
-            term(Factor::Cosine, Some(PlanarLobe::Phong { exponent: 31.5 })),
-        ),
-        row(
-            Line::Separable,
-            "separable, f(θ_i') = Schlick",
-            &PrimalSurface {
-                before: &schlick,
-                ..surface(Some(&gaussian))
-            },
-            glossy(Factor::Schlick(SCHLICK)),
-            "f left out",
-            glossy(Factor::Cosine),
-        ),
-        row(
-            Line::Separable,
-            "separable, asymmetric f(θ_i')",
-            &PrimalSurface {
-                before: &lopsided,
-                ..surface(Some(&gaussian))
-            },
-            glossy(Factor::Other(&lopsided_hat)),
-            "f̂(Ω) instead of f̂(−Ω)",
-            glossy(Factor::Other(&conjugate)),
-        ),
-        row(
-            Line::Separable,
-            "separable, h(θ_o') = cos²",
-            &PrimalSurface {
-                after: Some(&after),
-                ..surface(Some(&gaussian))
-            },
-            SeparableTerm {
-                after: Factor::Other(&squared),
-                ..glossy(Factor::Cosine)
-            },
-            "h before the lobe",
-            glossy(Factor::Other(&|q| {
-                // On the half-circle, cos θ cos² θ = (3 cos θ + cos 3θ)/4.
-                let third = 3.0 / TAU;
-                let triple = |q: f64| {
-                    let half = |t: f64| {
-                        let angle = PI * PI * t;
-                        if angle.abs() < 1e-9 {
-                            PI
-                        } else {
-                            PI * angle.sin() / angle
-                        }
-                    };
-                    0.5 * (half(q - third) + half(q + third))
-                };
-                Complex::from(0.75 * cosine_hat(q) + 0.25 * triple(q))
-            })),
-        ),
-    ]
+/// Compares the chains of two sums of terms, of which the second is wrong, with the field that is
+/// traced in the primal domain.
+fn row(
+    line: Line,
+    operator: &'static str,
+    traced: &[Complex],
+    right: Vec<SeparableTerm<'_>>,
+    (fault, wrong): (&'static str, Vec<SeparableTerm<'_>>),
+) -> OperatorComparison {
+    let off = |terms| apart(&chain(&reflection(terms)), traced);
+    OperatorComparison {
+        operator,
+        line: Some(line),
+        compared: "reflection after step 7".to_owned(),
+        off: off(right),
+        fault: (fault, off(wrong)),
+    }
 }
 
-/// Compares reflections in which the factors f and h are lists of values over |θ|. These factors
+/// Compares reflections by BRDFs of one term. Factors f and h that are lists of values over |θ|
 /// have kinks.
-fn listed() -> [OperatorComparison; 2] {
+fn separable() -> Vec<OperatorComparison> {
+    let gaussian = |_: f64, d: f64| GLOSS.value(d);
+    let phong = |_: f64, d: f64| PHONG.value(d);
+    let glossy = |before| term(before, Some(GLOSS));
+    let with_after = |after| SeparableTerm {
+        after,
+        ..glossy(Factor::Cosine)
+    };
+    let plain = || surface(Some(&gaussian));
+    let conjugate = |q: f64| lopsided_hat(-q);
+    let squared = |q: f64| Complex::from(cosine_squared_hat(q));
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
     };
-    // Interpolates a list of factors between the nearest two angles.
-    let value = |t: f64| {
+    // Interpolates the list between the nearest two angles.
+    let listed = |t: f64| {
         let at = t.abs() / FRAC_PI_2 * 4.0;
         let hats = [1.0, 0.9, 0.2, 0.3, 0.8].iter().zip(0_u32..);
         hats.map(|(v, i)| v * (1.0 - (at - f64::from(i)).abs()).max(0.0))
             .sum::<f64>()
     };
-    let gaussian = |_: f64, d: f64| GLOSS.value(d);
-    let with_cosine = |t: f64| value(t) * t.cos();
-    let f = SeparableTerm {
-        before: Factor::TableCosine(&table),
-        ..term(Factor::Cosine, Some(GLOSS))
-    };
-    let h = SeparableTerm {
-        after: Factor::Table(&table),
-        ..term(Factor::Cosine, Some(GLOSS))
-    };
     let kinks = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|i| FRAC_PI_2 * i / 4.0);
-    let off = |term: SeparableTerm<'_>, surface: &PrimalSurface<'_>| {
-        apart(&chain(&reflection(vec![term])), &primal(surface))
-    };
-    let [by_f, by_h] = [
-        PrimalSurface {
-            before: &with_cosine,
-            kinks: &kinks,
-            ..surface(Some(&gaussian))
-        },
-        PrimalSurface {
-            after: Some(&value),
-            kinks: &kinks,
-            ..surface(Some(&gaussian))
-        },
+    let listed_f = |q: f64| Complex::from(table_hat(&table, libm::cos, q));
+    let listed_h = |q: f64| Complex::from(table_hat(&table, |_| 1.0, q));
+    let [f, h] = [
+        glossy(Factor::Other(&listed_f)),
+        with_after(Factor::Other(&listed_h)),
     ];
-    let row = |operator, off, fault| OperatorComparison {
-        operator,
-        line: Some(Line::Separable),
-        compared: "reflection after step 7".to_owned(),
-        off,
-        fault,
-    };
-    [
-        row(
-            "separable, f(θ_i') by a list",
-            off(f, &by_f),
-            ("h for f", off(h, &by_f)),
-        ),
-        row(
-            "separable, h(θ_o') by a list",
-            off(h, &by_h),
-            ("f for h", off(f, &by_h)),
-        ),
-    ]
-}
-
-/// Compares, with the primal domain, reflection by a sum of two lobes with the weights w = ½ (1 +
-/// 0.9 cos(2π 1.5 s + 0.4)) and 1 − w.
-fn weighted() -> OperatorComparison {
-    let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
-    let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
-    let traced = primal(&surface(Some(&both)));
-    let waves = |sign: f64| {
-        let side = Complex::from_polar(sign * 0.225, 0.4);
-        [(0.0, Complex::from(0.5)), (1.5, side), (-1.5, side.conj())].map(
-            |(frequency, amplitude)| TextureWave {
-                frequency,
-                amplitude,
+    let cases = [
+        (
+            Line::Mirror,
+            "ideal mirror, δ/cos θ",
+            PrimalSurface {
+                before: &|_| 1.0,
+                horizon: PI,
+                ..surface(None)
             },
-        )
-    };
-    let [one, rest] = [1.0, -1.0].map(waves);
-    let by = |one: &[TextureWave], rest: &[TextureWave]| {
-        let of = |lobe, weight| SeparableTerm {
-            weight: Some(weight),
-            ..term(Factor::Cosine, Some(lobe))
-        };
-        let terms = vec![of(GLOSS, one), of(PHONG, rest)];
-        apart(&chain(&reflection(terms)), &traced)
-    };
-    OperatorComparison {
-        operator: "weighted sum of two lobes",
-        line: Some(Line::SpaceVarying),
-        compared: "reflection after step 7".to_owned(),
-        off: by(&one, &rest),
-        fault: ("weights swapped", by(&rest, &one)),
-    }
+            term(Factor::One, None),
+            ("δ without 1/cos θ", term(Factor::Cosine, None)),
+        ),
+        (
+            Line::Brdf,
+            "cosine and Gaussian lobe",
+            plain(),
+            glossy(Factor::Cosine),
+            ("no cosine", glossy(Factor::One)),
+        ),
+        (
+            Line::Brdf,
+            "cosine and Phong lobe",
+            surface(Some(&phong)),
+            term(Factor::Cosine, Some(PHONG)),
+            (
+                "exponent 5 % off",
+                term(Factor::Cosine, Some(PlanarLobe::Phong { exponent: 31.5 })),
+            ),
+        ),
+        (
+            Line::Separable,
+            "separable, f(θ_i') = Schlick",
+            PrimalSurface {
+                before: &schlick,
+                ..plain()
+            },
+            glossy(Factor::Other(&schlick_hat)),
+            ("f left out", glossy(Factor::Cosine)),
+        ),
+        (
+            Line::Separable,
+            "separable, asymmetric f(θ_i')",
+            PrimalSurface {
+                before: &lopsided,
+                ..plain()
+            },
+            glossy(Factor::Other(&lopsided_hat)),
+            ("f̂(Ω) instead of f̂(−Ω)", glossy(Factor::Other(&conjugate))),
+        ),
+        (
+            Line::Separable,
+            "separable, h(θ_o') = cos²",
+            PrimalSurface {
+                after: Some(&|t| t.cos().powi(2)),
+                ..plain()
+            },
+            with_after(Factor::Other(&squared)),
+            (
+                "h before the lobe",
+                glossy(Factor::Other(&cosine_cubed_hat)),
+            ),
+        ),
+        (
+            Line::Separable,
+            "separable, f(θ_i') by a list",
+            PrimalSurface {
+                before: &|t| listed(t) * t.cos(),
+                kinks: &kinks,
+                ..plain()
+            },
+            f,
+            ("h for f", h),
+        ),
+        (
+            Line::Separable,
+            "separable, h(θ_o') by a list",
+            PrimalSurface {
+                after: Some(&listed),
+                kinks: &kinks,
+                ..plain()
+            },
+            h,
+            ("f for h", f),
+        ),
+    ];
+    let rows = cases.map(|(line, operator, surface, right, (fault, wrong))| {
+        let traced = primal(&surface);
+        row(line, operator, &traced, vec![right], (fault, vec![wrong]))
+    });
+    rows.into()
 }
 
-fn sum() -> OperatorComparison {
+/// Returns Schlick's reflectance times the cosine.
+fn schlick(theta: f64) -> f64 {
+    SCHLICK.reflectance(theta) * theta.cos()
+}
+
+/// Returns the Fourier transform of [`schlick`] on the half-circle.
+fn schlick_hat(q: f64) -> Complex {
+    SCHLICK.cosine_hat(q).into()
+}
+
+/// Returns the Fourier transform of cos³ on the half-circle, where it is (3 cos θ + cos 3θ)/4.
+fn cosine_cubed_hat(q: f64) -> Complex {
+    let third = 3.0 / TAU;
+    let half = |t: f64| {
+        let angle = PI * PI * t;
+        if angle.abs() < 1e-9 {
+            PI
+        } else {
+            PI * angle.sin() / angle
+        }
+    };
+    let triple = 0.5 * (half(q - third) + half(q + third));
+    Complex::from(0.75 * cosine_hat(q) + 0.25 * triple)
+}
+
+/// Compares reflections by BRDFs of several terms. The last BRDF has two lobes with the weights w =
+/// ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and 1 − w.
+fn sums() -> [OperatorComparison; 2] {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
     let phong = |_: f64, d: f64| PHONG.value(d);
-    let schlick = |t: f64| SCHLICK.reflectance(t) * t.cos();
     let parts = [
         surface(Some(&gaussian)),
         PrimalSurface {
@@ -312,23 +279,51 @@ fn sum() -> OperatorComparison {
     let traced: Vec<Complex> = (0..parts[0].len())
         .map(|i| parts.iter().map(|part| part[i]).sum())
         .collect();
-    let mut terms = vec![
+    let terms = [
         term(Factor::Cosine, Some(GLOSS)),
-        term(Factor::Schlick(SCHLICK), Some(PHONG)),
+        term(Factor::Other(&schlick_hat), Some(PHONG)),
         term(Factor::Other(&lopsided_hat), None),
     ];
-    let right = chain(&reflection(terms.clone()));
-    terms.remove(1);
-    OperatorComparison {
-        operator: "sum of three separable terms",
-        line: Some(Line::Separable),
-        compared: "reflection after step 7".to_owned(),
-        off: apart(&right, &traced),
-        fault: (
-            "a term left out",
-            apart(&chain(&reflection(terms)), &traced),
+    let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
+    let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
+    let [one, rest] = [1.0, -1.0].map(|sign: f64| waves(0.5, 1.5, sign * 0.225));
+    let weighted = |one, rest| {
+        let of = |lobe, weight| SeparableTerm {
+            weight: Some(weight),
+            ..term(Factor::Cosine, Some(lobe))
+        };
+        vec![of(GLOSS, one), of(PHONG, rest)]
+    };
+    [
+        row(
+            Line::Separable,
+            "sum of three separable terms",
+            &traced,
+            terms.to_vec(),
+            ("a term left out", vec![terms[0], terms[2]]),
         ),
-    }
+        row(
+            Line::SpaceVarying,
+            "weighted sum of two lobes",
+            &primal(&surface(Some(&both))),
+            weighted(&one, &rest),
+            ("weights swapped", weighted(&rest, &one)),
+        ),
+    ]
+}
+
+/// Returns the waves of mean + 2 amplitude cos(2π f s + 0.4), for the frequency f.
+fn waves(mean: f64, frequency: f64, amplitude: f64) -> [TextureWave; 3] {
+    let side = Complex::from_polar(amplitude, 0.4);
+    [
+        (0.0, Complex::from(mean)),
+        (frequency, side),
+        (-frequency, side.conj()),
+    ]
+    .map(|(frequency, amplitude)| TextureWave {
+        frequency,
+        amplitude,
+    })
 }
 
 /// Compares, with the primal domain, a glossy reflection multiplied by the texture 1 + 0.7 cos(2π
@@ -341,16 +336,7 @@ fn textured() -> OperatorComparison {
     });
     let gloss = reflection(vec![term(Factor::Cosine, Some(GLOSS))]);
     let with = |frequency: f64| {
-        let side = Complex::from_polar(0.35, 0.4);
-        let waves = [
-            (0.0, Complex::from(1.0)),
-            (frequency, side),
-            (-frequency, side.conj()),
-        ]
-        .map(|(frequency, amplitude)| TextureWave {
-            frequency,
-            amplitude,
-        });
+        let waves = waves(1.0, frequency, 0.35);
         let back = |w: [f64; 2]| gloss.spectrum(ReflectionStep::Back, w, &light_hat);
         said(|omega| {
             AffineMap::<2>::outgoing(THETA1).spectrum(omega, &|w| texture(&waves, w, &back))
@@ -403,5 +389,23 @@ fn varying() -> OperatorComparison {
         compared: "reflection by a lobe that turns along s".to_owned(),
         off: apart(&through(&|w| bell.spectrum(w)), &traced),
         fault: ("a separable ρ instead", apart(&through(&straight), &traced)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn at_a_mirror_factors_before_and_after_are_one_with_the_sign_turned() {
+        let before =
+            |hat: &dyn Fn(f64) -> Complex| chain(&reflection(vec![term(Factor::Other(hat), None)]));
+        let after = SeparableTerm {
+            after: Factor::Other(&lopsided_hat),
+            ..term(Factor::One, None)
+        };
+        let after = chain(&reflection(vec![after]));
+        assert!(apart(&before(&|q| lopsided_hat(-q)), &after) < 1e-14); // rounding of 10² terms
+        assert!(apart(&before(&lopsided_hat), &after) > 0.05);
     }
 }

@@ -3,19 +3,13 @@
 
 use super::scenes::{alone, changed};
 use crate::predicted;
-use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{compared, traced};
-use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict};
-use etendue_field::Slices;
+use crate::report::{Check, ReportSection, Row, word};
+use crate::scenes::traced;
+use etendue_compare::Verdict;
 use etendue_predict::{Applicability, path, predict};
-use etendue_scene::Scene;
-use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::path::{PathChain, ScatteringSurface, chain, defect};
 
-/// Significance level of the test of the exact prediction; the result of this test is not used
-/// for chains.
-const LEVEL: f64 = 0.01;
 /// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
 const SCENE: &str = "textured_glossy";
@@ -83,7 +77,9 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
             let mut tampered = chain(&view).expect("a central ray");
             fault(&mut tampered);
             let [_, said] = predicted::scattered(&view, place, &tampered);
-            let report = judged(&scene, &measurement, &sound, &tampered, said);
+            let defect = defect(&view, &tampered).expect("a central ray");
+            let of = (&scene, &measurement, 0);
+            let report = predicted::judged_chain(of, &sound, said, defect);
             let check = match name {
                 "none" => {
                     let accepted = report.verdict == Verdict::Pass;
@@ -102,12 +98,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
                 percent(report.excess_bound),
                 percent(Some(report.chain.error)),
                 format!("{:.1e}", report.chain.defect),
-                match report.verdict {
-                    Verdict::Pass => "accepted",
-                    Verdict::Fail => "rejected",
-                    Verdict::Undecided => "undecided",
-                }
-                .to_owned(),
+                word(report.verdict).to_owned(),
             ];
             rows.push(Row::new(cells, vec![check]));
         }
@@ -127,32 +118,6 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
          verdict",
         rows,
     )
-}
-
-/// Returns the comparison report on the slices that a modified chain predicts.
-fn judged(
-    scene: &Scene,
-    measurement: &Measurement,
-    sound: &Prediction,
-    tampered: &PathChain,
-    slices: Slices,
-) -> FirstOrderReport {
-    let view = path(scene, &scene.planes[0]).expect("a plane behind a BRDF");
-    let kept = sound.first_order.as_ref().expect("a chain");
-    let tried = Prediction {
-        first_order: Some(FirstOrder {
-            slices,
-            replicates: Vec::new(),
-            chain: FirstOrderChain {
-                defect: defect(&view, tampered).expect("a central ray"),
-                ..kept.chain.clone()
-            },
-        }),
-        parameters: Vec::new(),
-        ..sound.clone()
-    };
-    let compared = compared(scene, measurement, 0, &tried, LEVEL);
-    compared.report.first_order.expect("a chain was given")
 }
 
 fn percent(x: Option<f64>) -> String {

@@ -141,7 +141,7 @@ fn brdf() -> Vec<Erratum> {
         ..surface(None)
     });
     let ideal = reflection(vec![term(Factor::One, None)]);
-    let row = |place, printed: &str, corrected: &str, off, at_least, mended| Erratum {
+    let row = |place, [printed, corrected]: [&str; 2], [off, at_least, mended]: [f64; 3]| Erratum {
         place,
         printed: printed.to_owned(),
         corrected: corrected.to_owned(),
@@ -153,35 +153,27 @@ fn brdf() -> Vec<Erratum> {
     vec![
         row(
             "Eq. 15",
-            "ρ'(θ_o − θ_r')",
-            "ρ'(θ_o' − θ_r')",
-            apart(&unprimed, &plain),
-            BY_FAR,
-            right,
+            ["ρ'(θ_o − θ_r')", "ρ'(θ_o' − θ_r')"],
+            [apart(&unprimed, &plain), BY_FAR, right],
         ),
         row(
             "Table 1, BRDF",
-            "ρ'(Ωθ) dE'_r^",
-            "ρ̂'(Ωθ) dE'_r^",
-            apart(&hatless, &plain),
-            BY_FAR,
-            right,
+            ["ρ'(Ωθ) dE'_r^", "ρ̂'(Ωθ) dE'_r^"],
+            [apart(&hatless, &plain), BY_FAR, right],
         ),
         row(
             "Eq. 17, Table 1, separable",
-            "f̂(Ωθ)",
-            "f̂(−Ωθ), asymmetric f",
-            with(&conjugate),
-            BY_FAR,
-            with(&lopsided_hat),
+            ["f̂(Ωθ)", "f̂(−Ωθ), asymmetric f"],
+            [with(&conjugate), BY_FAR, with(&lopsided_hat)],
         ),
         row(
             "section 4.2, mirror",
-            "δ",
-            "δ/cos θ_i'",
-            apart(&chain(&mirror), &free),
-            0.1,
-            apart(&chain(&ideal), &free),
+            ["δ", "δ/cos θ_i'"],
+            [
+                apart(&chain(&mirror), &free),
+                0.1,
+                apart(&chain(&ideal), &free),
+            ],
         ),
     ]
 }

@@ -1,6 +1,8 @@
 //! The image that an eye sees in a glossy circle, computed by tracing rays back from the eye.
 
+use crate::table1::on_circle;
 use etendue_theory::shading::Criterion;
+use glam::DVec2;
 use std::f64::consts::TAU;
 
 /// Step of finite differences, in slope or radians; the error of the derivative is of fourth
@@ -29,19 +31,14 @@ impl EyeScene {
         // The axis X = cos T − sin N is perpendicular to the central ray, which is along D = sin T
         // + cos N.
         let angle = slope.atan() + c.outgoing;
-        let along = [angle.sin(), angle.cos()];
+        let along = DVec2::new(angle.sin(), angle.cos());
         let back = -slope * c.distance;
-        let [t, n] = [back * cosine, -back * sine];
-        // k (t² + n²) + 2 n = 0.
-        let k = c.curvature;
-        let q = k * (t * along[0] + n * along[1]) + along[1];
-        let e = k * (t * t + n * n) + 2.0 * n;
-        let length = -e / (q + (q * q - k * e).sqrt().copysign(q));
-        let point = [t + length * along[0], n + length * along[1]];
-        let turn = (k * point[0]).asin();
+        let start = DVec2::new(back * cosine, -back * sine);
+        let point = on_circle(c.curvature, start, along);
+        let turn = (c.curvature * point.x).asin();
         EyeHit {
             turn,
-            point,
+            point: point.to_array(),
             local: angle - turn,
         }
     }
@@ -70,16 +67,6 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// Returns two ratios, one for the environment and one for the blocker. Each ratio is the
-    /// derivative of the phase with respect to the slope at the eye, divided by the derivative with
-    /// respect to the local angle of mirrored light at a fixed point.
-    pub(super) fn ratios(&self) -> [f64; 2] {
-        let seen = derivative(&|slope| self.origin(slope));
-        let center = self.hit(0.0);
-        let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
-        [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
-    }
-
     /// Returns three bandwidths at the eye, which are B, B' and a maximum bandwidth. For the
     /// maximum, the environment has frequencies up to Ω_e, and the blocker has all frequencies that
     /// keep the summed frequency on the surface below Ω_ρ.
@@ -88,7 +75,9 @@ impl EyeScene {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
         let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
-        let [environment, blocker] = self.ratios();
+        // The derivatives of the phase with respect to the slope at the eye, relative to those
+        // with respect to the local angle of mirrored light at a fixed point.
+        let [environment, blocker] = [0, 1].map(|i: usize| (seen[i] / there[i]).abs());
         // For a frequency g in the environment, f is the frequency at the blocker with which the
         // summed frequency on the surface equals its limit.
         let mut most = 0.0_f64;

@@ -176,56 +176,49 @@ fn fresnel() -> Vec<OperatorComparison> {
 fn lobes() -> Vec<OperatorComparison> {
     // Each row has a second implementation of a lobe's shape, which a separate quadrature
     // normalises, and the end and the scale of the lobe.
-    let row = |operator,
-               lobe: PlanarLobe,
-               off: PlanarLobe,
-               end: f64,
-               inner: f64,
-               shape: &dyn Fn(f64) -> f64| {
-        let area = 2.0 * plain_integral(end, inner, shape);
-        let primal = plain(end, inner, &|t| shape(t) / area);
-        OperatorComparison {
-            operator,
-            line: Some(Line::Brdf),
-            compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
-            off: apart(&curve(|w| lobe.spectrum(w)), &primal),
-            fault: (
-                "width or exponent 5 % off",
-                apart(&curve(|w| off.spectrum(w)), &primal),
-            ),
-        }
-    };
+    let row =
+        |operator, [lobe, off]: [PlanarLobe; 2], ends: [f64; 2], shape: &dyn Fn(f64) -> f64| {
+            let [end, inner] = ends;
+            let area = 2.0 * plain_integral(end, inner, shape);
+            let primal = plain(end, inner, &|t| shape(t) / area);
+            OperatorComparison {
+                operator,
+                line: Some(Line::Brdf),
+                compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
+                off: apart(&curve(|w| lobe.spectrum(w)), &primal),
+                fault: (
+                    "width or exponent 5 % off",
+                    apart(&curve(|w| off.spectrum(w)), &primal),
+                ),
+            }
+        };
+    let phong = |exponent| PlanarLobe::Phong { exponent };
+    let gaussian = |deviation| PlanarLobe::Gaussian { deviation };
+    let beckmann = |roughness| PlanarLobe::Beckmann { roughness };
+    let ggx = |roughness| PlanarLobe::Ggx { roughness };
     vec![
         row(
             "lobe, Phong n = 20",
-            PlanarLobe::Phong { exponent: 20.0 },
-            PlanarLobe::Phong { exponent: 21.0 },
-            FRAC_PI_2,
-            0.2,
+            [20.0, 21.0].map(phong),
+            [FRAC_PI_2, 0.2],
             &|t| t.cos().powi(20),
         ),
         row(
             "lobe, Phong n = 3",
-            PlanarLobe::Phong { exponent: 3.0 },
-            PlanarLobe::Phong { exponent: 3.15 },
-            FRAC_PI_2,
-            0.5,
+            [3.0, 3.15].map(phong),
+            [FRAC_PI_2, 0.5],
             &|t| t.cos().powi(3),
         ),
         row(
             "lobe, Gaussian σ = 0.08",
-            PlanarLobe::Gaussian { deviation: 0.08 },
-            PlanarLobe::Gaussian { deviation: 0.084 },
-            0.72,
-            0.09,
+            [0.08, 0.084].map(gaussian),
+            [0.72, 0.09],
             &|t| (-0.5 * (t / 0.08).powi(2)).exp(),
         ),
         row(
             "lobe, Beckmann α = 0.1",
-            PlanarLobe::Beckmann { roughness: 0.1 },
-            PlanarLobe::Beckmann { roughness: 0.105 },
-            PI,
-            0.1,
+            [0.1, 0.105].map(beckmann),
+            [PI, 0.1],
             &|t| {
                 let slope = (0.5 * t).tan().min(1e3);
                 (-100.0 * slope * slope).exp() / (0.5 * t).cos().powi(4)
@@ -233,10 +226,8 @@ fn lobes() -> Vec<OperatorComparison> {
         ),
         row(
             "lobe, GGX α = 0.1",
-            PlanarLobe::Ggx { roughness: 0.1 },
-            PlanarLobe::Ggx { roughness: 0.105 },
-            PI,
-            0.1,
+            [0.1, 0.105].map(ggx),
+            [PI, 0.1],
             // The GGX distribution of Walter et al. is 1/(cos⁴ τ (α² + tan² τ)²) as a function of
             // the cosine of δ.
             &|t| (1.01 - 0.99 * t.cos()).powi(-2),

@@ -120,8 +120,8 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
 /// Returns the scene with the environment and a single plane, which records the arriving light.
 pub(super) fn arriving(photons: Option<u64>) -> Scene {
     let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
-    let texts = [["planes: [", &format!("planes: [{plane}")]];
-    alone(changed("environment", photons, &texts), "arriving")
+    let edits = [("planes: [", &*format!("planes: [{plane}"))];
+    alone(changed("environment", photons, &edits), "arriving")
 }
 
 fn environment(photons: Option<u64>) -> (Bench, Vec<Misprint>) {

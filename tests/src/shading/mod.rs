@@ -19,6 +19,8 @@ mod photons;
 mod planar;
 mod planted;
 mod primal;
+#[cfg(test)]
+mod reference;
 mod scenes;
 mod semi;
 mod semi_operator;

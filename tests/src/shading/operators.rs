@@ -61,3 +61,14 @@ pub(super) fn operators() -> ReportSection {
         factors.chain(brdfs::all()).map(row),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::operators;
+
+    #[test]
+    fn operators_are_as_quadrature_gives_them_and_planted_faults_are_seen() {
+        let section = operators();
+        assert!(section.passes(), "{}", section.markdown());
+    }
+}

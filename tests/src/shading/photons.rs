@@ -3,7 +3,7 @@
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row};
+use crate::report::{Check, ReportSection, Row, number, plane_cells};
 use crate::rows::Line;
 use crate::scenes::ComparedScene;
 use etendue_compare::{TESTS, Verdict, sidak};
@@ -71,9 +71,8 @@ fn row(outcome: &ComparedScene, index: usize, level: f64) -> Row {
     let backward = outcome.backward[index];
     let first = report.first_order.as_ref();
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
-    let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0)).because("p says nothing without light"),
+        Check::light(report),
         Check::exact(report, level),
         Check::fact("first order", agrees, "by the rule for first-order chains"),
         Check::new("ledger", imbalance.abs(), Below(LEDGER)).because("rounding"),
@@ -85,27 +84,14 @@ fn row(outcome: &ComparedScene, index: usize, level: f64) -> Row {
             .push(Check::new("photons", photons, enough).because("this many photons would decide"));
     }
     checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
-    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
-    let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.5}"));
     let (word, mut lines) = operator(scene, place);
     let is_separable = scene.name.starts_with("fresnel") || scene.name.starts_with("factor");
     lines.extend(is_separable.then_some(Line::Separable));
     lines.extend((scene.name == "environment").then_some(Line::Environment));
     lines.extend((place.name == "1_incidence").then_some(Line::Visibility));
-    let cells = vec![
-        scene.name.clone(),
-        report.name.clone(),
-        word,
-        report.in_window.to_string(),
-        percent(report.noise_limit),
-        number(report.p_value),
-        percent(first.map(|f| f.chain.error)),
-        percent(first.and_then(|f| f.excess)),
-        percent(first.and_then(|f| f.excess_bound)),
-        percent(first.and_then(|f| f.resolvable)),
-        number(backward),
-        format!("{:.0e}", imbalance.abs()),
-    ];
+    let mut cells = vec![scene.name.clone(), report.name.clone(), word];
+    cells.extend(plane_cells(report));
+    cells.extend([number(backward), format!("{:.0e}", imbalance.abs())]);
     Row::new(cells, checks).of(lines)
 }
 

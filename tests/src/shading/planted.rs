@@ -1,14 +1,14 @@
 //! Faults of shading, planted in the prediction or in the photons, which a comparison must reject.
 
 use super::arriving::Sphere;
-use super::bench::{Bench, mean, reflectance};
+use super::bench::{Bench, each_weight, mean, reflectance};
 use super::misprints;
 use super::scenes::{alone, changed};
 use super::tamper::{around_the_normal, cosine, polarised, scaled, textured_here};
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use etendue_compare::sidak;
-use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term, Weight};
+use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term};
 use etendue_scene::Scene;
 use glam::DQuat;
 use std::f64::consts::TAU;
@@ -35,7 +35,7 @@ enum Plant {
 struct Stand {
     scene: &'static str,
     plane: &'static str,
-    texts: &'static [[&'static str; 2]],
+    edits: &'static [(&'static str, &'static str)],
     faults: Vec<(&'static str, Plant)>,
 }
 
@@ -47,7 +47,7 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
     for stand in stands {
-        let scene = changed(stand.scene, photons.or(Some(PHOTONS)), stand.texts);
+        let scene = changed(stand.scene, photons.or(Some(PHOTONS)), stand.edits);
         let bench = Bench::new(alone(scene, stand.plane));
         let sound = bench.p_value(&bench.photons, &bench.sound);
         for (name, plant) in stand.faults {
@@ -114,7 +114,7 @@ impl Stand {
         Self {
             scene,
             plane,
-            texts: &[],
+            edits: &[],
             faults: Vec::new(),
         }
     }
@@ -164,7 +164,9 @@ fn stands() -> Vec<Stand> {
             .prediction("weights swapped", swapped)
             .prediction("width of a lobe + 1 %", |s| lobe(s, 1.01_f64.powi(-2)))
             .prediction("width of a lobe − 1 %", |s| lobe(s, 0.99_f64.powi(-2)))
-            .prediction("modulation of the weights 1 instead of 0.9", full),
+            .prediction("modulation of the weights 1 instead of 0.9", |s| {
+                each_weight(s, |grating| grating.modulation = 1.0);
+            }),
         Stand::new("sum", "reflection")
             .prediction("a term left out", |s| {
                 s.terms.remove(1);
@@ -176,10 +178,10 @@ fn stands() -> Vec<Stand> {
             .prediction("f left out", |s| s.first_mut().incoming = None),
         Stand::new("factor_outgoing", "reflection").prediction("f for h", turned_round),
         Stand {
-            texts: &[[
+            edits: &[(
                 "(0.605186406, 0, -0.796083799)",
                 "(0.0871557427, 0, -0.996194698)",
-            ]],
+            )],
             ..Stand::new("checkerboard", "reflection")
                 .crossings("lobe around the normal", around_the_normal)
         },
@@ -200,10 +202,7 @@ fn stands() -> Vec<Stand> {
 }
 
 fn lobe(reflectance: &mut Reflectance, factor: f64) {
-    if let Lobe::Phong { exponent: number }
-    | Lobe::Beckmann { roughness: number }
-    | Lobe::Ggx { roughness: number } = &mut reflectance.first_mut().lobe
-    {
+    if let Some((_, number)) = reflectance.first_mut().lobe.number_mut() {
         *number *= factor;
     }
 }
@@ -219,17 +218,6 @@ fn turned_round(reflectance: &mut Reflectance) {
 pub(super) fn swapped(reflectance: &mut Reflectance) {
     if let [one, two, ..] = &mut reflectance.terms[..] {
         std::mem::swap(&mut one.weight, &mut two.weight);
-    }
-}
-
-/// Extends the range of values of each varying weight down to 0.
-fn full(reflectance: &mut Reflectance) {
-    for Term { weight, .. } in &mut reflectance.terms {
-        if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
-            weight
-        {
-            grating.modulation = 1.0;
-        }
     }
 }
 

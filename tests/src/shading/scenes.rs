@@ -15,19 +15,14 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     SCENES.split(' ').map(scene).collect()
 }
 
-/// Returns a scene of the repository after the given replacements of text in its file, made in the
-/// given order.
+/// Returns a scene of the repository after the given replacements of text in its file.
 ///
 /// # Panics
 /// Panics if there is no such scene, if its file does not contain one of the texts, or if the
 /// changed scene is invalid.
-pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> Scene {
+pub(super) fn changed(name: &str, photons: Option<u64>, edits: &[(&str, &str)]) -> Scene {
     let folder = if name == "fig10" { "" } else { "table1/" };
-    let text = text(&format!("{folder}{name}"));
-    let text = texts.iter().fold(text, |text, [old, new]| {
-        assert!(text.contains(old), "{name} has no {old}");
-        text.replace(old, new)
-    });
+    let text = text(&format!("{folder}{name}"), edits);
     let mut file = SceneFile::parse(&text).expect("a scene of shading is a scene file");
     emit(&mut file.run, photons);
     sound(name, file)

@@ -1,7 +1,7 @@
 //! The semi-convolution in 4D, for photons and for rays. This operator computes the spectrum after
 //! reflection by a sum of BRDFs from the spectrum before the reflection.
 
-use super::bench::reflectance;
+use super::bench::{each_weight, reflectance};
 use super::planted::swapped;
 use super::scenes::changed;
 use super::semi_operator::semi_convolution;
@@ -9,7 +9,7 @@ use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use crate::scenes::{predicted, traced};
-use etendue_field::{Complex, FrequencyAxis, Grating, Lobe, Pattern, Reflectance, Slices, Weight};
+use etendue_field::{Complex, FrequencyAxis, Lobe, Pattern, Reflectance, Slices};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate;
 use ndarray::Array3;
@@ -24,21 +24,13 @@ const FAULTS: [(&str, BrdfChange); 6] = [
     ("weights swapped", swapped),
     (
         "weights replaced by their means, which gives a product",
-        |r| {
-            for term in &mut r.terms {
-                change(&mut term.weight, |grating| grating.modulation = 0.0);
-            }
-        },
+        |r| each_weight(r, |grating| grating.modulation = 0.0),
     ),
     ("wrong sign of the phase", |r| {
-        for term in &mut r.terms {
-            change(&mut term.weight, |grating| grating.phase = -grating.phase);
-        }
+        each_weight(r, |grating| grating.phase = -grating.phase);
     }),
     ("modulation of the weights + 5 %", |r| {
-        for term in &mut r.terms {
-            change(&mut term.weight, |grating| grating.modulation *= 1.05);
-        }
+        each_weight(r, |grating| grating.modulation *= 1.05);
     }),
     ("lobes 2 % too wide", |r| {
         for term in &mut r.terms {
@@ -48,14 +40,6 @@ const FAULTS: [(&str, BrdfChange); 6] = [
         }
     }),
 ];
-
-fn change(weight: &mut Weight, by: fn(&mut Grating)) {
-    if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
-        weight
-    {
-        by(grating);
-    }
-}
 
 /// The slices before and after the surface.
 struct Sides {

@@ -1,16 +1,15 @@
 //! Statements of the paper about discontinuities, about curvature, and about the cosine factor of
 //! environment light.
 
-use super::brdfs::{THETA0, THETA1};
+use super::brdfs::{self, GLOSS, term};
 use super::light::light_hat;
 use super::planar::environment::Glow;
-use super::planar::{Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm};
+use super::planar::{Factor, PlanarReflection, ReflectionStep};
 use super::primal::{about, between, transform};
 use super::words::Statement;
 use crate::orders::slope;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::PlanarLobe;
 use etendue_theory::shading::environment::irradiance;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -52,16 +51,8 @@ fn discontinuity(n: i32) -> Statement {
 /// given factor in place of the cosine.
 fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
     PlanarReflection {
-        incidence: THETA0,
-        outgoing: THETA1,
         curvature,
-        terms: vec![SeparableTerm {
-            before,
-            lobe: Some(PlanarLobe::Gaussian { deviation: 0.12 }),
-            after: Factor::One,
-            weight: None,
-        }],
-        lattice: Lattice::circle(12.0),
+        ..brdfs::reflection(vec![term(before, Some(GLOSS))])
     }
 }
 

@@ -1,7 +1,8 @@
 //! All seven steps of a reflection, compared with rays traced off a circle.
 
+use super::brdfs::term;
 use super::light::Bell;
-use super::planar::{Factor, Lattice, PlanarReflection, ReflectionStep, SeparableTerm};
+use super::planar::{Factor, Lattice, PlanarReflection, ReflectionStep};
 use super::primal::{about, wave};
 use crate::orders::{self, ORDER, slope};
 use crate::report::Bound::{Above, Below};
@@ -21,12 +22,13 @@ const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
 
 /// A glossy circle.
-struct Circle {
-    theta0: f64,
-    k: f64,
-    /// Standard deviation of the lobe, relative to the size of the neighbourhood; `None` means a
-    /// Dirac.
-    lobe: Option<f64>,
+#[derive(Clone, Copy)]
+pub(super) struct Circle {
+    pub(super) theta0: f64,
+    pub(super) theta1: f64,
+    pub(super) k: f64,
+    /// Standard deviation of the lobe; `None` means a Dirac.
+    pub(super) lobe: Option<f64>,
 }
 
 /// At the smallest size, the error of a chain with a fault must be at least this number times the
@@ -60,7 +62,13 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
 
 /// Returns the section.
 pub(super) fn traced() -> ReportSection {
-    let circle = |theta0, k, lobe| Circle { theta0, k, lobe };
+    // The deviation of a lobe is relative to the size of the neighbourhood.
+    let circle = |theta0: f64, k, lobe| Circle {
+        theta0,
+        theta1: -theta0,
+        k,
+        lobe,
+    };
     let cases = [
         ("convex", circle(0.0, 0.5, Some(0.6))),
         ("convex", circle(0.65, 0.5, Some(0.6))),
@@ -171,16 +179,12 @@ impl Circle {
     fn error(&self, step: ReflectionStep, size: f64, plant: &ChainChange) -> f64 {
         let bell = Self::light(size);
         let lobe = self.lobe.map(|lobe| lobe * size);
+        let planar = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         let mut reflection = PlanarReflection {
             incidence: self.theta0,
-            outgoing: -self.theta0,
+            outgoing: self.theta1,
             curvature: self.k,
-            terms: vec![SeparableTerm {
-                before: Factor::Cosine,
-                lobe: lobe.map(|deviation| PlanarLobe::Gaussian { deviation }),
-                after: Factor::One,
-                weight: None,
-            }],
+            terms: vec![term(Factor::Cosine, planar)],
             // The light's spectrum has the standard deviation 0.18/e, and shears tilt this
             // spectrum.
             lattice: Lattice::circle(2.5 / size),
@@ -197,7 +201,9 @@ impl Circle {
             .iter()
             .map(|w| reflection.spectrum(step, *w, &|w| bell.spectrum(w)))
             .collect();
-        apart(&said, &self.rays(step, size, &omegas))
+        let reach = [REACH * size / self.theta0.cos(), REACH * size];
+        let shrunk = Self { lobe, ..*self };
+        apart(&said, &shrunk.rays(step, &[bell], reach, &omegas))
     }
 
     /// Returns the affine map composed of a mirror's steps, which locates the frequencies where
@@ -211,7 +217,7 @@ impl Circle {
                 ReflectionStep::Cosine | ReflectionStep::Brdf => AffineMap::identity(),
                 ReflectionStep::Mirror => AffineMap::mirror(),
                 ReflectionStep::Back => AffineMap::<2>::back(self.k),
-                ReflectionStep::Outgoing => AffineMap::<2>::outgoing(-self.theta0),
+                ReflectionStep::Outgoing => AffineMap::<2>::outgoing(self.theta1),
             });
             if next == step {
                 break;
@@ -221,9 +227,14 @@ impl Circle {
     }
 
     /// Returns the transforms of the traced field, by the trapezoid rule over positions of hits
-    /// and over angles.
-    fn rays(&self, step: ReflectionStep, size: f64, omegas: &[[f64; 2]]) -> Vec<Complex> {
-        let bell = Self::light(size);
+    /// and over angles, which end at `reach`.
+    pub(super) fn rays(
+        &self,
+        step: ReflectionStep,
+        light: &[Bell],
+        reach: [f64; 2],
+        omegas: &[[f64; 2]],
+    ) -> Vec<Complex> {
         let mut sums = vec![Complex::from(0.0); omegas.len()];
         let mut add = |[a, b]: [f64; 2], weight: f64| {
             for (sum, w) in sums.iter_mut().zip(omegas) {
@@ -234,7 +245,7 @@ impl Circle {
             ReflectionStep::Brdf | ReflectionStep::Back | ReflectionStep::Outgoing => self.lobe,
             _ => None,
         };
-        for (s, ds) in about(0.0, REACH * size / self.theta0.cos(), 26) {
+        for (s, ds) in about(0.0, reach[0], 26) {
             // In the first step, s is a position on the tangent; in all later steps, s is a
             // position on the arc.
             let turn = if step == ReflectionStep::Incidence {
@@ -246,10 +257,11 @@ impl Circle {
                 ReflectionStep::Incidence => [s, 0.0],
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
-            for (theta, dt) in about(0.0, REACH * size, 26) {
+            for (theta, dt) in about(0.0, reach[1], 26) {
                 // This is the radiance of the light through the hit point along the direction −ω(θ₀
                 // + θ). It is computed in the light's frame.
-                let radiance = bell.value([-self.across(self.theta0, point, theta), theta]);
+                let at = [-self.across(self.theta0, point, theta), theta];
+                let radiance: f64 = light.iter().map(|bell| bell.value(at)).sum();
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;
                 match step {
@@ -266,7 +278,7 @@ impl Circle {
                             continue;
                         };
                         for (z, dz) in about(0.0, REACH, 14) {
-                            let local = lobe * size * z - incident;
+                            let local = lobe * z - incident;
                             let share = (-0.5 * z * z).exp() / TAU.sqrt() * dz;
                             let (at, scale) = self.leaves(step, s, local);
                             add(at, weight * share * scale);
@@ -286,9 +298,9 @@ impl Circle {
             ReflectionStep::Brdf => ([s, local], 1.0),
             ReflectionStep::Back => ([s, local + turn], 1.0),
             _ => {
-                let theta = local + turn + self.theta0;
+                let theta = local + turn - self.theta1;
                 let point = [turn.sin() / self.k, (turn.cos() - 1.0) / self.k];
-                let x = self.across(-self.theta0, point, theta);
+                let x = self.across(self.theta1, point, theta);
                 // The second value is the ratio of dx dθ to ds dθ.
                 ([x, theta], local.cos() / theta.cos())
             }

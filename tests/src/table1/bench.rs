@@ -4,15 +4,10 @@
 use super::TableRun;
 use super::steps::Steps;
 use crate::predicted;
-use crate::scenes::compared;
-use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction};
+use etendue_compare::FirstOrderReport;
 use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
 use etendue_theory::path::rays;
 use etendue_theory::{Model, Parameter};
-
-/// Significance level of the test of the exact prediction; the result of this test is not used
-/// for chains.
-const LEVEL: f64 = 0.01;
 
 /// A scene with one mirror, and the operators (steps) of this mirror.
 pub(super) struct MirrorBench<'a> {
@@ -61,30 +56,12 @@ impl<'a> MirrorBench<'a> {
     /// Compares the photons of a plane with the chain composed of the given steps, by the rule
     /// for first-order chains.
     pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
-        let TableRun {
-            scene,
-            measurement,
-            predictions,
-            ..
-        } = self.outcome;
         let view = self.outcome.system(plane);
-        let place = &scene.planes[plane];
+        let place = &self.outcome.scene.planes[plane];
         let map = steps.chain(place);
-        let prediction = &predictions[plane];
-        let sound = prediction.first_order.as_ref().expect("a chain");
-        let tried = Prediction {
-            first_order: Some(FirstOrder {
-                slices: predicted::linear(&view, &place.window, &place.grid, &map),
-                replicates: Vec::new(),
-                chain: FirstOrderChain {
-                    defect: rays::defect(&view, &map, &place.window).expect("light arrives"),
-                    ..sound.chain.clone()
-                },
-            }),
-            parameters: Vec::new(),
-            ..prediction.clone()
-        };
-        let compared = compared(scene, measurement, plane, &tried, LEVEL);
-        compared.report.first_order.expect("a chain was given")
+        let slices = predicted::linear(&view, &place.window, &place.grid, &map);
+        let defect = rays::defect(&view, &map, &place.window).expect("light arrives");
+        let of = (&self.outcome.scene, &self.outcome.measurement, plane);
+        predicted::judged_chain(of, &self.outcome.predictions[plane], slices, defect)
     }
 }

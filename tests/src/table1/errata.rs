@@ -1,10 +1,10 @@
 //! Tests the paper's misprints, one at a time, together with the corrected formulas.
 
+use super::TableRun;
 use super::bench::MirrorBench;
 use super::steps::Steps;
-use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row};
+use crate::report::{Check, ReportSection, Row, number, percent, word};
 use etendue_compare::{FirstOrderReport, Verdict};
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use std::f64::consts::TAU;
@@ -33,12 +33,9 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
         Box::new(move |steps, theta0, shape| {
             // With longitude 0, the shear has no cosines and equals M. The sign of this shear is
             // correct if `sign` is 1.
-            let longitude = cosine(theta0);
-            steps.curvature =
-                AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
-                    .spectrum_map();
-            steps.back =
-                AffineMap::<4>::back(shape.map(|r| r.map(|m| sign * m)), longitude).spectrum_map();
+            let (longitude, shape) = (cosine(theta0), shape.map(|r| r.map(|m| sign * m)));
+            steps.curvature = AffineMap::<4>::curvature(shape, longitude).spectrum_map();
+            steps.back = AffineMap::<4>::back(shape, longitude).spectrum_map();
         })
     };
     vec![
@@ -167,8 +164,8 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
     rows
 }
 
-/// Returns the section on the errata.
-fn section(outcomes: &[&TableRun]) -> ReportSection {
+/// Returns the section on the misprints, tested on the hollow mirror and on the plane mirror.
+pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     ReportSection::new(
         "Errata: each misprint alone",
         "In each row, one step of the chain is as the paper prints it, and all other steps are \
@@ -180,13 +177,8 @@ fn section(outcomes: &[&TableRun]) -> ReportSection {
          it equals the chain that theory derives from the scene.",
         "scene | plane | misprint | printed: excess | printed: p | the printed chain is | \
          corrected: excess | corrected: bound | corrected: error | the corrected chain is",
-        outcomes.iter().flat_map(|outcome| rows(outcome)),
+        [sphere, flat].into_iter().flat_map(rows),
     )
-}
-
-/// Returns the section on the misprints, tested on the hollow mirror and on the plane mirror.
-pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
-    section(&[sphere, flat])
 }
 
 /// Returns the section on scene files that request the printed formulas. Such scenes must disagree,
@@ -227,14 +219,6 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
         rows,
     )
     .with_checks(checks)
-}
-
-pub(super) fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Pass => "accepted",
-        Verdict::Fail => "rejected",
-        Verdict::Undecided => "undecided",
-    }
 }
 
 pub(super) fn percent_or_dark(report: &FirstOrderReport) -> String {

@@ -12,6 +12,7 @@ mod quadrature;
 mod steps;
 mod volume;
 
+pub(crate) use path::on_circle;
 pub(crate) use quadrature::{apart, content};
 
 use crate::report::ReportSection;
@@ -73,27 +74,18 @@ pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     };
     let (sound, printed): (Vec<&TableRun>, Vec<&TableRun>) =
         outcomes.iter().partition(|o| !o.scene.file.as_printed);
-    let mut sections = vec![
+    let exact = "concave_oblique solar_oven refraction_in refraction_out".split(' ');
+    let exact: Vec<&TableRun> = exact.map(named).collect();
+    vec![
         planar::planar(),
         operators::operators(&sound, planes, level),
         errata::misprints(named("concave_oblique"), named("incidence")),
         errata::as_printed(&printed, level),
         foci::foci(named("solar_oven")),
-    ];
-    sections.push(planted::first_order(
-        named("concave_oblique"),
-        named("convex_normal"),
-    ));
-    let exact = [
-        "concave_oblique",
-        "solar_oven",
-        "refraction_in",
-        "refraction_out",
+        planted::first_order(named("concave_oblique"), named("convex_normal")),
+        planted::exact(&exact, level),
+        volume::volume(&sound),
     ]
-    .map(named);
-    sections.push(planted::exact(&exact, level));
-    sections.push(volume::volume(&sound));
-    sections
 }
 
 fn run(scene: Scene, level: f64) -> TableRun {
@@ -107,12 +99,4 @@ fn run(scene: Scene, level: f64) -> TableRun {
         measurement,
         predictions,
     }
-}
-
-fn percent(x: Option<f64>) -> String {
-    x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x))
-}
-
-fn number(x: Option<f64>) -> String {
-    x.map_or("–".to_owned(), |x| format!("{x:.5}"))
 }

@@ -1,10 +1,10 @@
 //! Comparison of photons with theory at every plane of the scenes for Table 1.
 
+use super::TableRun;
 use super::path::{MirrorPath, PathStage};
 use super::planar::StageFound;
-use super::{TableRun, number, percent};
-use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row};
+use crate::report::Bound::Below;
+use crate::report::{Check, ReportSection, Row, number, plane_cells};
 use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
@@ -53,9 +53,8 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let resolvable = first.and_then(|f| f.resolvable);
     let p_first = first.and_then(|f| f.p_value);
     let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
-    let light = report.in_window as f64;
     let mut checks = vec![
-        Check::new("light", light, AtLeast(1.0)).because("p says nothing without light"),
+        Check::light(report),
         Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
     ];
@@ -67,21 +66,15 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let planar = section(&view).map(|(path, stage)| path.found(stage));
     checks.extend(planar.iter().flat_map(StageFound::checks));
     let (word, line) = operator(&view);
-    let cells = vec![
+    let mut cells = vec![
         outcome.scene.name.clone(),
         report.name.clone(),
         word.to_owned(),
         planar.map_or("–".to_owned(), |c| format!("{:.0e}", c.map)),
         planar.map_or("–".to_owned(), |c| format!("{:.2}", c.order)),
-        report.in_window.to_string(),
-        percent(report.noise_limit),
-        number(report.p_value),
-        percent(first.map(|f| f.chain.error)),
-        percent(first.and_then(|f| f.excess)),
-        percent(first.and_then(|f| f.excess_bound)),
-        percent(resolvable),
-        number(p_first),
     ];
+    cells.extend(plane_cells(report));
+    cells.push(number(p_first));
     Row::new(cells, checks).of(line)
 }
 

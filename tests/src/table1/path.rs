@@ -1,6 +1,7 @@
 //! A 2D path with one surface, its operators and its rays.
 
 use etendue_theory::geometry::{AffineMap, Media};
+use glam::DVec2;
 
 /// Steps of the path, in the order in which light passes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,29 +78,28 @@ impl MirrorPath {
         // Light comes from the direction ω(θ₀), which is −D, and X is −c₀ T + sin θ₀ N; vectors
         // have components along (T, N).
         let (sin, cos) = self.theta0.sin_cos();
-        let point = [-cos * x, sin * x];
+        let point = DVec2::new(-cos * x, sin * x);
         let along = -omega(self.theta0 + theta);
-        let point = [point[0], point[1]];
-        let on_tangent = point[0] - point[1] / along.1 * along.0;
+        let on_tangent = point.x - point.y / along.y * along.x;
         let from = self.theta0 + theta;
         if stage == Incidence {
             return [on_tangent, from];
         }
-        let hit = self.hit(point, along);
-        let tilt = (self.k * hit[0]).asin();
+        let hit = on_circle(self.k, point, along);
+        let tilt = (self.k * hit.x).asin();
         if stage == Curvature {
-            return [hit[0], from - tilt];
+            return [hit.x, from - tilt];
         }
         let local = match self.media {
             Some(media) => (media.index_ratio() * (from - tilt).sin()).asin(),
             None => tilt - from,
         };
         if stage == Event {
-            return [hit[0], local];
+            return [hit.x, local];
         }
         let global = local + tilt;
         let away = omega(global);
-        let back = hit[0] - hit[1] / away.1 * away.0;
+        let back = hit.x - hit.y / away.y * away.x;
         if stage == Back {
             return [back, global];
         }
@@ -108,45 +108,29 @@ impl MirrorPath {
         let theta1 = self.theta1();
         let (sin, cos) = theta1.sin_cos();
         let sign = if self.media.is_some() { -1.0 } else { 1.0 };
-        let axis = [sign * cos, -sign * sin];
+        let axis = DVec2::new(sign * cos, -sign * sin);
         let central = omega(theta1);
-        let height = hit[0] * central.0 + hit[1] * central.1;
-        let advance = away.0 * central.0 + away.1 * central.1;
-        let at = [
-            hit[0] - height / advance * away.0,
-            hit[1] - height / advance * away.1,
-        ];
-        let x = at[0] * axis[0] + at[1] * axis[1];
+        let at = hit - hit.dot(central) / away.dot(central) * away;
+        let x = at.dot(axis);
         let theta = global - theta1;
         if stage == Outgoing {
             return [x, theta];
         }
         [x + self.travels[1] * theta.tan(), theta]
     }
-
-    /// Returns the point where a line hits the circle near the origin.
-    fn hit(&self, [s, h]: [f64; 2], along: Direction) -> [f64; 2] {
-        let Direction(a, b) = along;
-        // k (s² + h²) + 2 h = 0.
-        let (p, q) = (self.k, self.k * (s * a + h * b) + b);
-        let c = self.k * (s * s + h * h) + 2.0 * h;
-        let t = -c / (q + (q * q - p * c).sqrt().copysign(q));
-        [s + t * a, h + t * b]
-    }
 }
 
-#[derive(Clone, Copy)]
-struct Direction(f64, f64);
-
-impl std::ops::Neg for Direction {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
+/// Returns the point near the origin where a line meets the circle of curvature k that touches the
+/// axis T at the origin.
+pub(crate) fn on_circle(k: f64, point: DVec2, along: DVec2) -> DVec2 {
+    // k (s² + h²) + 2 h = 0, for the point (s, h).
+    let q = k * point.dot(along) + along.y;
+    let c = k * point.length_squared() + 2.0 * point.y;
+    let t = -c / (q + (q * q - k * c).sqrt().copysign(q));
+    point + t * along
 }
 
 /// Returns the unit vector sin θ T + cos θ N.
-fn omega(theta: f64) -> Direction {
-    Direction(theta.sin(), theta.cos())
+fn omega(theta: f64) -> DVec2 {
+    DVec2::new(theta.sin(), theta.cos())
 }

@@ -33,18 +33,14 @@ const OUT_OF_GLASS: Media = Media {
 };
 
 fn paths() -> Vec<(&'static str, MirrorPath)> {
-    let mirror = |theta0, k| MirrorPath {
+    let path = |theta0, k, media| MirrorPath {
         travels: TRAVELS,
         theta0,
         k,
-        media: None,
+        media,
     };
-    let glass = |theta0, k, media| MirrorPath {
-        travels: TRAVELS,
-        theta0,
-        k,
-        media: Some(media),
-    };
+    let mirror = |theta0, k| path(theta0, k, None);
+    let glass = |theta0, k, media| path(theta0, k, Some(media));
     vec![
         ("plane mirror", mirror(0.65, 0.0)),
         ("convex mirror", mirror(0.0, 0.5)),

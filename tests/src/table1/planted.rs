@@ -2,12 +2,12 @@
 
 use super::TableRun;
 use super::bench::MirrorBench;
-use super::errata::{percent_or_dark, word};
+use super::errata::percent_or_dark;
 use super::steps::Steps;
 use crate::predicted;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, ReportSection, Row};
-use etendue_compare::{Residuals, Verdict};
+use crate::report::{Check, ReportSection, Row, word};
+use etendue_compare::{FirstOrderReport, Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{AffineMap, SpectrumMap};
 use etendue_theory::path::Interaction;
@@ -97,19 +97,12 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
             }
             let mut steps = bench.sound();
             fault(&mut steps, &bench);
-            let planes = 0..outcome.planes.len();
-            let judged: Vec<_> = planes
-                .filter(|i| {
-                    let place = &outcome.scene.planes[*i];
-                    name == "none" || steps.chain(place) != bench.sound().chain(place)
-                })
-                .map(|i| {
-                    (
-                        outcome.planes[i].report.name.as_str(),
-                        bench.judged(i, &steps),
-                    )
-                })
-                .collect();
+            let touched = |i: &usize| {
+                let place = &outcome.scene.planes[*i];
+                name == "none" || steps.chain(place) != bench.sound().chain(place)
+            };
+            let planes = (0..outcome.planes.len()).filter(touched);
+            let judged: Vec<_> = planes.map(|i| (i, bench.judged(i, &steps))).collect();
             let failed = judged.iter().filter(|(_, r)| r.verdict == Verdict::Fail);
             let count = failed.count();
             let accepted = judged.iter().all(|(_, r)| r.verdict == Verdict::Pass);
@@ -119,33 +112,23 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
                     Check::new("rejected", count as f64, AtLeast(1.0)).because("a fault is planted")
                 }
             };
-            let decisive = judged
-                .iter()
-                .max_by(|a, b| {
-                    let size = |r: &etendue_compare::FirstOrderReport| r.chain.defect;
-                    size(&a.1).total_cmp(&size(&b.1))
-                })
-                .map_or(
-                    ("–", ["–"; 2].map(str::to_owned), "–"),
-                    |(plane, r)| {
-                        let stays = format!("{:.1e}", r.chain.defect);
-                        (*plane, [percent_or_dark(r), stays], word(r.verdict))
-                    },
-                );
-            let [excess, stays] = decisive.1;
+            let defect = |(_, report): &&(usize, FirstOrderReport)| report.chain.defect;
+            let decisive = judged.iter().max_by(|a, b| defect(a).total_cmp(&defect(b)));
+            let of_decisive = |of: &dyn Fn(usize, &FirstOrderReport) -> String| {
+                decisive.map_or("–".to_owned(), |(plane, report)| of(*plane, report))
+            };
             let cells = vec![
                 outcome.scene.name.clone(),
                 name.to_owned(),
-                decisive.0.to_owned(),
-                excess,
-                stays,
+                of_decisive(&|plane, _| outcome.planes[plane].report.name.clone()),
+                of_decisive(&|_, report| percent_or_dark(report)),
+                of_decisive(&|_, report| format!("{:.1e}", report.chain.defect)),
                 format!("{count} of {}", judged.len()),
                 match name {
-                    "none" if accepted => "accepted",
-                    "none" => "not accepted",
-                    _ => decisive.2,
-                }
-                .to_owned(),
+                    "none" if accepted => "accepted".to_owned(),
+                    "none" => "not accepted".to_owned(),
+                    _ => of_decisive(&|_, report| word(report.verdict).to_owned()),
+                },
             ];
             rows.push(Row::new(cells, vec![check]));
         }

@@ -170,10 +170,8 @@ fn defects(system: &PathSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Opti
 /// Checks whether the path contains an ideal lens. Unlike a real lens, an ideal lens preserves the
 /// volume of positions and slopes.
 fn has_lens(system: &PathSystem) -> bool {
-    let events = system.before_plane().iter().filter_map(PathSurface::event);
-    events
-        .into_iter()
-        .any(|e| matches!(e, Specular::ThinLens { .. }))
+    let mut events = system.before_plane().iter().filter_map(PathSurface::event);
+    events.any(|event| matches!(event, Specular::ThinLens { .. }))
 }
 
 fn with_slopes([x, y, p, q]: [f64; 4]) -> [f64; 4] {

@@ -14,8 +14,6 @@
 
 pub(super) mod environment;
 mod product;
-#[cfg(test)]
-mod reference;
 mod reflection;
 mod schlick;
 mod table;
@@ -23,3 +21,4 @@ mod table;
 pub(super) use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
 pub(super) use reflection::{Factor, PlanarReflection, ReflectionStep, SeparableTerm};
 pub(super) use schlick::Schlick;
+pub(super) use table::table_hat;

@@ -116,28 +116,4 @@ mod tests {
             assert!((got - expected).norm() < 1e-15); // rounding
         }
     }
-
-    #[test]
-    fn a_texture_is_a_brdf_that_varies_in_space() {
-        let light = |[x, t]: [f64; 2]| bell(1.0, x) * bell(0.3, t);
-        let omega = [0.4, 1.0];
-        let lattice = Lattice {
-            spacing: 0.05,
-            reach: 6.0,
-        };
-        // The texture is a wave of frequency 2 with a wide Gaussian envelope, and is compared with
-        // the wave without an envelope.
-        let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
-        let fine = Lattice {
-            spacing: 1e-4,
-            ..lattice
-        };
-        let wave = TextureWave {
-            frequency: 2.0,
-            amplitude: Complex::from(1.0),
-        };
-        let smooth = semi_convolution(&fine, omega, &slow, &light);
-        let line = texture(&[wave], omega, &light);
-        assert!((smooth - line).norm() < 1e-4 * light([0.0, 0.0]).norm()); // a modulation 10³ wide
-    }
 }

@@ -1,12 +1,9 @@
 //! The seven steps of a reflection.
 
 use super::product::{Lattice, TextureWave, angular_product, texture};
-use super::schlick::Schlick;
-use super::table::table_hat;
-use etendue_field::{AngleTable, Complex};
+use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{PlanarLobe, cosine_hat};
-use std::fmt;
 
 /// The spectrum of a light field, L(Ωx, Ωθ).
 type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
@@ -52,28 +49,9 @@ pub(crate) enum Factor<'a> {
     One,
     /// The clamped cosine cos⁺.
     Cosine,
-    /// Schlick's reflectance times cos⁺.
-    Schlick(Schlick),
-    /// The values of a table over |θ|.
-    Table(&'a AngleTable),
-    /// The values of a table times cos⁺.
-    TableCosine(&'a AngleTable),
     /// The transform f̂(Ω) of any other factor, which includes the cosine if needed, with Ω in
     /// cycles per radian. The transform of an asymmetric factor is complex.
     Other(&'a dyn Fn(f64) -> Complex),
-}
-
-impl fmt::Debug for Factor<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::One => write!(f, "One"),
-            Self::Cosine => write!(f, "Cosine"),
-            Self::Schlick(schlick) => f.debug_tuple("Schlick").field(schlick).finish(),
-            Self::Table(table) => f.debug_tuple("Table").field(table).finish(),
-            Self::TableCosine(table) => f.debug_tuple("TableCosine").field(table).finish(),
-            Self::Other(_) => write!(f, "Other"),
-        }
-    }
 }
 
 impl Factor<'_> {
@@ -81,25 +59,14 @@ impl Factor<'_> {
     fn times(&self, lattice: &Lattice, omega: [f64; 2], before: PlanarSpectrum<'_>) -> Complex {
         match self {
             Self::One => before(omega),
-            Self::Cosine => product(lattice, omega, &|q| cosine_hat(q).into(), before),
-            Self::Schlick(f) => product(lattice, omega, &|q| f.cosine_hat(q).into(), before),
-            Self::Table(table) => {
-                let hat = |q| table_hat(table, |_| 1.0, q).into();
-                product(lattice, omega, &hat, before)
-            }
-            Self::TableCosine(table) => {
-                let hat = |q| table_hat(table, libm::cos, q).into();
-                product(lattice, omega, &hat, before)
-            }
-            Self::Other(hat) => product(lattice, omega, *hat, before),
+            Self::Cosine => angular_product(lattice, omega, &|q| cosine_hat(q).into(), before),
+            Self::Other(hat) => angular_product(lattice, omega, *hat, before),
         }
     }
 }
 
-use angular_product as product;
-
 /// A separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct SeparableTerm<'a> {
     /// The factor f(θ_i'), including the cosine.
     pub(crate) before: Factor<'a>,
@@ -113,7 +80,7 @@ pub(crate) struct SeparableTerm<'a> {
 
 /// A reflection in 2D, from the light frame before the surface to the light frame after the
 /// surface.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(crate) struct PlanarReflection<'a> {
     /// θ₀, the direction from which the central ray comes, in radians from the normal.
     pub(crate) incidence: f64,
@@ -204,69 +171,5 @@ impl PlanarReflection<'_> {
             Some(waves) => texture(waves, omega, &left),
             None => left(omega),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::PI;
-
-    fn light([x, t]: [f64; 2]) -> Complex {
-        let turn = Complex::from_polar(1.0, 0.8 * t - 0.3 * x);
-        turn * libm::exp(-PI * (0.3 * x * x + 0.1 * x * t + 0.2 * t * t))
-    }
-
-    /// Returns the transform of (1 + 0.6 sin θ) cos⁺, an asymmetric factor.
-    fn uneven(q: f64) -> Complex {
-        let side = cosine_hat(q - 0.5 / PI) - cosine_hat(q + 0.5 / PI);
-        Complex::new(cosine_hat(q), -0.3 * side)
-    }
-
-    fn spectrum(terms: Vec<SeparableTerm<'_>>) -> Complex {
-        let reflection = PlanarReflection {
-            incidence: 0.3,
-            outgoing: -0.2,
-            curvature: 0.4,
-            terms,
-            lattice: Lattice::circle(9.0),
-        };
-        reflection.spectrum(ReflectionStep::Outgoing, [0.2, -0.3], &light)
-    }
-
-    fn term<'a>(
-        before: Factor<'a>,
-        lobe: Option<PlanarLobe>,
-        after: Factor<'a>,
-    ) -> SeparableTerm<'a> {
-        SeparableTerm {
-            before,
-            lobe,
-            after,
-            weight: None,
-        }
-    }
-
-    #[test]
-    fn at_a_mirror_factors_before_and_after_are_one_with_the_sign_turned() {
-        let turned = |q: f64| uneven(-q);
-        let one = |before, after| spectrum(vec![term(before, None, after)]);
-        let before = one(Factor::Other(&turned), Factor::One);
-        let after = one(Factor::One, Factor::Other(&uneven));
-        assert!((before - after).norm() < 1e-14 * after.norm()); // rounding of 10² terms
-        let unturned = one(Factor::Other(&uneven), Factor::One);
-        assert!((unturned - after).norm() > 0.05 * after.norm());
-    }
-
-    #[test]
-    fn terms_add_up() {
-        let phong = Some(PlanarLobe::Phong { exponent: 20.0 });
-        let parts = [
-            term(Factor::Cosine, phong, Factor::One),
-            term(Factor::Other(&uneven), phong, Factor::Cosine),
-            term(Factor::One, None, Factor::One),
-        ];
-        let sum: Complex = parts.iter().map(|part| spectrum(vec![*part])).sum();
-        assert!((spectrum(parts.to_vec()) - sum).norm() < 1e-14 * sum.norm()); // rounding
     }
 }
