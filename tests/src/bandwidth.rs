@@ -8,19 +8,16 @@ use std::process::ExitCode;
 /// Measures the bandwidths of glossy reflections and prints them. If no number of photons is given,
 /// this function also writes results/bandwidth.md, the picture in this page and the numbers that
 /// the picture plots.
-#[expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the report is the product"
-)]
+#[expect(clippy::print_stderr, reason = "the report is the product")]
 pub(crate) fn page(photons: Option<u64>) -> ExitCode {
     let (section, curves) = glossy(photons);
-    println!("{}", section.markdown());
+    let sections = [section];
+    let text = crate::shown(&sections);
     if photons.is_none() {
         let written = etendue_figures::curves(&curves, &Style::default())
             .map_err(|error| error.to_string())
             .and_then(|figure| {
-                let page = format!("{HEAD}{}", section.markdown());
+                let page = format!("{HEAD}{text}");
                 let files = [
                     ("results/bandwidth.svg", figure.svg),
                     ("results/bandwidth.csv", figure.csv),
@@ -35,7 +32,7 @@ pub(crate) fn page(photons: Option<u64>) -> ExitCode {
             return ExitCode::from(3);
         }
     }
-    ExitCode::from(u8::from(!section.passes()))
+    crate::judged(&sections)
 }
 
 const HEAD: &str = "\

@@ -1,16 +1,15 @@
 //! Calibration over many seeds: p must be uniform, χ²/dof must be 1 and pulls must have unit
 //! variance.
 
-use crate::progress::progress;
+use crate::progress::in_parallel;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::scenes::{named, predicted, sampled, traced, words};
+use crate::scenes::{compared, named, predicted, sampled, traced, words};
 use crate::statistics::{mean, uniformity};
-use etendue_compare::{PlaneReport, Prediction, compare};
+use etendue_compare::{PlaneReport, Prediction};
 use etendue_predict::test_of;
 use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::{Batch, Measurement};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The scene in which faults are planted.
@@ -113,13 +112,9 @@ fn sample(
     faults: &[Option<DependenceFault>],
 ) -> Vec<Vec<CalibratedPlane>> {
     let predictions = predicted(scene, None);
-    let bar = progress(seeds.end - seeds.start, "seeds");
-    let reports: Vec<Vec<Vec<PlaneReport>>> = seeds
-        .into_par_iter()
-        .map(|seed| reports(scene.clone(), seed, &predictions, faults))
-        .inspect(|_| bar.one())
-        .collect();
-    bar.end();
+    let reports = in_parallel(seeds, "seeds", |seed| {
+        reports(scene.clone(), seed, &predictions, faults)
+    });
     let plane = |fault: usize, i: usize| {
         let of_plane = || reports.iter().map(move |r| &r[fault][i]);
         CalibratedPlane {
@@ -146,15 +141,11 @@ fn reports(
 ) -> Vec<Vec<PlaneReport>> {
     scene.run.seed = seed;
     let sound = traced(&scene);
-    let test = test_of(&scene);
+    let level = test_of(&scene).level;
     let with = |fault: &Option<DependenceFault>| {
         let planted = fault.map(|fault| planted(&sound, fault));
         let measurement = planted.as_ref().unwrap_or(&sound);
-        let report = |(i, prediction)| {
-            compare(measurement, i, prediction, &test)
-                .expect("a resolved scene has enough batches")
-                .report
-        };
+        let report = |(i, prediction)| compared(&scene, measurement, i, prediction, level).report;
         predictions.iter().enumerate().map(report).collect()
     };
     faults.iter().map(with).collect()
@@ -211,15 +202,8 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
     let share = below(&all);
     let off = (share - 0.1).abs();
     let check = Check::new("p < 10 %", off, Below(allowed)).because("two deviations");
-    let cells = vec![
-        "all".into(),
-        "".into(),
-        format!("{:.1} %", 100.0 * share),
-        "".into(),
-        "".into(),
-        "".into(),
-        "".into(),
-    ];
+    let mut cells = vec![String::new(); 7];
+    (cells[0], cells[2]) = ("all".into(), format!("{:.1} %", 100.0 * share));
     rows.push(Row::new(cells, vec![check]));
     ReportSection::new(
         format!(

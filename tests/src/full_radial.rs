@@ -1,7 +1,7 @@
 //! Tests of the full radial spectrum: over many seeds p must be uniform, and planted faults must
 //! be rejected.
 
-use crate::progress::progress;
+use crate::progress::in_parallel;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{emit, read, sound};
@@ -12,7 +12,6 @@ use etendue_predict::{Applicability, predict_field};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use etendue_trace::{Backward, Tracer};
-use rayon::prelude::*;
 
 /// A plane of a scene, with the method that predicts its full radial spectrum.
 struct Case {
@@ -136,7 +135,7 @@ fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialR
     let title = format!("{} {}: {}", case.name(), case.plane, case.by);
     (
         title,
-        each_seed(seeds, |seed| {
+        in_parallel(1..=seeds, "seeds", |seed| {
             let (sin, cos) = libm::sincos(seed as f64);
             let axis = format!("({cos}, {sin}, 0)");
             let scene = case.scene(photons, seed, &[("path.x_axis", &axis)]);
@@ -151,21 +150,13 @@ fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadia
     let title = format!("{} {}: backward rays", case.scene, case.plane);
     (
         title,
-        each_seed(seeds, |seed| {
+        in_parallel(1..=seeds, "seeds", |seed| {
             let scene = case.scene(photons, seed, &[]);
             let rays = Backward::new(&scene).expect("rays find an area light");
             let reference = PredictedField::reference(measured(&scene, &rays).groups);
             compared(&scene, &measured(&scene, &Tracer::new(&scene)), &reference)
         }),
     )
-}
-
-fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<FullRadialReport> {
-    let bar = progress(seeds, "seeds");
-    let found = (1..=seeds).into_par_iter().map(&of).inspect(|_| bar.one());
-    let found = found.collect();
-    bar.end();
-    found
 }
 
 /// Returns a table row that summarises the p-values of many seeds.
@@ -294,7 +285,7 @@ fn alias_free(scene: &Scene) -> PredictedField {
 fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
     let case = &CASES[0];
     let prediction = predicted(&case.scene(photons, 1, &[]));
-    let found = each_seed(seeds, |seed| {
+    let found = in_parallel(1..=seeds, "seeds", |seed| {
         let scene = case.scene(photons, seed, &[]);
         let mut field = measured(&scene, &Tracer::new(&scene));
         let half = field.groups.len() / 2;

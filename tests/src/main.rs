@@ -218,12 +218,22 @@ fn main() -> ExitCode {
     }
 }
 
+/// Prints sections, and returns their text.
+#[expect(clippy::print_stdout, reason = "the report is the product")]
+fn shown(sections: &[ReportSection]) -> String {
+    let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
+    let text = text.join("\n");
+    println!("{text}");
+    text
+}
+
+/// Returns the exit code of a command: 1 if a section fails.
+fn judged(sections: &[ReportSection]) -> ExitCode {
+    ExitCode::from(u8::from(!sections.iter().all(ReportSection::passes)))
+}
+
 /// Prints the sections of a command, and writes its part of a page in results/.
-#[expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the report is the product"
-)]
+#[expect(clippy::print_stderr, reason = "the report is the product")]
 fn written(command: &ValidationCommand) -> ExitCode {
     let parts = match command {
         ValidationCommand::Rows => &[TABLE1, SHADING][..],
@@ -237,9 +247,7 @@ fn written(command: &ValidationCommand) -> ExitCode {
         other => std::slice::from_ref(other),
     };
     let report = |command: &ValidationCommand, sections: Vec<ReportSection>| {
-        let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
-        let text = text.join("\n");
-        println!("{text}");
+        let text = shown(&sections);
         if let Some([path, title, name, of]) = page(command) {
             let page = format!(
                 "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
@@ -262,23 +270,18 @@ fn written(command: &ValidationCommand) -> ExitCode {
         Ok(all)
     };
     match reported() {
-        Ok(all) => ExitCode::from(u8::from(!all.iter().all(ReportSection::passes))),
+        Ok(all) => judged(&all),
         Err(()) => ExitCode::from(3),
     }
 }
 
 /// Prints sections that are not part of any page in results/.
-#[expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the report is the product"
-)]
+#[expect(clippy::print_stderr, reason = "the report is the product")]
 fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     match outcome {
         Ok(sections) => {
-            let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
-            println!("{}", text.join("\n"));
-            ExitCode::from(u8::from(!sections.iter().all(ReportSection::passes)))
+            shown(&sections);
+            judged(&sections)
         }
         Err(error) => {
             eprintln!("error: {error}");
@@ -290,63 +293,56 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
 /// Returns the page to which a command contributes a part, as the file of the page, the title of
 /// the part, the name of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
-    Some(match command {
-        ValidationCommand::Main => [
-            "results/validation.md",
-            "The main scene",
-            "main",
-            "The scene is `scenes/fig9b.ron`",
-        ],
-        ValidationCommand::Suite { photons: None } => [
+    let part = |title, name, of| Some(["results/validation.md", title, name, of]);
+    match command {
+        ValidationCommand::Main => {
+            part("The main scene", "main", "The scene is `scenes/fig9b.ron`")
+        }
+        ValidationCommand::Suite { photons: None } => Some([
             "results/suite.md",
             "The suite",
             "suite",
             "The scenes are all scenes in `scenes/` without smooth surfaces",
-        ],
-        ValidationCommand::Table1 { photons: None } => [
-            "results/validation.md",
+        ]),
+        ValidationCommand::Table1 { photons: None } => part(
             "Table 1",
             "table1",
-            "The scenes are all scenes in `scenes/table1/` without BRDFs, with the photons of their files",
-        ],
-        ValidationCommand::Shading { photons: None } => [
-            "results/validation.md",
+            "The scenes are all scenes in `scenes/table1/` without BRDFs, with the photons of \
+             their files",
+        ),
+        ValidationCommand::Shading { photons: None } => part(
             "Shading",
             "shading",
             "Sections that name no scene are in 2D and trace no photons",
-        ],
+        ),
         ValidationCommand::Claims(claims::ClaimRun {
             photons: None,
             seed: SEED,
-        }) => [
-            "results/validation.md",
+        }) => part(
             "Words",
             "claims",
             "The scenes are those in `scenes/words/`, with the photons of their files",
-        ],
-        ValidationCommand::Orders => [
-            "results/validation.md",
+        ),
+        ValidationCommand::Orders => part(
             "Orders",
             "orders",
             "The scenes are all scenes in `scenes/table1/`",
-        ],
+        ),
         ValidationCommand::FullRadial {
             seeds: 200,
             photons: 65_536,
-        } => [
-            "results/validation.md",
+        } => part(
             "Full radial spectra",
             "full-radial",
             "The scenes have fewer frequencies than in their files",
-        ],
-        ValidationCommand::Rows => [
-            "results/validation.md",
+        ),
+        ValidationCommand::Rows => part(
             "Every row of Table 1",
             "rows",
             "This table summarises the parts of this page",
-        ],
-        _ => return None,
-    })
+        ),
+        _ => None,
+    }
 }
 
 /// Returns a page with one of its parts replaced or added; parts begin with their titles.

@@ -6,6 +6,7 @@
 //! the stated errors are right, pulls have mean 0 and standard deviation 1, and their tails are the
 //! tails of a normal distribution.
 
+use crate::hostile::child::work_of;
 use crate::progress::progress;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
@@ -240,13 +241,8 @@ fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
 
 /// Returns the sum of user and system time of this process.
 fn cpu_seconds() -> io::Result<f64> {
-    /// Linux reports times in hundredths of a second, whatever its clock rate.
-    const TICK: f64 = 0.01;
     let stat = fs::read_to_string("/proc/self/stat")?;
-    // In this line of /proc, the program name in parentheses may contain spaces.
-    let fields = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = fields.split_whitespace().skip(11).take(2);
-    Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
+    Ok(work_of(&stat).unwrap_or_default().as_secs_f64())
 }
 
 /// Returns a section with a row for the pulls of each group.

@@ -21,55 +21,48 @@ pub(crate) enum Line {
     Environment,
 }
 
-impl Line {
-    const ALL: [Self; 12] = [
-        Self::Travel,
-        Self::Visibility,
-        Self::Incidence,
-        Self::Outgoing,
-        Self::Curvature,
-        Self::Cosine,
-        Self::Mirror,
-        Self::Brdf,
-        Self::Texture,
-        Self::Separable,
-        Self::SpaceVarying,
-        Self::Environment,
-    ];
+const SHEAR: &str = "shear";
+const SCALE: &str = "scale, spatial";
+const TURN: &str = "reflection of angles";
+const TIMES: &str = "multiplication";
+const SPREAD: &str = "convolution";
 
-    /// Returns the name of the row, and the operator of the row in ray space and in Fourier
-    /// space.
-    fn words(self) -> [&'static str; 3] {
-        let [shear, scale, turn] = ["shear", "scale, spatial", "reflection of angles"];
-        let [times, spread] = ["multiplication", "convolution"];
-        match self {
-            Self::Travel => ["travel", shear, shear],
-            Self::Visibility => ["visibility", times, spread],
-            Self::Incidence => ["light incidence", scale, scale],
-            Self::Outgoing => ["outgoing angle", scale, scale],
-            Self::Curvature => ["curvature", shear, shear],
-            Self::Cosine => ["cosine term", times, spread],
-            Self::Mirror => ["mirror (section 4.2)", turn, turn],
-            Self::Brdf => ["BRDF", spread, times],
-            Self::Texture => ["texture mapping", times, spread],
-            Self::Separable => [
-                "separable BRDF",
-                "multiplication, then convolution",
-                "convolution, then multiplication",
-            ],
-            Self::SpaceVarying => [
-                "space-varying BRDF",
-                "semi-convolution, angles",
-                "semi-convolution, space",
-            ],
-            Self::Environment => [
-                "environment map (section 6.1)",
-                "shear by k, multiplication",
-                "product at Ωx/k",
-            ],
-        }
-    }
-}
+/// All rows, each with its name, and its operator in ray space and in Fourier space.
+const LINES: [(Line, [&str; 3]); 12] = [
+    (Line::Travel, ["travel", SHEAR, SHEAR]),
+    (Line::Visibility, ["visibility", TIMES, SPREAD]),
+    (Line::Incidence, ["light incidence", SCALE, SCALE]),
+    (Line::Outgoing, ["outgoing angle", SCALE, SCALE]),
+    (Line::Curvature, ["curvature", SHEAR, SHEAR]),
+    (Line::Cosine, ["cosine term", TIMES, SPREAD]),
+    (Line::Mirror, ["mirror (section 4.2)", TURN, TURN]),
+    (Line::Brdf, ["BRDF", SPREAD, TIMES]),
+    (Line::Texture, ["texture mapping", TIMES, SPREAD]),
+    (
+        Line::Separable,
+        [
+            "separable BRDF",
+            "multiplication, then convolution",
+            "convolution, then multiplication",
+        ],
+    ),
+    (
+        Line::SpaceVarying,
+        [
+            "space-varying BRDF",
+            "semi-convolution, angles",
+            "semi-convolution, space",
+        ],
+    ),
+    (
+        Line::Environment,
+        [
+            "environment map (section 6.1)",
+            "shear by k, multiplication",
+            "product at Ωx/k",
+        ],
+    ),
+];
 
 /// Returns the results for every row of Table 1, collected from the sections of all parts of the
 /// validation.
@@ -86,16 +79,16 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
          error of the prediction may explain the whole difference.",
         "row | in ray space | in Fourier space | without photons | planes with photons | smallest \
          p | verdict",
-        Line::ALL.map(|line| row(line, sections)),
+        LINES.map(|(line, words)| row(line, words, sections)),
     )
 }
 
-fn row(line: Line, sections: &[ReportSection]) -> Row {
+fn row(line: Line, words: [&str; 3], sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
     // If a row of a section has a check of p, photons test this row.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
-    let mut cells = line.words().map(str::to_owned).to_vec();
+    let mut cells = words.map(str::to_owned).to_vec();
     let mut checks = Vec::new();
     for (id, rows) in [("without photons", &others), ("with photons", &planes)] {
         let passed = rows.iter().filter(|row| row.passes()).count();

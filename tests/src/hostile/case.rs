@@ -117,8 +117,7 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Case
     let place = at.join("case");
     let work = place.join(WORK);
     folder::write(&work, &attack.files)?;
-    let kept = (KEPT.to_owned(), Some(b"kept".to_vec()));
-    folder::write(&place, &Folder::from([kept]))?;
+    folder::write(&place, &folder::of([(KEPT, b"kept".to_vec())]))?;
     if let Some([name, target]) = attack.link {
         let link = work.join(name);
         fs::create_dir_all(link.parent().unwrap_or(&work))?;

@@ -135,7 +135,7 @@ fn peak_of(status: &str) -> Option<u64> {
 }
 
 /// Returns the processor time of a process, in user and kernel mode together.
-fn work_of(stat: &str) -> Option<Duration> {
+pub(crate) fn work_of(stat: &str) -> Option<Duration> {
     // In this line of /proc, the program name in parentheses may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(11).take(2);

@@ -9,6 +9,12 @@ use std::path::Path;
 /// of a subfolder has no bytes; when a folder is read, a link has the bytes of its target's path.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
+/// Returns a folder with the given files.
+pub(crate) fn of<const N: usize>(files: [(&str, Vec<u8>); N]) -> Folder {
+    let files = files.map(|(name, bytes)| (name.to_owned(), Some(bytes)));
+    Folder::from(files)
+}
+
 /// Writes files, and creates the folders that contain them.
 pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
     fs::create_dir_all(at)?;

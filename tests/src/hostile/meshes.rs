@@ -3,7 +3,7 @@
 
 use super::case::Attack;
 use super::dice::Dice;
-use super::folder::Folder;
+use super::folder;
 use super::scenes::{SCENE, on_scene};
 use super::{bytes, text};
 use etendue_meshfile::{Fault, Mesh};
@@ -109,9 +109,7 @@ pub(crate) fn attack(seeds: &[Meshes; 2], dice: &mut Dice) -> Attack {
         _ => bytes::mutate(&mut mesh, dice),
     }
     let scene = [BLOCKER, MIRROR][role].replace("NAME", name);
-    let files = [(SCENE, scene.into_bytes()), (name, mesh)];
-    let files = files.map(|(name, bytes)| (name.to_owned(), Some(bytes)));
-    on_scene(Folder::from(files), dice)
+    on_scene(folder::of([(SCENE, scene.into()), (name, mesh)]), dice)
 }
 
 fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {

@@ -9,6 +9,8 @@ mod case;
 pub(crate) mod child;
 pub(crate) mod dice;
 pub(crate) mod folder;
+#[cfg(test)]
+mod fuzz;
 pub(crate) mod index;
 mod meshes;
 mod npz;
@@ -19,7 +21,7 @@ mod table;
 mod text;
 mod worlds;
 
-use crate::progress::progress;
+use crate::progress::{CountedProgress, progress};
 use crate::report::ReportSection;
 use case::{Attack, CaseOutcome, InputKind};
 use dice::Dice;
@@ -27,7 +29,6 @@ use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use table::Tallies;
 
@@ -98,55 +99,62 @@ pub(crate) fn hostile(options: &HostileOptions) -> io::Result<ReportSection> {
         None => 0..options.count,
     };
     let bar = progress(cases.end - cases.start, "cases");
-    let tallies = Mutex::new(Tallies::default());
-    on_threads(options.threads, cases, |thread, number| {
+    let outcomes = on_threads(options.threads, cases, &bar, |thread, number| {
         let at = place.path().join(thread.to_string());
         fs::create_dir_all(&at)?;
         let mut attack = seeds.attack(options.seed, number)?;
         attack.then = attack.then.filter(|_| !options.quick);
-        let outcome = case::run(&program, &attack, &at)?;
+        let mut outcome = case::run(&program, &attack, &at)?;
         if !outcome.faults.is_empty() || options.case.is_some() {
             keep(options, number, &attack, &outcome)?;
         }
-        if let Ok(mut tallies) = tallies.lock() {
-            tallies.add(number, &outcome);
-        }
-        bar.one();
-        Ok(())
+        // Logs of twenty thousand cases would take much memory.
+        outcome.log = String::new();
+        Ok(outcome)
     })?;
-    bar.end();
-    let tallies = tallies.into_inner().unwrap_or_default();
+    let mut tallies = Tallies::default();
+    for (number, outcome) in &outcomes {
+        tallies.add(*number, outcome);
+    }
     Ok(tallies.section(options.seed))
 }
 
-/// Calls `one(thread, number)` for each of the numbers, on the given number of threads, or one for
-/// each core.
-pub(crate) fn on_threads(
+/// Returns `one(thread, number)` for each of the numbers, in order, computed on the given number of
+/// threads, or one for each core. The bar counts the numbers.
+pub(crate) fn on_threads<T: Send>(
     threads: Option<usize>,
     numbers: Range<u64>,
-    one: impl Fn(usize, u64) -> io::Result<()> + Sync,
-) -> io::Result<()> {
+    bar: &CountedProgress,
+    one: impl Fn(usize, u64) -> io::Result<T> + Sync,
+) -> io::Result<Vec<(u64, T)>> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicU64::new(numbers.start);
-    let worker = |thread: usize| {
+    let worker = |thread: usize| -> io::Result<Vec<(u64, T)>> {
+        let mut found = Vec::new();
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
             if number >= numbers.end {
-                return Ok(());
+                return Ok(found);
             }
-            one(thread, number)?;
+            found.push((number, one(thread, number)?));
+            bar.one();
         }
     };
     let worker = &worker;
-    std::thread::scope(|scope| {
+    let mut all = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.unwrap_or(cores).max(1))
             .map(|i| scope.spawn(move || worker(i)))
             .collect();
-        workers.into_iter().try_for_each(|worker| {
+        let joined = workers.into_iter().map(|worker| {
             let joined = worker.join();
             joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
-        })
-    })
+        });
+        let all: io::Result<Vec<Vec<_>>> = joined.collect();
+        all.map(|all| all.into_iter().flatten().collect::<Vec<_>>())
+    })?;
+    bar.end();
+    all.sort_by_key(|(number, _)| *number);
+    Ok(all)
 }
 
 /// Saves the input and the outcome of a case.

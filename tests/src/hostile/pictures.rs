@@ -3,7 +3,7 @@
 use super::bytes;
 use super::case::Attack;
 use super::dice::Dice;
-use super::folder::Folder;
+use super::folder;
 use super::scenes::{SCENE, on_scene};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes,
@@ -127,11 +127,7 @@ fn one_png(size: [usize; 2], color: png::ColorType, depth: png::BitDepth) -> io:
     if color == png::ColorType::Indexed {
         encoder.set_palette((0..=255).flat_map(|i| [i, i, i]).collect::<Vec<u8>>());
     }
-    let wide = if depth == png::BitDepth::Sixteen {
-        2
-    } else {
-        1
-    };
+    let wide = 1 + usize::from(depth == png::BitDepth::Sixteen);
     let count = size[0] * size[1] * color.samples() * wide;
     let data: Vec<u8> = (0..count).map(|i| (i % 251).to_le_bytes()[0]).collect();
     let mut writer = encoder.write_header()?;
@@ -162,9 +158,7 @@ pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
         TEXTURE
     };
     let scene = scene.replace("NAME", name);
-    let files = [(SCENE, scene.into_bytes()), (name, picture)];
-    let files = files.map(|(name, bytes)| (name.to_owned(), Some(bytes)));
-    on_scene(Folder::from(files), dice)
+    on_scene(folder::of([(SCENE, scene.into()), (name, picture)]), dice)
 }
 
 /// Repairs the checksums of the chunks of a PNG file, up to the first chunk that cannot be parsed.

@@ -2,7 +2,7 @@
 
 use super::case::{Attack, INJECTED};
 use super::dice::Dice;
-use super::folder::Folder;
+use super::folder::{self, Folder};
 use super::text;
 use std::fs;
 use std::io;
@@ -50,14 +50,18 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
     Ok(texts)
 }
 
+/// Returns one of the scenes, and its text after mutations.
+pub(super) fn mutated<'a>(seeds: &'a [String], dice: &mut Dice) -> (&'a str, Vec<u8>) {
+    let scene: &String = dice.pick(seeds);
+    (scene, text::mutated(scene, WORDS, dice))
+}
+
 /// Returns a mutated scene file.
 pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
-    let scene: &String = dice.pick(seeds);
-    let text = text::mutated(scene, WORDS, dice);
-    let folder = |text| Folder::from([(SCENE.to_owned(), Some(text))]);
+    let (scene, text) = mutated(seeds, dice);
     Attack {
-        sound: Some(folder(scene.clone().into_bytes())),
-        ..on_scene(folder(text), dice)
+        sound: Some(folder::of([(SCENE, scene.into())])),
+        ..on_scene(folder::of([(SCENE, text)]), dice)
     }
 }
 

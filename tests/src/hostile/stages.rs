@@ -60,9 +60,11 @@ pub(crate) fn seeds(program: &Path, at: &Path) -> io::Result<Vec<Seed>> {
 
 fn seed(program: &Path, at: &Path, scene: &str) -> io::Result<Seed> {
     let work = at.join("stages");
-    let files = [("small.ron", scene), ("meshes/tetra.obj", TETRA)];
-    let files = files.map(|(name, text)| (name.to_owned(), Some(text.as_bytes().to_vec())));
-    folder::write(&work, &Folder::from(files))?;
+    let files = [
+        ("small.ron", scene.into()),
+        ("meshes/tetra.obj", TETRA.into()),
+    ];
+    folder::write(&work, &folder::of(files))?;
     for command in [
         "measure small.ron --out a --batches 0..20 --quiet --threads 1",
         "measure small.ron --out b --batches 20..32 --quiet --threads 1",

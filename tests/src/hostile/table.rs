@@ -1,6 +1,6 @@
 //! The outcomes of all cases, as a table with one row for each kind of input.
 
-use super::case::{CaseOutcome, HostileFault, InputKind, Reached};
+use super::case::{CaseOutcome, InputKind, Reached};
 use crate::report::{Check, ReportSection, Row};
 use std::collections::BTreeMap;
 
@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 struct CaseTally {
     cases: u64,
     reached: [u64; 4],
+    /// The numbers of faults, in the order of the headings.
     faults: [u64; 7],
     seconds: f64,
     peak: u64,
@@ -81,16 +82,7 @@ fn row(kind: InputKind, tally: &CaseTally) -> Row {
         share(reached(Reached::Sound) + reached(Reached::Ran)),
         share(reached(Reached::Ran)),
     ];
-    let order = [
-        HostileFault::Panic,
-        HostileFault::Abort,
-        HostileFault::Slow,
-        HostileFault::Large,
-        HostileFault::Wrote,
-        HostileFault::Message,
-        HostileFault::Changed,
-    ];
-    row.extend(order.map(|fault| tally.faults[fault as usize].to_string()));
+    row.extend(tally.faults.map(|count| count.to_string()));
     row.push(format!("{:.1}", tally.seconds));
     row.push(format!("{:.0}", tally.peak as f64 / 1e6));
     Row::new(row, Vec::new())

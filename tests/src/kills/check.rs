@@ -69,17 +69,13 @@ fn sealed(index: &[u8]) -> Result<(), &'static str> {
 #[cfg(test)]
 mod tests {
     use super::{IndexState, NO_HASH, state};
-    use crate::hostile::folder::Folder;
+    use crate::hostile::folder::{self, Folder};
     use crate::hostile::index::TAIL;
 
     fn folder(index: &str, content: Option<&str>) -> Folder {
-        let files = [("i.json", Some(index)), ("a/b", content)];
-        let there = files
-            .iter()
-            .filter_map(|(name, text)| Some((*name, (*text)?)));
-        there
-            .map(|(name, text)| (name.to_owned(), Some(text.into())))
-            .collect()
+        let mut files = folder::of([("i.json", index.into())]);
+        files.extend(content.map(|text| ("a/b".to_owned(), Some(text.into()))));
+        files
     }
 
     #[test]

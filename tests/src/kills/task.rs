@@ -139,9 +139,7 @@ fn task(
 /// uses.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
-    let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];
-    let files = files.map(|(name, text)| (name.to_owned(), Some(text.as_bytes().to_vec())));
-    Folder::from(files)
+    folder::of([("scene.ron", scene.into()), ("tetra.obj", TETRA.into())])
 }
 
 fn good(program: &Path, place: &Path, arguments: &[String], scratch: &Path) -> io::Result<()> {

@@ -157,7 +157,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
 
 /// Returns the section with fractions and ratios for each kind of scene.
 fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
-    let row = |(kind, _): (BlockerKind, usize)| {
+    let row = |(kind, name, _): (BlockerKind, &str, usize)| {
         let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
         let mut ratios: Vec<f64> = of_kind.iter().map(|o| o.sound.ratio).collect();
         ratios.sort_by(f64::total_cmp);
@@ -172,7 +172,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
             |of: fn(&SceneOutcome) -> f64| of_kind.iter().map(|o| of(o)).fold(0.0, f64::max);
         let least = of_kind.iter().map(|o| o.stated).fold(f64::MAX, f64::min);
         let cells = vec![
-            kind.name().to_owned(),
+            name.to_owned(),
             ratios.len().to_string(),
             share(1.0),
             share(2.0),

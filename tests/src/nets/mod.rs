@@ -12,16 +12,12 @@ use std::process::ExitCode;
 /// number.
 pub(crate) fn scene(number: u64) -> String {
     let kinds = draw::BlockerKind::ALL;
-    let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
-    draw::scene(kind, &mut draw::SceneDice::new(number))
+    let (kind, ..) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
+    draw::scene(kind, &mut draw::dice(number))
 }
 
 /// Draws and predicts the random scenes, prints the results, and writes results/nets.md.
-#[expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "the report is the product"
-)]
+#[expect(clippy::print_stderr, reason = "the report is the product")]
 pub(crate) fn page() -> ExitCode {
     let (outcomes, left_out) = scene::outcomes(|outcome| {
         eprintln!(
@@ -33,14 +29,12 @@ pub(crate) fn page() -> ExitCode {
         );
     });
     let sections = judge::sections(&outcomes, left_out);
-    let text: Vec<String> = sections.iter().map(|section| section.markdown()).collect();
-    let text = text.join("\n");
-    println!("{text}");
+    let text = crate::shown(&sections);
     if let Err(error) = fs::write("results/nets.md", format!("{HEAD}{text}")) {
         eprintln!("results/nets.md: {error}");
         return ExitCode::from(3);
     }
-    ExitCode::from(u8::from(!sections.iter().all(|section| section.passes())))
+    crate::judged(&sections)
 }
 
 const HEAD: &str = "\

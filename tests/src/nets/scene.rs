@@ -1,7 +1,7 @@
 //! Computes, for a random scene, the difference between its prediction by nets and the truth, in
 //! units of the stated error.
 
-use super::draw::{BlockerKind, SceneDice, scene};
+use super::draw::{self, BlockerKind, scene};
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_field::{ProjectionGrid, Window};
 use etendue_predict::{Applicability, Theory};
@@ -44,7 +44,7 @@ pub(super) struct Measured {
 /// light are replaced by further random scenes.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
-    for (kind, count) in BlockerKind::ALL {
+    for (kind, _, count) in BlockerKind::ALL {
         let mut found = 0;
         while found < count {
             number += 1;
@@ -85,12 +85,12 @@ const DARK: f64 = 0.3;
 /// Returns the outcome of a scene, or `None` if no theory applies or no light arrives at the
 /// plane.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
-    let mut dice = SceneDice::new(number);
+    let mut dice = draw::dice(number);
     let text = scene(kind, &mut dice);
-    let doublings = if kind.is_chain() { dice.of(3) } else { 0 };
+    let doublings = if kind.is_chain() { dice.below(3) } else { 0 };
     let budget = RayBudget::new(
         65_536.0 * [1.0, 2.0, 4.0][doublings],
-        [0.0, 5e-3][dice.of(2)],
+        [0.0, 5e-3][dice.below(2)],
     );
     let file = SceneFile::parse(&text).expect("a drawn scene is a scene file");
     let Ok(scene) = resolve("drawn", file, ".".as_ref(), u64::MAX) else {

@@ -63,11 +63,7 @@ pub(super) fn blockers(
     };
     for i in 0..count {
         let share = (0.15 + 0.7 * (i as f64 + draw.between(0.0, 0.9)) / count as f64).min(0.95);
-        let share = if draw.is_extreme() {
-            *draw.pick(&[1e-4, 0.9999, share])
-        } else {
-            share
-        };
+        let share = draw.extreme_or(&[1e-4, 0.9999, share], |_| share);
         // No two layers may lie in the same plane.
         let share = share * (1.0 + 1e-4 * i as f64 - 2e-4);
         let layer = layer(draw, None, format!("mask {i}"), share * first)?;
@@ -192,12 +188,11 @@ fn layer(
 }
 
 fn squares(draw: &mut SceneDraw, name: String, center: [f64; 3]) -> BlockersFile {
-    let (fill, jitter) = if draw.is_extreme() {
-        *draw.pick(&[(1.0, 0.0), (1e-3, 0.999), (0.999, 0.001)])
-    } else {
+    let extremes = [(1.0, 0.0), (1e-3, 0.999), (0.999, 0.001)];
+    let (fill, jitter) = draw.extreme_or(&extremes, |draw| {
         let fill = draw.between(0.2, 0.8);
         (fill, draw.between(0.0, 1.0 - fill))
-    };
+    });
     BlockersFile::JitteredSquares {
         name,
         center,

@@ -87,6 +87,19 @@ impl SceneDraw {
         self.rarity > 0 && self.dice.one_in(self.rarity)
     }
 
+    /// Returns one of the given extreme values, or a usual value.
+    pub(super) fn extreme_or<T: Copy>(
+        &mut self,
+        extremes: &[T],
+        usual: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        if self.is_extreme() {
+            *self.pick(extremes)
+        } else {
+            usual(self)
+        }
+    }
+
     pub(super) fn one_in(&mut self, n: usize) -> bool {
         self.dice.one_in(n)
     }
@@ -100,7 +113,7 @@ impl SceneDraw {
     }
 
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.dice.unit()
+        self.dice.between(low, high)
     }
 
     /// Returns a random integer from `low` to `high`, both included.

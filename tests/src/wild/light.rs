@@ -11,11 +11,7 @@ use std::io;
 /// Returns a light at the origin of the scene's frame.
 pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
     let center = draw.place(DVec3::ZERO);
-    let strength = if draw.is_extreme() {
-        *draw.pick(&[1e-9, 1e-3, 1e3, 1e9])
-    } else {
-        1.0
-    };
+    let strength = draw.extreme_or(&[1e-9, 1e-3, 1e3, 1e9], |_| 1.0);
     let sides = |draw: &mut SceneDraw| [(); 2].map(|()| draw.length([0.03, 0.5], [1e-6, 100.0]));
     Ok(match draw.below(14) {
         0..=3 => LightFile::Rectangle {
@@ -80,11 +76,7 @@ pub(super) fn axis(draw: &mut SceneDraw) -> AxisName {
 
 /// Returns a random modulation between 0 and 1.
 pub(super) fn modulation(draw: &mut SceneDraw) -> f64 {
-    if draw.is_extreme() {
-        *draw.pick(&[0.0, 1.0])
-    } else {
-        draw.between(0.3, 1.0)
-    }
+    draw.extreme_or(&[0.0, 1.0], |draw| draw.between(0.3, 1.0))
 }
 
 fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> {

@@ -40,7 +40,6 @@ use run::Runner;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::time::Duration;
 use tally::Tally;
 
@@ -88,24 +87,21 @@ pub(crate) fn wild(options: &WildOptions) -> io::Result<ReportSection> {
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "scenes");
     let numbers = options.first..options.first + options.scenes;
-    let tally = Mutex::new(Tally::default());
     let tell = |number: u64, says: &str| bar.suspend(|| told(options.seed, number, says));
-    on_threads(options.threads, numbers, |thread, number| {
+    let judged = on_threads(options.threads, numbers, &bar, |thread, number| {
         let at = place.path().join(format!("{thread}-{number}"));
         let judged = one(options, &program, number, &at, &tell)?;
-        if let Ok(mut tally) = tally.lock() {
-            match &judged {
-                Some(judged) => tally.add(number, judged),
-                None if options.with.is_none() => tally.undrawn(number),
-                None => {}
-            }
-        }
         fs::remove_dir_all(&at)?;
-        bar.one();
-        Ok(())
+        Ok(judged)
     })?;
-    bar.end();
-    let tally = tally.into_inner().unwrap_or_default();
+    let mut tally = Tally::default();
+    for (number, judged) in &judged {
+        match judged {
+            Some(judged) => tally.add(*number, judged),
+            None if options.with.is_none() => tally.undrawn(*number),
+            None => {}
+        }
+    }
     Ok(tally.section(options.seed))
 }
 

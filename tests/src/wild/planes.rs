@@ -50,11 +50,7 @@ fn place(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> (Place, O
             let leg = draw.below(path.legs.len());
             let leg = &path.legs[leg];
             let reach = leg.length.min(2.0 * draw.unit);
-            let share = if draw.is_extreme() {
-                *draw.pick(&[1e-4, 0.9999])
-            } else {
-                draw.between(0.05, 0.95)
-            };
+            let share = draw.extreme_or(&[1e-4, 0.9999], |draw| draw.between(0.05, 0.95));
             (Place::Distance(leg.start + share * reach), across)
         }
         5 | 6 => {
@@ -112,11 +108,7 @@ pub(super) fn frequencies(draw: &mut SceneDraw, window: &WindowFile) -> Frequenc
     let halves = [widest(window.x, window.y), widest(window.u, window.v)];
     let [rho, nu] = halves.map(|half| {
         let natural = 0.5 / half;
-        let steps = if draw.is_extreme() {
-            f64::from(*draw.pick(&[1_u8, 40]))
-        } else {
-            f64::from(draw.whole(2, 9))
-        };
+        let steps = f64::from(draw.extreme_or(&[1, 40], |draw| draw.whole(2, 9)));
         let spacing = draw.one_in(5).then(|| natural * draw.between(0.3, 1.0));
         AxisFile {
             max: steps * natural,
@@ -124,11 +116,7 @@ pub(super) fn frequencies(draw: &mut SceneDraw, window: &WindowFile) -> Frequenc
         }
     });
     FrequenciesFile {
-        azimuths: if draw.is_extreme() {
-            *draw.pick(&[1, 16])
-        } else {
-            draw.whole(1, 5)
-        },
+        azimuths: draw.extreme_or(&[1, 16], |draw| draw.whole(1, 5)),
         rho,
         nu,
     }

@@ -4,7 +4,7 @@ use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{named, traced};
 use etendue_compare::{Prediction, compare};
-use etendue_field::{Frame, Lobe, ProjectionGrid};
+use etendue_field::{Frame, ProjectionGrid};
 use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -51,11 +51,10 @@ const FAULTS: [PlantedFault; 6] = [
 ];
 
 fn change_lobe(system: &mut PathSystem, surface: usize, factor: f64) {
-    if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction {
-        let lobe: &mut Lobe = &mut reflectance.first_mut().lobe;
-        if let Some((_, number)) = lobe.number_mut() {
-            *number *= factor;
-        }
+    if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction
+        && let Some((_, number)) = reflectance.first_mut().lobe.number_mut()
+    {
+        *number *= factor;
     }
 }
 

@@ -39,11 +39,7 @@ fn brdf(draw: &mut SceneDraw) -> BrdfFile {
         },
         _ => FresnelFile::White,
     };
-    let albedo = if draw.is_extreme() {
-        *draw.pick(&[0.0, 1e-6, 0.5])
-    } else {
-        1.0
-    };
+    let albedo = draw.extreme_or(&[0.0, 1e-6, 0.5], |_| 1.0);
     BrdfFile {
         lobe,
         albedo: albedo.into(),

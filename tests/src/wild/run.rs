@@ -1,6 +1,7 @@
 //! Runs a scene with the program, as a user does, in a child process with a time limit.
 
 use crate::hostile::child::{self, Ended, Limit};
+use crate::hostile::stages::words;
 use etendue_scene::SceneFile;
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
@@ -103,21 +104,9 @@ impl Runner {
             fs::remove_dir_all(&out)?;
         }
         let method = if backward { "backward" } else { "photons" };
-        let (folder, seed) = (out.display().to_string(), seed.to_string());
-        let words = [
-            "run",
-            SCENE,
-            "--quiet",
-            "--threads",
-            "1",
-            "--seed",
-            &seed,
-            "--method",
-            method,
-            "--out",
-            &folder,
-        ];
-        let words = words.map(str::to_owned);
+        let command = format!("run {SCENE} --quiet --threads 1 --seed {seed} --method {method}");
+        let mut words = words(&command);
+        words.extend(["--out".to_owned(), out.display().to_string()]);
         let limit = Limit {
             clock: LONGER * self.limit,
             work: self.limit,

@@ -4,7 +4,7 @@
 use super::draw::SceneDraw;
 use super::planted::planted;
 use super::scene;
-use super::small::{MORE_PHOTONS, SmallEnding, SmallOptions};
+use super::small::{MORE_PHOTONS, SmallEnding, SmallEndings, SmallOptions};
 use super::small::{kept_ending, object, plane, sharpen, tried};
 use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Class, Verdict};
@@ -104,38 +104,25 @@ fn scatterers(scene: &Scene) -> usize {
 
 fn section(options: &SmallOptions, tried: &[Tried]) -> ReportSection {
     let row = |scatterers: usize| {
-        let of_kind = || {
-            tried
-                .iter()
-                .filter(move |tried| tried.scatterers == scatterers)
-        };
-        let count = |is: &dyn Fn(&Tried) -> bool| of_kind().filter(|tried| is(tried)).count();
-        let judged = |wanted: Verdict| {
-            count(
-                &|tried| matches!(tried.ending, SmallEnding::Judged(_, verdict) if verdict == wanted),
-            )
-        };
-        let rejected: Vec<String> = of_kind()
-            .filter(|tried| matches!(tried.ending, SmallEnding::Judged(_, Verdict::Fail)))
-            .map(|tried| tried.number.to_string())
-            .collect();
-        let mut seconds: Vec<f64> = of_kind().map(|tried| tried.seconds).collect();
+        let of_kind = tried.iter().filter(|tried| tried.scatterers == scatterers);
+        let of_kind: Vec<&Tried> = of_kind.collect();
+        let endings = of_kind.iter().map(|tried| (tried.number, tried.ending));
+        let all = SmallEndings(endings.collect());
+        let rejected = all.rejected();
+        let mut seconds: Vec<f64> = of_kind.iter().map(|tried| tried.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         let median = seconds.get(seconds.len() / 2).copied().unwrap_or(0.0);
-        let first_order =
-            count(&|tried| matches!(tried.ending, SmallEnding::Judged(Class::FirstOrder, _)));
+        let by_paths = of_kind.iter().filter(|tried| tried.by_paths).count();
         let cells = vec![
             scatterers.to_string(),
-            of_kind().count().to_string(),
-            count(&|tried| matches!(tried.ending, SmallEnding::Judged(Class::Exact, _)))
-                .to_string(),
-            first_order.to_string(),
-            count(&|tried| tried.by_paths).to_string(),
-            count(&|tried| matches!(tried.ending, SmallEnding::Named | SmallEnding::Other))
-                .to_string(),
-            count(&|tried| tried.ending == SmallEnding::Skipped).to_string(),
-            judged(Verdict::Pass).to_string(),
-            judged(Verdict::Undecided).to_string(),
+            of_kind.len().to_string(),
+            all.class(Class::Exact),
+            all.class(Class::FirstOrder),
+            by_paths.to_string(),
+            all.count(|ending| matches!(ending, SmallEnding::Named | SmallEnding::Other)),
+            all.count(|ending| ending == SmallEnding::Skipped),
+            all.judged(Verdict::Pass),
+            all.judged(Verdict::Undecided),
             rejected.join(", "),
             format!("{median:.1}"),
         ];

@@ -4,7 +4,7 @@
 use super::draw::SceneDraw;
 use super::run::text;
 use super::scene;
-use crate::progress::progress;
+use crate::progress::in_parallel;
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
 use etendue_compare::{Class, Verdict, compare};
@@ -15,7 +15,6 @@ use etendue_scene::{
     ShapeFile, SurfaceFile, WindowFile, resolve,
 };
 use glam::DVec3;
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -81,6 +80,37 @@ pub(super) enum SmallEnding {
     Judged(Class, Verdict),
 }
 
+/// The outcomes of some scenes, each with the number of its scene.
+pub(super) struct SmallEndings(pub(super) Vec<(u64, SmallEnding)>);
+
+impl SmallEndings {
+    /// Returns the number of scenes with such an outcome, as text.
+    pub(super) fn count(&self, is: impl Fn(SmallEnding) -> bool) -> String {
+        self.0
+            .iter()
+            .filter(|(_, ending)| is(*ending))
+            .count()
+            .to_string()
+    }
+
+    /// Returns the numbers of predictions of a class that were compared.
+    pub(super) fn class(&self, wanted: Class) -> String {
+        self.count(|ending| matches!(ending, SmallEnding::Judged(class, _) if class == wanted))
+    }
+
+    /// Returns the number of predictions with a verdict.
+    pub(super) fn judged(&self, wanted: Verdict) -> String {
+        self.count(|ending| matches!(ending, SmallEnding::Judged(_, verdict) if verdict == wanted))
+    }
+
+    /// Returns the numbers of the scenes whose predictions photons reject.
+    pub(super) fn rejected(&self) -> Vec<String> {
+        let fails = |ending: &SmallEnding| matches!(ending, SmallEnding::Judged(_, Verdict::Fail));
+        let failing = self.0.iter().filter(|(_, ending)| fails(ending));
+        failing.map(|(number, _)| number.to_string()).collect()
+    }
+}
+
 /// Tests all scenes.
 pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     let tried = tried(options, |number, folder| {
@@ -102,16 +132,12 @@ pub(super) fn tried<T: Send>(
     options: &SmallOptions,
     one: impl Fn(u64, &Path) -> io::Result<Option<T>> + Sync,
 ) -> io::Result<Vec<T>> {
-    let bar = progress(options.scenes, "scenes");
-    let numbers = (options.first..options.first + options.scenes).into_par_iter();
-    let tried = numbers.map(|number| {
+    let numbers = options.first..options.first + options.scenes;
+    let tried = in_parallel(numbers, "scenes", |number| {
         let folder = tempfile::tempdir()?;
-        let found = one(number, folder.path());
-        bar.one();
-        found
+        one(number, folder.path())
     });
-    let tried: io::Result<Vec<Option<T>>> = tried.collect();
-    bar.end();
+    let tried: io::Result<Vec<Option<T>>> = tried.into_iter().collect();
     Ok(tried?.into_iter().flatten().collect())
 }
 
@@ -327,30 +353,19 @@ fn ending(scene: &Scene, classes: bool) -> SmallEnding {
 
 fn section(options: &SmallOptions, tried: &[TriedSmall]) -> ReportSection {
     let row = |(kind, says): (usize, &&str)| {
-        let of_kind: Vec<&TriedSmall> = tried.iter().filter(|tried| tried.kind == kind).collect();
-        let count = |is: &dyn Fn(SmallEnding) -> bool| {
-            of_kind.iter().filter(|tried| is(tried.ending)).count()
-        };
-        let judged = |wanted: Verdict| {
-            count(&|ending| matches!(ending, SmallEnding::Judged(_, verdict) if verdict == wanted))
-        };
-        let class = |wanted: Class| {
-            count(&|ending| matches!(ending, SmallEnding::Judged(class, _) if class == wanted))
-        };
-        let rejected = of_kind
-            .iter()
-            .filter(|tried| matches!(tried.ending, SmallEnding::Judged(_, Verdict::Fail)));
-        let rejected: Vec<String> = rejected.map(|tried| tried.number.to_string()).collect();
+        let of_kind = tried.iter().filter(|tried| tried.kind == kind);
+        let all = SmallEndings(of_kind.map(|tried| (tried.number, tried.ending)).collect());
+        let rejected = all.rejected();
         let cells = vec![
             (*says).to_owned(),
-            of_kind.len().to_string(),
-            count(&|ending| ending == SmallEnding::Named).to_string(),
-            count(&|ending| ending == SmallEnding::Other).to_string(),
-            count(&|ending| ending == SmallEnding::Skipped).to_string(),
-            class(Class::Exact).to_string(),
-            class(Class::FirstOrder).to_string(),
-            judged(Verdict::Pass).to_string(),
-            judged(Verdict::Undecided).to_string(),
+            all.0.len().to_string(),
+            all.count(|ending| ending == SmallEnding::Named),
+            all.count(|ending| ending == SmallEnding::Other),
+            all.count(|ending| ending == SmallEnding::Skipped),
+            all.class(Class::Exact),
+            all.class(Class::FirstOrder),
+            all.judged(Verdict::Pass),
+            all.judged(Verdict::Undecided),
             rejected.join(", "),
         ];
         Row::new(cells, vec![Check::none("rejected", rejected.len())])

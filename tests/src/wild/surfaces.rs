@@ -8,6 +8,14 @@ use etendue_scene::{EventFile, FormFile, MeshSource, SurfaceFile};
 use glam::DVec3;
 use std::io;
 
+/// The name of a surface, and the place where a leg of the path meets it.
+struct Meeting<'a> {
+    name: String,
+    leg: &'a Frame,
+    point: DVec3,
+    normal: DVec3,
+}
+
 /// Returns a surface that a leg of the path meets at the given distance along the leg.
 pub(super) fn surface(
     draw: &mut SceneDraw,
@@ -15,12 +23,16 @@ pub(super) fn surface(
     leg: &Frame,
     distance: f64,
 ) -> io::Result<SurfaceFile> {
-    let on_axis = leg.origin + distance * leg.d;
-    let normal = facing(draw, leg);
+    let at = Meeting {
+        name,
+        leg,
+        point: leg.origin + distance * leg.d,
+        normal: facing(draw, leg),
+    };
     match draw.below(12) {
-        0..=2 => Ok(rectangle(draw, name, leg, on_axis, normal)),
-        3 => mesh(draw, name, leg, on_axis, normal),
-        _ => smooth(draw, name, leg, on_axis, normal),
+        0..=2 => Ok(rectangle(draw, at)),
+        3 => mesh(draw, at),
+        _ => smooth(draw, at),
     }
 }
 
@@ -45,38 +57,22 @@ fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
 }
 
 fn albedo(draw: &mut SceneDraw) -> f64 {
-    if draw.is_extreme() {
-        *draw.pick(&[0.0, 1.0, 1e-6])
-    } else {
-        0.5
-    }
+    draw.extreme_or(&[0.0, 1.0, 1e-6], |_| 0.5)
 }
 
-fn rectangle(
-    draw: &mut SceneDraw,
-    name: String,
-    leg: &Frame,
-    on_axis: DVec3,
-    normal: DVec3,
-) -> SurfaceFile {
+fn rectangle(draw: &mut SceneDraw, at: Meeting<'_>) -> SurfaceFile {
     // For a surface perpendicular to the first leg, the scene file may omit the facing direction.
-    let plain = leg.d == DVec3::Z && draw.one_in(2);
+    let plain = at.leg.d == DVec3::Z && draw.one_in(2);
     SurfaceFile::Rectangle {
-        name,
-        center: draw.place(on_axis),
+        name: at.name,
+        center: draw.place(at.point),
         size: [(); 2].map(|()| draw.length([1.0, 20.0], [0.05, 1e4])),
-        facing: (!plain).then(|| draw.along(normal)),
+        facing: (!plain).then(|| draw.along(at.normal)),
         albedo: albedo(draw).into(),
     }
 }
 
-fn mesh(
-    draw: &mut SceneDraw,
-    name: String,
-    leg: &Frame,
-    on_axis: DVec3,
-    normal: DVec3,
-) -> io::Result<SurfaceFile> {
+fn mesh(draw: &mut SceneDraw, at: Meeting<'_>) -> io::Result<SurfaceFile> {
     let half = draw.unit * draw.between(0.2, 0.8);
     let mesh = match draw.below(4) {
         0 => MeshSource::Star {
@@ -91,13 +87,13 @@ fn mesh(
             cells: draw.whole(1, 60),
         },
         _ => {
-            let x = (leg.x - leg.x.dot(normal) * normal).normalize_or(leg.y);
-            MeshSource::File(sheet(draw, [x, normal.cross(x), normal], half)?)
+            let x = (at.leg.x - at.leg.x.dot(at.normal) * at.normal).normalize_or(at.leg.y);
+            MeshSource::File(sheet(draw, [x, at.normal.cross(x), at.normal], half)?)
         }
     };
     Ok(SurfaceFile::Mesh {
-        name,
-        center: draw.place(on_axis),
+        name: at.name,
+        center: draw.place(at.point),
         mesh,
         scale: 1.0,
         albedo: albedo(draw).into(),
@@ -122,13 +118,7 @@ fn refraction(draw: &mut SceneDraw) -> EventFile {
     }
 }
 
-fn smooth(
-    draw: &mut SceneDraw,
-    name: String,
-    leg: &Frame,
-    on_axis: DVec3,
-    normal: DVec3,
-) -> io::Result<SurfaceFile> {
+fn smooth(draw: &mut SceneDraw, at: Meeting<'_>) -> io::Result<SurfaceFile> {
     let (event, flat) = match draw.below(10) {
         0 | 1 => (EventFile::Mirror, false),
         2 | 3 => (refraction(draw), false),
@@ -146,18 +136,18 @@ fn smooth(
     }
     let aside = if draw.one_in(4) {
         let away = draw.between(-0.4, 0.4) * aperture;
-        away * (leg.y - leg.y.dot(normal) * normal).normalize_or(leg.x)
+        away * (at.leg.y - at.leg.y.dot(at.normal) * at.normal).normalize_or(at.leg.x)
     } else {
         DVec3::ZERO
     };
     let turned = if !black_behind && draw.one_in(5) {
-        -normal
+        -at.normal
     } else {
-        normal
+        at.normal
     };
     Ok(SurfaceFile::Smooth {
-        name,
-        center: draw.place(on_axis + aside),
+        name: at.name,
+        center: draw.place(at.point + aside),
         facing: draw.along(turned),
         form,
         along: draw.one_in(3).then(|| draw.direction().to_array()),

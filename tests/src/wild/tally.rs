@@ -57,33 +57,28 @@ impl Tally {
         }
     }
 
-    pub(super) fn section(mut self, seed: u64) -> ReportSection {
+    pub(super) fn section(&self, seed: u64) -> ReportSection {
         let mut rows = Vec::new();
-        let mut row = |what: String, count: usize, which: &mut Vec<u64>| {
-            which.sort_unstable();
+        let mut row = |what: String, count: usize, which: &[u64]| {
             let shown: Vec<String> = which.iter().take(20).map(u64::to_string).collect();
             let cells = vec![what, count.to_string(), shown.join(", ")];
             rows.push(Row::new(cells, Vec::new()));
         };
-        let none = &mut Vec::new();
-        row("scenes".into(), self.scenes, none);
-        row(
-            "scenes that could not be drawn".into(),
-            self.undrawn.len(),
-            &mut self.undrawn,
-        );
-        for (why, which) in &mut self.refused {
+        row("scenes".into(), self.scenes, &[]);
+        let undrawn = "scenes that could not be drawn";
+        row(undrawn.into(), self.undrawn.len(), &self.undrawn);
+        for (why, which) in &self.refused {
             row(format!("refused: {why}"), which.len(), which);
         }
-        row("scenes that were judged".into(), self.judged, none);
+        row("scenes that were judged".into(), self.judged, &[]);
         for (verdict, count) in &self.verdicts {
-            row(format!("planes, {verdict}"), *count, none);
+            row(format!("planes, {verdict}"), *count, &[]);
         }
-        row("runs with a verdict".into(), self.runs, none);
+        row("runs with a verdict".into(), self.runs, &[]);
         let expected = ALPHA * self.runs as f64;
         let fails = format!("runs of these that fail ({expected:.1} expected by chance)");
-        row(fails, self.fails, none);
-        row("failures that do not repeat".into(), self.chance, none);
+        row(fails, self.fails, &[]);
+        row("failures that do not repeat".into(), self.chance, &[]);
         let checks = vec![
             Check::none("panics", self.panics.len()),
             Check::none("hangs", self.hangs.len()),
@@ -91,13 +86,13 @@ impl Tally {
             Check::none("wrong", self.wrong.len()),
         ];
         for (what, which) in [
-            ("**panics**", &mut self.panics),
-            ("**hangs**", &mut self.hangs),
-            ("**killed**", &mut self.killed),
+            ("**panics**", &self.panics),
+            ("**hangs**", &self.hangs),
+            ("**killed**", &self.killed),
         ] {
             row(what.into(), which.len(), which);
         }
-        for (culprit, which) in &mut self.wrong {
+        for (culprit, which) in &self.wrong {
             let what = format!("**wrong**, failures that repeat: {}", culprit.says());
             row(what, which.len(), which);
         }

@@ -17,7 +17,7 @@ pub(super) fn world(seed: u64, number: u64) -> (String, [usize; 2]) {
     let mut draw = WorldDraw(Dice::new(seed, number));
     let pixel = SIZE.map(|side| draw.0.below(side));
     let (sin, cos) = (TAU * draw.0.unit()).sin_cos();
-    let [height, distance] = [draw.between(0.8, 3.0), draw.between(4.0, 6.0)];
+    let [height, distance] = [draw.0.between(0.8, 3.0), draw.0.between(4.0, 6.0)];
     let eye = format!("{:.3},{height:.3},{:.3}", distance * cos, distance * sin);
     let floor = "<scale value=\"5\"/><rotate x=\"1\" angle=\"-90\"/>";
     let mut parts = vec![draw.shape("rectangle", floor)];
@@ -27,11 +27,11 @@ pub(super) fn world(seed: u64, number: u64) -> (String, [usize; 2]) {
     if draw.0.one_in(3) {
         parts.push(emitter(
             "constant",
-            &value("radiance", draw.between(0.2, 1.0)),
+            &value("radiance", draw.0.between(0.2, 1.0)),
         ));
     }
     let [w, h] = SIZE;
-    let (depth, fov) = (1 + draw.0.below(4), draw.between(30.0, 50.0));
+    let (depth, fov) = (1 + draw.0.below(4), draw.0.between(30.0, 50.0));
     let text = format!(
         r#"<scene version="3.0.0">
 <integrator type="path"><integer name="max_depth" value="{depth}"/></integrator>
@@ -72,10 +72,6 @@ fn shape(kind: &str, transform: &str, inside: &str) -> String {
 struct WorldDraw(Dice);
 
 impl WorldDraw {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.unit()
-    }
-
     /// Returns a number from 0 to 1, often one of the two ends.
     fn share(&mut self) -> String {
         match self.0.below(4) {
@@ -87,7 +83,7 @@ impl WorldDraw {
 
     /// Returns a number whose logarithm is uniformly distributed.
     fn positive(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
+        self.0.between(low.ln(), high.ln()).exp()
     }
 
     /// Returns an object that stands on the floor.
@@ -96,13 +92,13 @@ impl WorldDraw {
             .0
             .pick(&["sphere", "sphere", "cube", "cylinder", "disk", "rectangle"]);
         let size = self.positive(0.15, 0.6);
-        let [x, z] = [(); 2].map(|()| self.between(-1.5, 1.5));
+        let [x, z] = [(); 2].map(|()| self.0.between(-1.5, 1.5));
         // A cylinder of Mitsuba extends from 0 to 1 along Z.
         let upright = match kind {
             "cylinder" => "<translate z=\"-0.5\"/><rotate x=\"1\" angle=\"90\"/>",
             _ => "",
         };
-        let turned = self.between(0.0, 360.0);
+        let turned = self.0.between(0.0, 360.0);
         self.shape(
             kind,
             &format!(
@@ -117,11 +113,11 @@ impl WorldDraw {
     }
 
     fn light(&mut self) -> String {
-        let [x, y, z] = [(-2.0, 2.0), (1.5, 3.0), (-2.0, 2.0)].map(|(a, b)| self.between(a, b));
+        let [x, y, z] = [(-2.0, 2.0), (1.5, 3.0), (-2.0, 2.0)].map(|(a, b)| self.0.between(a, b));
         let from = format!("{x:.3},{y:.3},{z:.3}");
         let look = format!("<lookat origin=\"{from}\" target=\"0,0,0\" up=\"0.1,0,1\"/>");
         let placed = format!("<transform name=\"to_world\">{look}</transform>");
-        let power = self.between(1.0, 4.0);
+        let power = self.0.between(1.0, 4.0);
         let size = self.positive(0.05, 0.6);
         let area = emitter("area", &value("radiance", power / (size * size)));
         match self.0.below(6) {
@@ -165,10 +161,10 @@ impl WorldDraw {
     /// Returns a reflectance, which may be a texture.
     fn reflectance(&mut self, name: &str) -> String {
         if !self.0.one_in(3) {
-            return value(name, self.between(0.1, 0.9));
+            return value(name, self.0.between(0.1, 0.9));
         }
         let cells = self.positive(2.0, 20.0);
-        let colors = [self.between(0.05, 0.4), self.between(0.4, 0.9)];
+        let colors = [self.0.between(0.05, 0.4), self.0.between(0.4, 0.9)];
         let colors = [value("color0", colors[0]), value("color1", colors[1])].concat();
         format!(
             "<texture name=\"{name}\" type=\"checkerboard\">{colors}<transform name=\"to_uv\"><scale x=\"{cells:.2}\" y=\"{cells:.2}\"/></transform></texture>"
@@ -221,11 +217,11 @@ impl WorldDraw {
             9 => bsdf("thindielectric", ""),
             10 => bsdf("roughdielectric", &self.roughness()),
             11 => {
-                let opacity = number("opacity", format!("{:.3}", self.between(0.2, 0.8)));
+                let opacity = number("opacity", format!("{:.3}", self.0.between(0.2, 0.8)));
                 bsdf("mask", &(opacity + &self.material(1)))
             }
             _ => {
-                let weight = number("weight", format!("{:.3}", self.between(0.1, 0.9)));
+                let weight = number("weight", format!("{:.3}", self.0.between(0.1, 0.9)));
                 bsdf(
                     "blendbsdf",
                     &(weight + &self.material(1) + &self.material(1)),

@@ -5,6 +5,7 @@ mod draw;
 
 use crate::hostile::child::{self, Limit};
 use crate::hostile::on_threads;
+use crate::hostile::stages::words;
 use crate::progress::progress;
 use crate::report::{Check, ReportSection, Row};
 use serde_json::Value;
@@ -12,7 +13,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::time::Duration;
 
 /// Options of the search.
@@ -79,23 +79,14 @@ pub(crate) fn worlds(options: &WorldOptions) -> io::Result<ReportSection> {
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "worlds");
     let numbers = options.first..options.first + options.scenes;
-    let found = Mutex::new(BTreeMap::new());
-    on_threads(options.threads, numbers, |_, number| {
+    let found = on_threads(options.threads, numbers, &bar, |_, number| {
         let at = place.path().join(number.to_string());
         fs::create_dir_all(&at)?;
         let outcome = one(options, &program, number, &at)?;
-        if let Ok(mut found) = found.lock() {
-            found.insert(number, outcome);
-        }
         fs::remove_dir_all(&at)?;
-        bar.one();
-        Ok(())
+        Ok(outcome)
     })?;
-    bar.end();
-    Ok(section(
-        options.seed,
-        &found.into_inner().unwrap_or_default(),
-    ))
+    Ok(section(options.seed, &found))
 }
 
 /// Draws and probes a world, and saves it if it shows a fault.
@@ -128,12 +119,11 @@ fn probed(
     seed: u64,
     at: &Path,
 ) -> io::Result<WorldOutcome> {
-    let words = format!(
+    let command = format!(
         "probe world.xml --pixel {column},{row} --depth 2 --window 16 --rays {} --photons {} --seed {seed} --threads 1 --quiet --force --out out",
         options.rays, options.photons
     );
-    let words: Vec<String> = words.split(' ').map(str::to_owned).collect();
-    let ended = child::call_within(LIMIT, program, at, &words, at)?;
+    let ended = child::call_within(LIMIT, program, at, &words(&command), at)?;
     let said = String::from_utf8_lossy(&ended.stderr).into_owned();
     if said.contains("meets nothing") {
         return Ok(WorldOutcome::Nothing);
@@ -163,7 +153,7 @@ fn probed(
     Ok(WorldOutcome::Planes(planes.iter().map(verdict).collect()))
 }
 
-fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
+fn section(seed: u64, found: &[(u64, WorldOutcome)]) -> ReportSection {
     let mut planes: BTreeMap<&str, usize> = BTreeMap::new();
     let mut others: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     let (mut wrong, mut broken) = (0, 0);
@@ -192,16 +182,12 @@ fn section(seed: u64, found: &BTreeMap<u64, WorldOutcome>) -> ReportSection {
         Row::new(vec![what, count.to_string(), shown.join(", ")], Vec::new())
     };
     let mut rows = vec![row("worlds".to_owned(), found.len(), &[])];
-    rows.extend(
-        planes
-            .into_iter()
-            .map(|(verdict, count)| row(format!("planes, {verdict}"), count, &[])),
-    );
-    rows.extend(
-        others
-            .into_iter()
-            .map(|(what, which)| row(what, which.len(), &which)),
-    );
+    for (verdict, count) in planes {
+        rows.push(row(format!("planes, {verdict}"), count, &[]));
+    }
+    for (what, which) in others {
+        rows.push(row(what, which.len(), &which));
+    }
     ReportSection::new(
         format!("Random worlds, seed {seed}"),
         "Random worlds have all shapes, materials, textures and lights of Mitsuba scenes that \
