@@ -2,25 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+pub(crate) use crate::scenes::{measured, text, traced as photons};
 use etendue_compare::{Verdict, compare};
-use etendue_field::PhotonSource;
 use etendue_predict::{Applicability, predict, test_of};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::{Measurement, measure};
-use etendue_trace::Tracer;
+use etendue_spectrum::Measurement;
 
 /// The folder of the scenes of the repository.
 pub(crate) const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
-
-/// Returns the text of a scene of the repository, with parts of it replaced.
-pub(crate) fn text(name: &str, edits: &[(&str, &str)]) -> String {
-    let mut text = std::fs::read_to_string(format!("{SCENES}/{name}.ron")).unwrap();
-    for (from, to) in edits {
-        assert!(text.contains(from), "{from} is not in {name}");
-        text = text.replace(from, to);
-    }
-    text
-}
 
 /// Resolves the text of a scene. Its other files are in the folder of the scene `name`.
 pub(crate) fn resolved(name: &str, text: &str) -> Scene {
@@ -33,14 +22,6 @@ pub(crate) fn resolved(name: &str, text: &str) -> Scene {
 /// Returns a scene of the repository, with parts of its text replaced.
 pub(crate) fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     resolved(name, &text(name, edits))
-}
-
-pub(crate) fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
-    measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
-}
-
-pub(crate) fn photons(scene: &Scene) -> Measurement {
-    measured(scene, &Tracer::new(scene))
 }
 
 /// Compares a measurement of the scene `traced` with predictions for the scene `predicted`; returns

@@ -5,11 +5,13 @@
 mod architecture;
 mod common;
 mod environments;
-mod fuzz;
 mod hostile;
 mod lights;
 mod physics;
 mod precision;
+#[path = "../src/scenes.rs"]
+#[allow(dead_code, reason = "some of its functions are enough here")]
+mod scenes;
 #[path = "../src/statistics.rs"]
 #[allow(dead_code, reason = "one of its functions is enough here")]
 mod statistics;

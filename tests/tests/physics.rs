@@ -1,7 +1,7 @@
 //! Tests scenes that must pass and scenes that must fail, from the text of the scene to the
 //! verdict.
 
-use crate::common::{self, SCENES, photons, text};
+use crate::common::{self, SCENES, edited, photons};
 use etendue_compare::{Class, FirstOrderChain, Verdict};
 use etendue_predict::Applicability;
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -14,12 +14,11 @@ const PHOTONS: u64 = 400_000;
 
 /// Returns the scene `fig9b` with parts of its text replaced.
 fn scene(edits: &[(&str, &str)]) -> Scene {
-    let text = text("fig9b", edits);
-    let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
-    file.run.photons = PHOTONS;
+    let mut scene = edited("fig9b", edits);
+    scene.run.photons = PHOTONS;
     // Photons that are not aimed have noise of 16 %, which is low enough for this test.
-    file.run.resolution = 0.5;
-    resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
+    scene.run.resolution = 0.5;
+    scene
 }
 
 /// Compares photons of the scene `traced` with predictions for the scene `predicted`; returns the

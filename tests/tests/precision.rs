@@ -1,38 +1,15 @@
 //! Tests that the transform of reduced precision, which photons of a light with extent use, changes
 //! spectra by much less than their noise.
 
-use crate::common::measured;
-use etendue_field::{Crossing, Ledger, PhotonSource};
-use etendue_scene::{SceneFile, resolve};
+use crate::common::edited;
+use crate::scenes::{measured, tampered};
+use etendue_field::PhotonSource;
 use etendue_spectrum::{Measurement, estimate};
 use etendue_trace::Tracer;
 
-const SCENES: [&str; 4] = [
-    include_str!("../../scenes/travel.ron"),
-    include_str!("../../scenes/fig9b.ron"),
-    include_str!("../../scenes/disc_light.ron"),
-    include_str!("../../scenes/diffuse.ron"),
-];
+const SCENES: [&str; 4] = ["travel", "fig9b", "disc_light", "diffuse"];
 
 const PHOTONS: u64 = 1 << 20;
-
-/// The photons of a tracer, with a transform of full precision.
-struct Precise<'a>(&'a Tracer);
-
-impl PhotonSource for Precise<'_> {
-    fn emitted(&self, batch: u32) -> u64 {
-        self.0.emitted(batch)
-    }
-
-    fn emit(
-        &self,
-        batch: u32,
-        record: &mut dyn FnMut(usize, &[Crossing]),
-        progress: &dyn Fn(u64),
-    ) -> Ledger {
-        self.0.emit(batch, record, progress)
-    }
-}
 
 /// Returns the largest difference between two spectra of one plane, in standard errors.
 fn difference(full: &Measurement, reduced: &Measurement, plane: usize) -> f64 {
@@ -47,35 +24,33 @@ fn difference(full: &Measurement, reduced: &Measurement, plane: usize) -> f64 {
 /// precision.
 #[test]
 fn quiet_photons_have_full_precision() {
-    let precise = |text: &str, photons: u64| {
-        let mut file = SceneFile::parse(text).expect("a scene file");
-        file.run.photons = photons;
-        let scene = resolve("test", file, "../scenes".as_ref(), u64::MAX).expect("a sound scene");
+    let precise = |name: &str, edits: &[(&str, &str)], photons: u64| {
+        let mut scene = edited(name, edits);
+        scene.run.photons = photons;
         Tracer::new(&scene).is_precise()
     };
-    let point = include_str!("../../scenes/fig4_point.ron");
-    let travel = SCENES[0];
-    let narrow = travel.replace("size: (0.2, 0.2)", "size: (0.2, 0.001)");
-    assert_ne!(narrow, travel);
-    assert!(precise(point, 1 << 22) && precise(&narrow, 1 << 22));
+    assert!(precise("fig4_point", &[], 1 << 22));
     let area = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2), radiance: 1.0)";
-    let beam = travel.replace(area, "Beam(center: (0, 0, 0), image: (width: (0.2, 0.2)))");
-    let thin = travel.replace("u: Hann(0.5)", "u: Hann(0.001)");
-    assert!(beam != travel && thin != travel);
-    assert!(precise(&beam, 1 << 22) && precise(&thin, 1 << 22));
-    assert!(!precise(travel, 1 << 22) && precise(travel, 1 << 30));
+    for edit in [
+        ("size: (0.2, 0.2)", "size: (0.2, 0.001)"),
+        (area, "Beam(center: (0, 0, 0), image: (width: (0.2, 0.2)))"),
+        ("u: Hann(0.5)", "u: Hann(0.001)"),
+    ] {
+        assert!(precise("travel", &[edit], 1 << 22), "{edit:?}");
+    }
+    assert!(!precise("travel", &[], 1 << 22) && precise("travel", &[], 1 << 30));
 }
 
 #[test]
 fn reduced_precision_is_hidden_by_noise() {
-    for text in SCENES {
-        let mut file = SceneFile::parse(text).expect("a scene file");
-        file.run.photons = PHOTONS;
-        file.run.resolution = 1.0;
-        let scene = resolve("test", file, "../scenes".as_ref(), u64::MAX).expect("a sound scene");
+    for name in SCENES {
+        let mut scene = edited(name, &[]);
+        scene.run.photons = PHOTONS;
+        scene.run.resolution = 1.0;
         let tracer = Tracer::new(&scene);
         assert!(!tracer.is_precise());
-        let full = measured(&scene, &Precise(&tracer));
+        // A source that is not the tracer itself has a transform of full precision.
+        let full = tampered(&scene, |_, crossing| Some(crossing));
         let reduced = measured(&scene, &tracer);
         let first = |m: &Measurement| m.at_plane(0).next().map(|batch| batch.slices.clone());
         assert_ne!(first(&full), first(&reduced));

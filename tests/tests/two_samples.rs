@@ -1,20 +1,16 @@
 //! Tests, over many seeds, how `etendue diff` compares two measured results of one scene.
 
-use crate::common::measured;
+use crate::scenes::{fig9b, measured};
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
 use etendue_field::PhotonSource;
-use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_scene::Scene;
 use etendue_spectrum::estimate;
 use etendue_trace::{Backward, Tracer};
 
 /// Returns the scene `fig9b` with few photons and few frequencies.
 fn scene(seed: u64) -> Scene {
-    let text = include_str!("../../scenes/fig9b.ron");
-    let mut file = SceneFile::parse(text).expect("a scene of the repository");
-    file.run.photons = 1 << 14;
-    file.run.seed = seed;
-    let mut scene = resolve("fig9b", file, ".".as_ref(), u64::MAX).expect("a sound scene");
+    let mut scene = fig9b(1 << 14, seed);
     for plane in &mut scene.planes {
         plane.grid.azimuths = 3;
         plane.grid.rho.half = plane.grid.rho.half.min(8);

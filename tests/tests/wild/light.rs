@@ -1,8 +1,8 @@
 //! Tests scenes whose light once was sampled or predicted wrongly.
 
 use super::{
-    MORE, backward, by_exact_rays, by_path, by_reference, by_theory, does_not_fail, edited,
-    only_the_blind_are_wrong, photons, replaced, report, row, scene, scene_does_not_fail,
+    MORE, backward, by_exact_rays, by_path, by_theory, does_not_fail, edited,
+    only_the_blind_are_wrong, photons, referred, replaced, report, row, scene, scene_does_not_fail,
     the_tracers_agree, verdict,
 };
 use etendue_compare::{Class, Verdict};
@@ -97,7 +97,7 @@ fn a_sky_from_behind_is_decided() {
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");
-    let reference = by_reference(&few, 0, &backward(&few));
+    let reference = referred(&few, 0, &backward(&few));
     let judged = verdict(&few, &photons(&few), &reference);
     assert_eq!(judged, Verdict::Undecided);
     let many = edited("dim_lobe_of_a_sky", &[MORE]);

@@ -12,15 +12,15 @@ mod light;
 mod obstacles;
 mod surfaces;
 
-use crate::common::{self, measured, photons};
+use crate::common::{self, photons};
+use crate::scenes::{referred, traced_backwards};
 use etendue_compare::{Class, PlaneReport, Prediction, Test, Verdict, compare};
 use etendue_field::{ProjectionGrid, Slices, VirtualPlane};
-use etendue_predict::{Applicability, path, predict, predict_reference, test_of};
+use etendue_predict::{Applicability, path, predict, test_of};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, Observed, RayBudget};
-use etendue_trace::Backward;
 use std::time::Instant;
 
 /// Returns a scene of `scenes/wild`, with parts of its text replaced.
@@ -38,7 +38,7 @@ fn scene(name: &str) -> Scene {
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn backward(scene: &Scene) -> Measurement {
-    measured(scene, &Backward::new(scene).unwrap())
+    traced_backwards(scene).unwrap()
 }
 
 fn report(
@@ -62,11 +62,6 @@ fn verdict(scene: &Scene, measurement: &Measurement, prediction: &Prediction) ->
 
 fn by_theory(scene: &Scene, plane: &VirtualPlane) -> Prediction {
     predict(scene, plane, &Applicability::new(scene, plane))
-}
-
-fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Prediction {
-    let theory = Applicability::new(scene, &scene.planes[plane]);
-    predict_reference(scene, plane, &theory, reference, plane).unwrap()
 }
 
 /// Returns the prediction by exact rays, without the affine chain, whose verdict is separate.
@@ -102,8 +97,7 @@ fn does_not_fail(name: &str, class: Class, planes: &str) {
 fn scene_does_not_fail(scene: &Scene, class: Class, planes: &str) {
     let name = &scene.name;
     let by_photons = photons(scene);
-    let by_rays = Backward::new(scene).ok();
-    let by_rays = by_rays.map(|source| measured(scene, &source));
+    let by_rays = traced_backwards(scene);
     let names: Vec<&str> = scene
         .planes
         .iter()
@@ -116,7 +110,7 @@ fn scene_does_not_fail(scene: &Scene, class: Class, planes: &str) {
         assert_eq!(found, class, "{name}: {called}");
         let begun = Instant::now();
         let prediction = match class {
-            Class::Reference => by_reference(scene, i, by_rays.as_ref().unwrap()),
+            Class::Reference => referred(scene, i, by_rays.as_ref().unwrap()),
             _ => by_theory(scene, plane),
         };
         let seconds = begun.elapsed().as_secs_f64();
@@ -143,7 +137,7 @@ fn both_tracers_agree_with_theory(scene: &Scene) {
 
 /// Checks that photons agree with backward rays at the first plane.
 fn the_tracers_agree(scene: &Scene) {
-    let reference = by_reference(scene, 0, &backward(scene));
+    let reference = referred(scene, 0, &backward(scene));
     let judged = verdict(scene, &photons(scene), &reference);
     assert_eq!(judged, Verdict::Pass, "{}", scene.name);
 }

@@ -1,12 +1,12 @@
 //! Tests scenes in which obstacles once were missed.
 
 use super::{
-    by_exact_rays, by_path, by_theory, does_not_fail, edited, forgets_later_surfaces, measured,
+    by_exact_rays, by_path, by_theory, does_not_fail, edited, forgets_later_surfaces,
     only_the_blind_are_wrong, photons, replaced, report, scene, scene_does_not_fail,
+    traced_backwards,
 };
 use etendue_compare::{Class, Verdict};
 use etendue_predict::{Applicability, chain, path};
-use etendue_trace::Backward;
 
 /// A prediction tests whether occluders block rays on the leg after the mirror.
 #[test]
@@ -111,8 +111,7 @@ fn a_plane_on_the_next_wall_is_decided() {
 fn masks_matter(name: &str) {
     let scene = scene(name);
     let plane = scene.planes.len() - 1;
-    let backward = Backward::new(&scene).ok();
-    let backward = backward.map(|source| measured(&scene, &source));
+    let backward = traced_backwards(&scene);
     let measured: Vec<_> = std::iter::once(photons(&scene)).chain(backward).collect();
     let right = by_exact_rays(&scene, plane);
     for measured in &measured {

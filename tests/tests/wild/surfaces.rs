@@ -1,14 +1,14 @@
 //! Tests scenes whose surfaces once were followed wrongly.
 
 use super::{
-    MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_reference, by_theory, edited,
-    forgets_own_shadows, measured, only_the_blind_are_wrong, photons, report, scene,
+    MORE, both_tracers_agree_with_theory, by_exact_rays, by_path, by_theory, edited,
+    forgets_own_shadows, only_the_blind_are_wrong, photons, referred, report, scene,
     scene_does_not_fail, the_tracers_agree, verdict,
 };
 use crate::common;
+use crate::scenes::traced_evenly;
 use etendue_compare::{Class, Prediction, Verdict};
 use etendue_predict::{Applicability, path};
-use etendue_trace::Tracer;
 
 /// A fine mesh deviates from the patch that osculates it by more than the noise of photon nets. The
 /// stated error of the prediction includes this deviation; without it, the scene fails.
@@ -90,11 +90,7 @@ fn meshes_unlike_their_patches_are_decided() {
         let theory = Applicability::new(&scene, &scene.planes[0]);
         assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
         let measured = photons(&scene);
-        let reference = by_reference(
-            &scene,
-            0,
-            &self::measured(&scene, &Tracer::with_uniform_emission(&scene)),
-        );
+        let reference = referred(&scene, 0, &traced_evenly(&scene));
         let judged = report(&scene, &measured, 0, &reference);
         assert_eq!(judged.verdict, Verdict::Pass, "{name}");
         let view = path(&scene, &scene.planes[0]).unwrap();
