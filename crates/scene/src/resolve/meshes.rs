@@ -89,6 +89,10 @@ impl Resolver<'_> {
             scale: placed.scale,
             reach,
         };
+        // A place that is no number is a fault already, and a hierarchy over it would take long.
+        if !(at.center * at.scale).is_finite() {
+            return None;
+        }
         let mesh = self.distinct_triangles(&at, mesh)?;
         let local = |i: &u32| frame.to_local(at.world(mesh.vertices()[*i as usize]));
         let triangles: Vec<[DVec3; 3]> = mesh
