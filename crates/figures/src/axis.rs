@@ -4,7 +4,7 @@ use crate::sizes::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
 
 /// A named quantity and its unit.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AxisQuantity {
     /// The name of the quantity, as markup such as `|*S*|^{2}`.
     pub name: String,
@@ -86,6 +86,11 @@ impl Axis {
             is_log: false,
             is_reversed: false,
         }
+    }
+
+    /// Returns the axis of a quantity over a range.
+    pub(crate) fn of(quantity: &AxisQuantity, [min, max]: [f64; 2]) -> Self {
+        Self::edges(&quantity.name, &quantity.unit, [min, max])
     }
 
     /// Returns this axis with its numbers decreasing.

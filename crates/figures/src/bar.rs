@@ -24,12 +24,7 @@ pub(crate) fn draw(
     let [low, high] = shading.beyond;
     let top = panel.y + if high { POINT } else { 0.0 };
     let bottom = panel.bottom() - if low { POINT } else { 0.0 };
-    let area = Area {
-        x,
-        y: top,
-        width: WIDTH,
-        height: bottom - top,
-    };
+    let area = Area::new([x, top], [WIDTH, bottom - top]);
     if let Some(href) = color_strip(shading)? {
         svg.image(area, &href);
     }
@@ -88,12 +83,8 @@ pub(crate) fn gap_key(svg: &mut Svg, right: f64, y: f64) {
     let text = "no value";
     let style = TextStyle::new([right, y], TICK_TEXT, Anchor::End).fill(SOFT);
     svg.text(style, text);
-    let swatch = Area {
-        x: right - width(text, TICK_TEXT) - 18.0,
-        y: y - 9.0,
-        width: 10.0,
-        height: 10.0,
-    };
+    let left = right - width(text, TICK_TEXT) - 18.0;
+    let swatch = Area::new([left, y - 9.0], [10.0; 2]);
     svg.fill(swatch, &hex(NO_VALUE));
     svg.frame(swatch);
 }

@@ -47,10 +47,7 @@ const MIN_NAMES: usize = 4;
 pub fn chart(chart: &Chart, style: &Style) -> Result<Figure, Error> {
     let points = || chart.curves.iter().flat_map(|curve| &curve.points);
     let most = points().map(|p| p[1] + p[2]).fold(0.0, f64::max);
-    let y = Axis {
-        quantity: chart.y.clone(),
-        ..Axis::edges("", "", [0.0, 1.06 * most])
-    };
+    let y = Axis::of(&chart.y, [0.0, 1.06 * most]);
     let x = Axis::edges("", "", [-0.5, chart.names.len() as f64 - 0.5]);
     let ticks = upright_ticks(&y, HEIGHT).into_iter();
     let widest = ticks.map(|tick| width(&tick.text, TICK_TEXT));
@@ -60,20 +57,8 @@ pub fn chart(chart: &Chart, style: &Style) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let top = style.title(&mut svg, left, inner, &chart.title, &chart.note);
     let top = key(&mut svg, chart.curves.iter(), [left, top + 16.0], inner) + 20.0;
-    let area = Area {
-        x: left,
-        y: top,
-        width: inner,
-        height: HEIGHT,
-    };
-    let frame = Panel {
-        area,
-        x: &x,
-        y: &y,
-        label_x: false,
-        label_y: true,
-        labelled: [None, Some(HEIGHT)],
-    };
+    let area = Area::new([left, top], [inner, HEIGHT]);
+    let frame = Panel::new(area, &x, &y);
     svg.clipped(area, |svg| {
         for Curve { kind, points, .. } in layered(&chart.curves) {
             let points: Vec<&[f64; 3]> = points.iter().collect();
@@ -91,11 +76,8 @@ pub fn chart(chart: &Chart, style: &Style) -> Result<Figure, Error> {
     frame.frame(&mut svg);
     names(&mut svg, &chart.names, &frame);
     let bottom = area.bottom() + TICK_BASELINE + BELOW;
-    Ok(Figure {
-        svg: svg.finish(left + inner + RIGHT, bottom),
-        csv: numbers(chart)?,
-        pictures: Vec::new(),
-    })
+    let svg = svg.finish(left + inner + RIGHT, bottom);
+    Ok(Figure::new(svg, numbers(chart)?))
 }
 
 /// Writes the names below the frame.

@@ -1,6 +1,6 @@
 //! Maps values to colors.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, AxisQuantity};
 use crate::grey::level;
 use etendue_field::whole;
 use ndarray::ArrayView2;
@@ -24,6 +24,31 @@ pub enum Scale {
     },
     /// A scale of angles in degrees, once around the circle.
     Phase,
+}
+
+impl Scale {
+    /// Returns the colors of a quantity whose largest value is `peak`. Scales in decibels have their
+    /// own label, `decibels`.
+    pub(crate) fn shading(
+        self,
+        colors: Colors,
+        quantity: &AxisQuantity,
+        peak: f64,
+        decibels: &str,
+    ) -> Shading {
+        let AxisQuantity { name, unit } = quantity;
+        match self {
+            Self::Linear => {
+                let top = if peak > 0.0 { peak } else { 1.0 };
+                Shading::linear(colors, Axis::edges(name, unit, [0.0, top]))
+            }
+            Self::Decibel { floor } => Shading::decibel(colors, decibels, floor, peak),
+            Self::Signed { most } => {
+                Shading::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
+            }
+            Self::Phase => Shading::phase(name),
+        }
+    }
 }
 
 /// A color as red, green and blue.
@@ -136,11 +161,6 @@ impl Shading {
             reference: None,
             beyond: [false; 2],
         }
-    }
-
-    /// Returns a shading for values of both signs, up to `most` in modulus.
-    pub(crate) fn signed(name: &str, unit: &str, most: f64) -> Self {
-        Self::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
     }
 
     /// Returns a shading for angles in degrees, once around the circle.

@@ -4,6 +4,7 @@ use crate::axis::{Axis, AxisQuantity};
 use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::Picture;
 use crate::panel::Panel;
 use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::svg::{Anchor, Area, Svg, TextStyle};
@@ -76,11 +77,8 @@ pub fn comparison(comparison: &Comparison<'_>) -> Result<Figure, Error> {
     if [comparison.measured, comparison.predicted, comparison.z].map(has_gaps) != [false; 3] {
         bar::gap_key(&mut svg, WIDTH - 12.0, baseline);
     }
-    Ok(Figure {
-        svg: svg.finish(WIDTH, baseline + 13.0),
-        csv: numbers(comparison)?,
-        pictures: Vec::new(),
-    })
+    let svg = svg.finish(WIDTH, baseline + 13.0);
+    Ok(Figure::new(svg, numbers(comparison)?))
 }
 
 fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(), Error> {
@@ -96,12 +94,8 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
     ];
     for (index, (name, values, shading)) in panels.into_iter().enumerate() {
         let panel = Panel {
-            area: area(index, top),
-            x: &comparison.x,
-            y: &comparison.y,
-            label_x: true,
             label_y: index == 0,
-            labelled: [Some(PANEL); 2],
+            ..Panel::new(area(index, top), &comparison.x, &comparison.y)
         };
         panel.heat_map(svg, values, shading)?;
         panel.axes(svg);
@@ -127,40 +121,25 @@ impl<'a> Comparison<'a> {
 }
 
 fn area(index: usize, top: f64) -> Area {
-    Area {
-        x: PANELS_X[index],
-        y: top,
-        width: PANEL,
-        height: PANEL,
-    }
+    Area::new([PANELS_X[index], top], [PANEL, PANEL])
 }
 
 /// Returns the colors that the measured and the predicted values share.
 fn value_shading(comparison: &Comparison<'_>) -> Shading {
+    let Comparison {
+        quantity, scale, ..
+    } = comparison;
     let [measured, predicted] = comparison.drawn();
-    let shading = match comparison.scale {
-        Scale::Linear => {
-            let top = largest(measured).max(largest(predicted));
-            let axis = Axis {
-                quantity: comparison.quantity.clone(),
-                ..Axis::edges("", "", [0.0, if top > 0.0 { top } else { 1.0 }])
-            };
-            Shading::linear(Colors::MAGNITUDES, axis)
-        }
-        Scale::Decibel { floor } => {
-            let name = match comparison.sides {
-                [_, "predicted"] => "relative to the predicted peak".to_owned(),
-                [_, other] => format!("relative to the peak of {other}"),
-            };
-            let name = format!("{} {name}", comparison.quantity.name);
-            Shading::decibel(Colors::MAGNITUDES, &name, floor, largest(predicted))
-        }
-        Scale::Signed { most } => {
-            let AxisQuantity { name, unit } = &comparison.quantity;
-            Shading::signed(name, unit, most)
-        }
-        Scale::Phase => Shading::phase(&comparison.quantity.name),
+    let of_peak = match comparison.sides {
+        [_, "predicted"] => "the predicted peak".to_owned(),
+        [_, other] => format!("the peak of {other}"),
     };
+    let decibels = format!("{} relative to {of_peak}", quantity.name);
+    let peak = match scale {
+        Scale::Decibel { .. } => largest(predicted),
+        _ => largest(measured).max(largest(predicted)),
+    };
+    let shading = scale.shading(Colors::MAGNITUDES, quantity, peak, &decibels);
     shading.showing(measured).showing(predicted)
 }
 
@@ -175,16 +154,12 @@ fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
         of(1),
         comparison.difference("σ"),
     ];
-    let (columns, rows) = comparison.measured.dim();
-    let cells = comparison.measured.indexed_iter();
-    let lines = cells.map(|((i, j), measured)| {
-        let at = [x.center(i, columns), y.center(j, rows)];
-        let values = [
-            *measured,
-            comparison.predicted[[i, j]],
-            comparison.z[[i, j]],
-        ];
-        at.iter().chain(&values).map(decimal).collect()
+    let measured = Picture::new([x.clone(), y.clone()], comparison.measured);
+    let others = comparison.predicted.iter().zip(comparison.z);
+    let lines = measured.cells().into_iter().zip(others);
+    let lines = lines.map(|(cell, (predicted, z))| {
+        let others = [predicted, z].map(decimal);
+        cell.into_iter().chain(others).collect()
     });
     csv_text(&header, lines)
 }

@@ -165,20 +165,14 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % columns, i / columns].map(|n| n as f64);
-        let area = Area {
-            x: left + column * (size + between),
-            y: top + row * (HEIGHT + BETWEEN[1]),
-            width: size,
-            height: HEIGHT,
-        };
+        let x = left + column * (size + between);
+        let y = top + row * (HEIGHT + BETWEEN[1]);
+        let area = Area::new([x, y], [size, HEIGHT]);
         draw(&mut svg, panel, &curves.y, area);
         bottom = area.bottom();
     }
-    Ok(Figure {
-        svg: svg.finish(left + inner + RIGHT, bottom + LABEL_BASELINE + 14.0),
-        csv: numbers(curves)?,
-        pictures: Vec::new(),
-    })
+    let svg = svg.finish(left + inner + RIGHT, bottom + LABEL_BASELINE + 14.0);
+    Ok(Figure::new(svg, numbers(curves)?))
 }
 
 /// Draws the key, which shows each name once with its style, on as many lines as needed. Returns
@@ -232,10 +226,9 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         let from = points().map(low).fold(f64::INFINITY, f64::min);
         [from, points().map(high).fold(f64::NEG_INFINITY, f64::max)]
     };
-    let axis = |quantity: &AxisQuantity, is_log, ends: [f64; 2]| Axis {
-        quantity: quantity.clone(),
+    let axis = |quantity, is_log, ends| Axis {
         is_log,
-        ..Axis::edges("", "", ends)
+        ..Axis::of(quantity, ends)
     };
     let by_factors = |[low, high]: [f64; 2]| {
         let margin = libm::pow(high / low, 0.06).max(1.01);
@@ -275,14 +268,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
 
 fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
     let [x, y] = axes(panel, y);
-    let frame = Panel {
-        area,
-        x: &x,
-        y: &y,
-        label_x: true,
-        label_y: true,
-        labelled: [Some(area.width), Some(area.height)],
-    };
+    let frame = Panel::new(area, &x, &y);
     svg.clipped(area, |svg| {
         for curve in layered(&panel.curves) {
             let points = curve.points.iter().filter(|p| is_drawn(panel, p));

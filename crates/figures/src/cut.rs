@@ -2,8 +2,9 @@
 
 mod place;
 
-use crate::axis::{Axis, upright_ticks};
-use crate::marks::{BADGE, HATCH, Hatching, LIGHT, PLANE, badge, line_of};
+use crate::axis::Axis;
+use crate::marks::{BADGE, HATCH, Hatching, LIGHT, PLANE, arrow, badge, line_of};
+use crate::panel::Panel;
 use crate::section::{PlaneMark, Section, Segment, SegmentKind};
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, LEAST_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
@@ -281,24 +282,17 @@ impl<'a> SectionLayout<'a> {
             dash: "5 3",
         };
         let number = [self.planes[plane], self.area.bottom() - BADGE - 2.0];
-        svg.line([at, self.plot.y], [at, self.plot.bottom()], stroke);
-        let foot = Stroke::solid(PLANE, 0.8);
-        svg.line(
-            [at, self.plot.bottom()],
-            [number[0], number[1] - BADGE],
-            foot,
-        );
+        let [top, bottom] = [self.plot.y, self.plot.bottom()].map(|y| [at, y]);
+        svg.line(top, bottom, stroke);
+        let above = [number[0], number[1] - BADGE];
+        svg.line(bottom, above, Stroke::solid(PLANE, 0.8));
         badge(svg, number, plane);
     }
 
     /// Draws distant light: an arc around the start of the path.
     fn sky(&self, svg: &mut Svg) {
-        let skies = self
-            .section
-            .segments
-            .iter()
-            .filter(|s| s.kind == SegmentKind::Sky);
-        for segment in skies {
+        let segments = self.section.segments.iter();
+        for segment in segments.filter(|s| s.kind == SegmentKind::Sky) {
             let [x, middle] = self.point([segment.start[0], 0.0]);
             let [depth, half] = [26.0, 0.5 * self.plot.height];
             let arc = (-12..=12).map(|i| {
@@ -311,14 +305,9 @@ impl<'a> SectionLayout<'a> {
     }
 
     fn central_ray(&self, svg: &mut Svg) {
-        let (start, tip) = (
-            self.point([0.0, 0.0]),
-            self.point([self.section.length, 0.0]),
-        );
-        let stroke = Stroke::solid(INK, 1.3);
-        svg.line(start, [tip[0] - 6.0, tip[1]], stroke);
-        let wings = [-3.5, 3.5].map(|wing| [tip[0] - 9.0, tip[1] + wing]);
-        svg.polygon(&[tip, wings[0], wings[1]], INK);
+        let [start, tip] = [0.0, self.section.length].map(|z| self.point([z, 0.0]));
+        svg.line(start, [tip[0] - 6.0, tip[1]], Stroke::solid(INK, 1.3));
+        arrow(svg, start, tip);
         // The name of the central ray is placed in the widest gap between planes and segments, if
         // the name fits.
         let text = "central ray";
@@ -340,10 +329,8 @@ impl<'a> SectionLayout<'a> {
 
     /// Draws the z axis at the top, because the planes' numbers and names are below the plot.
     fn z_axis(&self, svg: &mut Svg) {
-        let (left, right) = (
-            self.point([self.section.first_light(), 0.0])[0],
-            self.point([self.section.length, 0.0])[0],
-        );
+        let ends = [self.section.first_light(), self.section.length];
+        let [left, right] = ends.map(|z| self.point([z, 0.0])[0]);
         let y = self.area.y;
         svg.line([left, y], [right, y], Stroke::FRAME);
         for tick in self.z.ticks((right - left) / 70.0) {
@@ -359,22 +346,8 @@ impl<'a> SectionLayout<'a> {
     }
 
     fn x_axis(&self, svg: &mut Svg) {
-        let left = self.area.x;
-        svg.line(
-            [left, self.plot.y],
-            [left, self.plot.bottom()],
-            Stroke::FRAME,
-        );
-        let mut widest: f64 = 0.0;
-        for tick in upright_ticks(&self.x, self.plot.height) {
-            let y = self.point([0.0, tick.value])[1];
-            svg.line([left - TICK, y], [left, y], Stroke::FRAME);
-            let style = TextStyle::new([left - TICK - 3.0, y + 4.0], TICK_TEXT, Anchor::End);
-            svg.text(style, &tick.text);
-            widest = widest.max(width(&tick.text, TICK_TEXT));
-        }
-        let at = [left - TICK - 11.0 - widest, self.plot.middle()[1]];
-        let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
-        svg.markup(style, &self.x.quantity.label(self.x.exponent()));
+        let ends = [self.plot.y, self.plot.bottom()].map(|y| [self.area.x, y]);
+        svg.line(ends[0], ends[1], Stroke::FRAME);
+        Panel::new(self.plot, &self.z, &self.x).y_axis(svg);
     }
 }

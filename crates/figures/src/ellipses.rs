@@ -2,7 +2,7 @@
 
 use crate::axis::AxisQuantity;
 use crate::bar;
-use crate::color::{Colors, Shading, largest};
+use crate::color::{Colors, Scale, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::Picture;
 use crate::panel::Panel;
@@ -26,12 +26,12 @@ pub struct Ellipses<'a> {
     pub title: &'a str,
     /// A line below the title, as markup; may be empty.
     pub note: &'a str,
-    /// The power of the spectrum, shown in decibels below its largest value.
+    /// The power of the spectrum.
     pub picture: Picture<'a>,
     /// The quantity of the picture.
     pub quantity: AxisQuantity,
-    /// Lower end of the color scale in decibels, a number below 0.
-    pub floor: f64,
+    /// The color scale of the spectrum, relative to its largest value.
+    pub scale: Scale,
     /// The ellipses at two standard deviations, in the order of the key. Each position in this list
     /// has its own color and dashes. If an ellipse is missing, no other ellipse takes its color and
     /// dashes.
@@ -55,8 +55,8 @@ impl Ellipses<'_> {
                 .drawn()
                 .filter(move |(.., dash)| dash.is_empty() != broken);
             drawn.map(|(ellipse, color, dash)| {
-                let width = 1.6;
-                (ellipse, Stroke { color, width, dash })
+                let line = Stroke::solid(color, 1.6);
+                (ellipse, Stroke { dash, ..line })
             })
         };
         halos.chain(lines(false)).chain(lines(true))
@@ -84,23 +84,14 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let width = LEFT + SIDE + 10.0 + bar::WIDTH + 60.0;
     let top = svg.title(LEFT, width - LEFT - 10.0, of.title, of.note) + 10.0;
-    let area = Area {
-        x: LEFT,
-        y: top,
-        width: SIDE,
-        height: SIDE,
-    };
-    let panel = Panel {
-        area,
-        x: &of.picture.x,
-        y: &of.picture.y,
-        label_x: true,
-        label_y: true,
-        labelled: [Some(area.width), Some(area.height)],
-    };
+    let area = Area::new([LEFT, top], [SIDE, SIDE]);
+    let panel = Panel::new(area, &of.picture.x, &of.picture.y);
     let values = of.picture.values;
     let name = format!("{} relative to its peak", of.quantity.name);
-    let shading = Shading::decibel(Colors::MAGNITUDES, &name, of.floor, largest(values));
+    let peak = largest(values);
+    let shading = of
+        .scale
+        .shading(Colors::MAGNITUDES, &of.quantity, peak, &name);
     let shading = shading.showing(values);
     panel.heat_map(&mut svg, values, &shading)?;
     svg.clipped(area, |svg| {
@@ -115,32 +106,14 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     for (ellipse, color, dash) in of.drawn() {
         baseline += LINE;
         let [from, to] = [LEFT, LEFT + 34.0].map(|x| [x, baseline - 4.0]);
-        svg.line(
-            from,
-            to,
-            Stroke {
-                color: HALO,
-                width: 5.0,
-                dash: "",
-            },
-        );
-        svg.line(
-            from,
-            to,
-            Stroke {
-                color,
-                width: 2.0,
-                dash,
-            },
-        );
+        let line = Stroke::solid(color, 2.0);
+        svg.line(from, to, Stroke::solid(HALO, 5.0));
+        svg.line(from, to, Stroke { dash, ..line });
         let style = TextStyle::new([LEFT + 44.0, baseline], TICK_TEXT, Anchor::Start).fill(INK);
         svg.fitted(style, &ellipse.name, width - LEFT - 54.0);
     }
-    Ok(Figure {
-        svg: svg.finish(width, baseline + 13.0),
-        csv: numbers(of)?,
-        pictures: Vec::new(),
-    })
+    let svg = svg.finish(width, baseline + 13.0);
+    Ok(Figure::new(svg, numbers(of)?))
 }
 
 /// Returns points around the ellipse of a covariance. The points are a matrix square root of the
@@ -158,8 +131,7 @@ fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
 
 /// Returns two tables: the covariances, and the cells with x varying slowest.
 fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
-    let Picture { x, y, values } = &of.picture;
-    let [a, b] = [x, y].map(|axis| axis.quantity.heading());
+    let [a, b] = of.picture.headings();
     let header = [
         "covariance".to_owned(),
         format!("{a}²"),
@@ -173,13 +145,7 @@ fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
             .collect()
     });
     let covariances = csv_text(&header, rows)?;
-    let (columns, rows) = values.dim();
-    let cells = values.indexed_iter().map(|((i, j), value)| {
-        [x.center(i, columns), y.center(j, rows), *value]
-            .iter()
-            .map(decimal)
-            .collect()
-    });
+    let cells = of.picture.cells().into_iter().map(Vec::from);
     let cells = csv_text(&[a, b, of.quantity.heading()], cells)?;
     Ok(format!("{covariances}\n{cells}"))
 }

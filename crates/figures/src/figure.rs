@@ -67,6 +67,12 @@ pub enum Error {
 }
 
 impl Figure {
+    /// Returns a drawing without pictures.
+    pub(crate) fn new(svg: String, csv: String) -> Self {
+        let pictures = Vec::new();
+        Self { svg, csv, pictures }
+    }
+
     /// Returns the drawing as a PNG, with two pixels to an SVG unit and with text in DejaVu Sans.
     /// The PNG states its resolution, 192 pixels per inch.
     ///

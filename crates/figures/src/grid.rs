@@ -3,7 +3,7 @@
 use crate::axis::{Axis, AxisQuantity, COMFORTABLE};
 use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
-use crate::figure::{DrawnPicture, Error};
+use crate::figure::{DrawnPicture, Error, decimal};
 use crate::panel::Panel;
 use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::style::Style;
@@ -18,11 +18,47 @@ pub struct Picture<'a> {
     pub x: Axis,
     /// The axis of the array's second index.
     pub y: Axis,
-    /// The values.
+    /// The values, which tables have.
     pub values: ArrayView2<'a, f64>,
+    /// The values in finer cells over the same axes, which are drawn instead of `values`.
+    pub finer: Option<ArrayView2<'a, f64>>,
+    /// Predicted lines. Only their ends are drawn, at the edges of the picture.
+    pub guides: Vec<Guide>,
 }
 
-impl Picture<'_> {
+impl<'a> Picture<'a> {
+    /// Returns the picture of values, without lines over it.
+    #[must_use]
+    pub fn new([x, y]: [Axis; 2], values: ArrayView2<'a, f64>) -> Self {
+        Self {
+            x,
+            y,
+            values,
+            finer: None,
+            guides: Vec::new(),
+        }
+    }
+
+    /// Returns the values that are drawn.
+    fn drawn(&self) -> ArrayView2<'a, f64> {
+        self.finer.unwrap_or(self.values)
+    }
+
+    /// Returns the table headings of both axes.
+    pub(crate) fn headings(&self) -> [String; 2] {
+        [&self.x, &self.y].map(|axis| axis.quantity.heading())
+    }
+
+    /// Returns the centre and the value of each cell as text, with x varying slowest.
+    pub(crate) fn cells(&self) -> Vec<[String; 3]> {
+        let (columns, rows) = self.values.dim();
+        let cell = |((i, j), value): ((usize, usize), &f64)| {
+            let at = [self.x.center(i, columns), self.y.center(j, rows)];
+            [at[0], at[1], *value].map(|number| decimal(&number))
+        };
+        self.values.indexed_iter().map(cell).collect()
+    }
+
     /// Returns the ratio of the picture's height to its width. The ratio is 1 unless both axes
     /// count pixels, which are drawn square.
     fn shape(&self) -> f64 {
@@ -52,6 +88,18 @@ impl Picture<'_> {
     }
 }
 
+/// Returns the numbers of the pictures of rows whose columns have these names.
+pub(crate) fn drawn_pictures<'b>(
+    rows: &[PlateRow<'_>],
+    columns: impl Iterator<Item = &'b String> + Clone,
+) -> Vec<DrawnPicture> {
+    let each = rows.iter().flat_map(|row| {
+        let both = row.pictures.iter().zip(columns.clone());
+        both.map(|(picture, column)| picture.numbers(row.name, column, &row.quantity))
+    });
+    each.collect()
+}
+
 /// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts power. Only the
 /// two ends of the line are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,41 +112,65 @@ pub struct Guide {
     pub is_across: bool,
 }
 
-/// A row of pictures with one color scale.
-#[derive(Debug)]
-pub(crate) struct PictureRow<'b, 'a> {
+/// A row of pictures that share a color scale.
+#[derive(Clone, Debug)]
+pub struct PlateRow<'a> {
     /// Name of the row.
-    pub(crate) name: &'b str,
-    /// Name and unit for the color bar, as markup.
-    pub(crate) bar: [String; 2],
-    pub(crate) scale: Scale,
+    pub name: &'a str,
+    /// The quantity that the pictures show.
+    pub quantity: AxisQuantity,
+    /// Name of the quantity beside the colors, as markup, if it is not the name of the quantity.
+    pub bar: Option<&'a str>,
+    /// The mapping of values to colors.
+    pub scale: Scale,
     /// Whether all pictures of the row have the same range of colors. If the range is not shared,
     /// the colors of each picture are relative to the largest value of that picture.
-    pub(crate) shared: bool,
-    /// A picture for each column, with the lines over the picture.
-    pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
+    pub shared: bool,
+    /// A picture for each column.
+    pub pictures: Vec<Picture<'a>>,
 }
 
-impl PictureRow<'_, '_> {
+impl<'a> PlateRow<'a> {
+    /// Returns a row whose quantity has its own name beside the colors.
+    #[must_use]
+    pub fn new(
+        name: &'a str,
+        quantity: AxisQuantity,
+        scale: Scale,
+        shared: bool,
+        pictures: Vec<Picture<'a>>,
+    ) -> Self {
+        Self {
+            name,
+            quantity,
+            bar: None,
+            scale,
+            shared,
+            pictures,
+        }
+    }
+
+    /// Returns the quantity beside the colors.
+    fn bar(&self) -> AxisQuantity {
+        if self.shared {
+            AxisQuantity::new(self.bar.unwrap_or(&self.quantity.name), &self.quantity.unit)
+        } else {
+            AxisQuantity::new("relative to its peak", "")
+        }
+    }
+
     /// Checks whether this row and another row share a color bar.
     fn has_bar_of(&self, other: &Self) -> bool {
-        self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
+        self.bar() == other.bar() && self.scale == other.scale && self.shared == other.shared
     }
 
     fn shading(&self, peak: f64, style: &Style) -> Shading {
-        let [name, unit] = &self.bar;
-        let colors = Colors::Sequential(style.palette);
-        match self.scale {
-            Scale::Linear => {
-                let top = if peak > 0.0 { peak } else { 1.0 };
-                Shading::linear(colors, Axis::edges(name, unit, [0.0, top]))
-            }
-            Scale::Decibel { floor } => {
-                Shading::decibel(colors, name, style.floor.unwrap_or(floor), peak)
-            }
-            Scale::Signed { most } => Shading::signed(name, unit, most),
-            Scale::Phase => Shading::phase(name),
-        }
+        let scale = match (self.scale, style.floor) {
+            (Scale::Decibel { .. }, Some(floor)) => Scale::Decibel { floor },
+            (scale, _) => scale,
+        };
+        let bar = self.bar();
+        scale.shading(Colors::Sequential(style.palette), &bar, peak, &bar.name)
     }
 }
 
@@ -146,7 +218,7 @@ pub(crate) fn inner(style: &Style) -> f64 {
 /// Rows of pictures laid out for a page.
 #[derive(Debug)]
 pub(crate) struct PageGrid<'b, 'a> {
-    rows: Vec<PictureRow<'b, 'a>>,
+    rows: &'b [PlateRow<'a>],
     style: Style,
     /// Width of a picture.
     pub(crate) side: f64,
@@ -164,7 +236,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// # Panics
     /// If a row does not have a picture for each column.
     pub(crate) fn new(
-        rows: Vec<PictureRow<'b, 'a>>,
+        rows: &'b [PlateRow<'a>],
         columns: usize,
         [least, largest]: [f64; 2],
         style: &Style,
@@ -172,11 +244,11 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         // Maximum picture widths. The first maximum holds for one block, and the second for several
         // blocks, because several blocks of wide pictures would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
-        for row in &rows {
-            assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
+        for row in rows {
+            assert_eq!(row.pictures.len(), columns, "pictures of {}", row.name);
         }
-        let mut pictures = rows.iter().flat_map(|row| &row.cells);
-        let shape = pictures.next().map_or(1.0, |(first, _)| first.shape());
+        let mut pictures = rows.iter().flat_map(|row| &row.pictures);
+        let shape = pictures.next().map_or(1.0, Picture::shape);
         let mut grid = Self {
             rows,
             style: *style,
@@ -230,8 +302,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     }
 
     /// Checks whether the y axis of a picture differs from the y axis of the picture to its left.
-    fn differs(row: &PictureRow<'_, '_>, column: usize) -> bool {
-        row.cells[column].0.y != row.cells[column - 1].0.y
+    fn differs(row: &PlateRow<'_>, column: usize) -> bool {
+        row.pictures[column].y != row.pictures[column - 1].y
     }
 
     /// Returns the gap before a column.
@@ -271,8 +343,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// below.
     fn shares_x(&self, row: usize) -> bool {
         self.rows.get(row + 1).is_some_and(|below| {
-            let mut both = self.rows[row].cells.iter().zip(&below.cells);
-            both.all(|((a, _), (b, _))| a.x == b.x)
+            let mut both = self.rows[row].pictures.iter().zip(&below.pictures);
+            both.all(|(a, b)| a.x == b.x)
         })
     }
 
@@ -280,7 +352,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// are narrow and have the same axis, this width is the width of the entire block. Returns
     /// `None` if the picture shares the label of a picture further to the left.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
-        let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
+        let x = |place: &PlacedColumn| &self.rows[row].pictures[place.column].x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
         if self.side >= COMFORTABLE || !is_same {
             return Some(self.side);
@@ -293,7 +365,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// pictures further down that have the same axes as the picture. Returns `None` if the picture
     /// shares the label of a picture further up.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
-        let y = |row: usize| &self.rows[row].cells[column].0.y;
+        let y = |row: usize| &self.rows[row].pictures[column].y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
         if row > 0 && is_same(row - 1) {
             return None;
@@ -314,12 +386,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         };
         for (index, row) in self.rows.iter().enumerate() {
             let shading = self.row(svg, index, places, y)?;
-            let area = Area {
-                x: last.left,
-                y,
-                width: self.side,
-                height: self.height(),
-            };
+            let area = Area::new([last.left, y], [self.side, self.height()]);
             match bars.last_mut() {
                 Some((bar, whole)) if index > 0 && row.has_bar_of(&self.rows[index - 1]) => {
                     bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
@@ -343,10 +410,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// Returns the largest value of the rows that share a color bar with the row `index`.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
-        let cells = rows.flat_map(|row| &row.cells);
-        cells
-            .map(|(picture, _)| largest(picture.values))
-            .fold(0.0, f64::max)
+        let peaks = rows.flat_map(|row| &row.pictures);
+        let peaks = peaks.map(|picture| largest(picture.drawn()));
+        peaks.fold(0.0, f64::max)
     }
 
     /// Draws the pictures of a row and the row's name; returns the colors of the row's color bar.
@@ -361,32 +427,23 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         let highest = self.peak(index);
         let mut bar = row.shading(if row.shared { highest } else { 1.0 }, &self.style);
         for (i, place) in places.iter().enumerate() {
-            let (picture, guides) = row.cells[place.column];
+            let picture = &row.pictures[place.column];
+            let values = picture.drawn();
+            let area = Area::new([place.left, y], [self.side, self.height()]);
             let panel = Panel {
-                area: Area {
-                    x: place.left,
-                    y,
-                    width: self.side,
-                    height: self.height(),
-                },
-                x: &picture.x,
-                y: &picture.y,
                 label_x: !self.shares_x(index),
                 label_y: i == 0 || Self::differs(row, place.column),
                 labelled: [
                     self.labelled_across(index, places, i),
                     self.labelled_down(index, place.column),
                 ],
+                ..Panel::new(area, &picture.x, &picture.y)
             };
-            let peak = if row.shared {
-                highest
-            } else {
-                largest(picture.values)
-            };
-            let shading = row.shading(peak, &self.style).showing(picture.values);
+            let peak = if row.shared { highest } else { largest(values) };
+            let shading = row.shading(peak, &self.style).showing(values);
             bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
-            panel.heat_map(svg, picture.values, &shading)?;
-            draw_guides(svg, &panel, guides);
+            panel.heat_map(svg, values, &shading)?;
+            draw_guides(svg, &panel, &picture.guides);
             panel.axes(svg);
         }
         let at = [LEFT - ROW_NAME, y + 0.5 * self.height()];
@@ -403,15 +460,12 @@ impl<'b, 'a> PageGrid<'b, 'a> {
 
     /// Checks whether any cell of any picture has no value.
     pub(crate) fn has_gaps(&self) -> bool {
-        let mut cells = self.rows.iter().flat_map(|row| &row.cells);
-        cells.any(|(picture, _)| has_gaps(picture.values))
+        let mut pictures = self.rows.iter().flat_map(|row| &row.pictures);
+        pictures.any(|picture| has_gaps(picture.drawn()))
     }
 }
 
 fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
-    if guides.is_empty() {
-        return;
-    }
     let length = GUIDE_END * panel.area.width.min(panel.area.height);
     for guide in guides {
         let Some([start, end]) = inside(panel, guide) else {

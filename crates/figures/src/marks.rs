@@ -22,6 +22,15 @@ pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.text(style, &(plane + 1).to_string());
 }
 
+/// Draws the arrowhead of the central ray.
+pub(crate) fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(along[0], along[1]).max(1e-9);
+    let [a, b] = along.map(|a| a / length);
+    let wings = [-3.5, 3.5].map(|wing| [to[0] - 9.0 * a - wing * b, to[1] - 9.0 * b + wing * a]);
+    svg.polygon(&[to, wings[0], wings[1]], INK);
+}
+
 /// Returns the color and the line width of a segment.
 pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
     match kind {

@@ -29,7 +29,19 @@ pub(crate) struct Panel<'a> {
     pub(crate) labelled: [Option<f64>; 2],
 }
 
-impl Panel<'_> {
+impl<'a> Panel<'a> {
+    /// Returns a panel with labels along both of its axes.
+    pub(crate) fn new(area: Area, x: &'a Axis, y: &'a Axis) -> Self {
+        Self {
+            area,
+            x,
+            y,
+            label_x: true,
+            label_y: true,
+            labelled: [Some(area.width), Some(area.height)],
+        }
+    }
+
     /// Draws the heat map of `values` [x, y].
     pub(crate) fn heat_map(
         &self,
@@ -94,7 +106,8 @@ impl Panel<'_> {
         svg.fitted(style, &label, length + overhang);
     }
 
-    fn y_axis(&self, svg: &mut Svg) {
+    /// Draws the ticks and the label to the left of the panel.
+    pub(crate) fn y_axis(&self, svg: &mut Svg) {
         let left = self.area.x;
         let mut widest: f64 = 0.0;
         for tick in upright_ticks(self.y, self.area.height) {

@@ -2,9 +2,8 @@
 
 use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
-use crate::color::Scale;
-use crate::figure::{DrawnPicture, Error, Figure, csv_text, decimal};
-use crate::grid::{LEFT, PageGrid, Picture, PictureRow, RIGHT, inner};
+use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::{LEFT, PageGrid, PlateRow, RIGHT, drawn_pictures, inner};
 use crate::panel::Panel;
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LEAST_TEXT, SMALL_TEXT, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
@@ -12,24 +11,8 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{lines, plain, width};
 use etendue_field::uncertain;
 
-/// A row of pictures that share a color scale.
-#[derive(Clone, Debug)]
-pub struct PlateRow<'a> {
-    /// Name of the row.
-    pub name: &'a str,
-    /// The quantity that the pictures show.
-    pub quantity: AxisQuantity,
-    /// The mapping of values to colors.
-    pub scale: Scale,
-    /// Whether all pictures of the row have the same range of colors. If the range is not shared,
-    /// the colors of each picture are relative to the largest value of that picture.
-    pub shared: bool,
-    /// A picture for each column.
-    pub pictures: Vec<Picture<'a>>,
-}
-
 /// A plate of pictures in rows and columns.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Plate<'a> {
     /// Title; markup.
     pub title: &'a str,
@@ -63,9 +46,6 @@ pub struct Bars {
     pub predicted: Vec<Option<f64>>,
 }
 
-/// Label of a color bar if the colors of each picture are relative to its largest value.
-pub(crate) const OWN_PEAK: &str = "relative to its peak";
-
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
@@ -85,10 +65,9 @@ const TITLE: f64 = 440.0;
 /// # Panics
 /// If a row does not have a picture for each head.
 pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
-    let rows = plate.rows.iter().map(row);
     let most = plate.side.unwrap_or(f64::INFINITY);
     let widths = [MIN_WIDTH.min(most), most];
-    let grid = PageGrid::new(rows.collect(), plate.heads.len(), widths, style);
+    let grid = PageGrid::new(&plate.rows, plate.heads.len(), widths, style);
     let mut svg = Svg::default();
     let inner = grid.width().max(TITLE.min(inner(style)));
     let room = inner + 0.8 * RIGHT;
@@ -101,12 +80,7 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
         bottom = feet(&mut svg, verdicts, &grid, block, bottom);
     }
     if let Some(bars) = &plate.bars {
-        let area = Area {
-            x: LEFT,
-            y: bottom + 26.0,
-            width: inner,
-            height: BARS,
-        };
+        let area = Area::new([LEFT, bottom + 26.0], [inner, BARS]);
         let count = plate.heads.len();
         let middles: Vec<f64> = if grid.blocks() == 1 {
             grid.columns(0).map(|(_, middle, _)| middle).collect()
@@ -125,37 +99,8 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     Ok(Figure {
         svg: svg.finish(LEFT + inner + RIGHT, bottom + 14.0),
         csv: numbers(plate)?,
-        pictures: plate
-            .rows
-            .iter()
-            .flat_map(|row| drawn(row, &plate.heads))
-            .collect(),
+        pictures: drawn_pictures(&plate.rows, plate.heads.iter()),
     })
-}
-
-/// Returns the numbers of the pictures of a row.
-fn drawn<'b>(
-    row: &'b PlateRow<'_>,
-    heads: &'b [String],
-) -> impl Iterator<Item = DrawnPicture> + 'b {
-    let both = row.pictures.iter().zip(heads);
-    both.map(|(picture, head)| picture.numbers(row.name, head, &row.quantity))
-}
-
-fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
-    let AxisQuantity { name, unit } = row.quantity.clone();
-    let cells = row.pictures.iter();
-    PictureRow {
-        name: row.name,
-        bar: if row.shared {
-            [name, unit]
-        } else {
-            [OWN_PEAK.to_owned(), String::new()]
-        },
-        scale: row.scale,
-        shared: row.shared,
-        cells: cells.map(|picture| (picture, &[][..])).collect(),
-    }
 }
 
 /// Draws the first line of a block's headings above `top` and the second line, if any, below it.
@@ -219,29 +164,16 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
         .chain(bars.predicted.iter().flatten().copied())
         .fold(0.0, f64::max);
     let top = if highest > 0.0 { 1.25 * highest } else { 1.0 };
-    let panel = Panel {
-        area,
-        x: &Axis::edges("", "", [0.0, 1.0]),
-        y: &Axis {
-            quantity: bars.quantity.clone(),
-            ..Axis::edges("", "", [0.0, top])
-        },
-        label_x: true,
-        label_y: true,
-        labelled: [Some(area.width), Some(area.height)],
-    };
+    let x = Axis::edges("", "", [0.0, 1.0]);
+    let y = Axis::of(&bars.quantity, [0.0, top]);
+    let panel = Panel::new(area, &x, &y);
     let at = |value: f64| panel.point(0.0, value)[1];
     for (column, value) in bars.measured.iter().enumerate() {
         let x = middles[column];
         if let Some(value) = value {
             // A fraction may be below 0 after noise removal.
             let y = at(value.max(0.0));
-            let filled = Area {
-                x: x - 0.5 * BAR,
-                y,
-                width: BAR,
-                height: area.bottom() - y,
-            };
+            let filled = Area::new([x - 0.5 * BAR, y], [BAR, area.bottom() - y]);
             svg.fill(filled, FAINT);
         }
         if let (Some(value), Some(error)) = (value, bars.errors[column]) {

@@ -25,21 +25,11 @@ impl Section {
             top += DrawnWorld::HEIGHT;
         }
         if let Some(other) = &self.other {
-            let area = Area {
-                x,
-                y: top + SectionLayout::AXIS,
-                width,
-                height: OTHER,
-            };
+            let area = Area::new([x, top + SectionLayout::AXIS], [width, OTHER]);
             SectionLayout::new(other, area).draw(svg);
             top = area.bottom();
         }
-        Area {
-            x,
-            y: top + SectionLayout::AXIS,
-            width,
-            height,
-        }
+        Area::new([x, top + SectionLayout::AXIS], [width, height])
     }
 }
 
@@ -73,11 +63,8 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
         let rooms = (0..section.planes.len()).map(|plane| (plane, pitch - 10.0));
         heads + cut.heading_height(rooms)
     };
-    Ok(Figure {
-        svg: svg.finish(area.right() + 20.0, bottom),
-        csv: numbers(section)?,
-        pictures: Vec::new(),
-    })
+    let svg = svg.finish(area.right() + 20.0, bottom);
+    Ok(Figure::new(svg, numbers(section)?))
 }
 
 const LEFT: f64 = 66.0;

@@ -14,6 +14,16 @@ pub(crate) struct Area {
 }
 
 impl Area {
+    /// Returns the rectangle with this upper left corner and this width and height.
+    pub(crate) fn new([x, y]: [f64; 2], [width, height]: [f64; 2]) -> Self {
+        Self {
+            x,
+            y,
+            width,
+            height,
+        }
+    }
+
     pub(crate) fn right(&self) -> f64 {
         self.x + self.width
     }

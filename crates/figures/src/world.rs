@@ -1,7 +1,7 @@
 //! Draws the scene to scale, as it looks along Y at the light. The drawing shows the bends of the
 //! central ray and the positions of objects.
 
-use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
+use crate::marks::{BADGE, Hatching, PLANE, arrow, badge, line_of};
 use crate::section::{DrawnObject, DrawnWorld, SegmentKind};
 use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
@@ -24,12 +24,7 @@ impl DrawnWorld {
 
     /// Draws the scene to scale at the given upper left corner.
     pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], width: f64) {
-        let area = Area {
-            x,
-            y: y + HEAD,
-            width,
-            height: DRAWING,
-        };
+        let area = Area::new([x, y + HEAD], [width, DRAWING]);
         let title = TextStyle::new([area.middle()[0], y + 22.0], LABEL_TEXT, Anchor::Middle);
         svg.text(title, "to scale");
         let (scale, middle) = self.scale(area);
@@ -136,15 +131,6 @@ fn distance([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let square = (along[0] * along[0] + along[1] * along[1]).max(1e-18);
     let part = ((off[0] * along[0] + off[1] * along[1]) / square).clamp(0.0, 1.0);
     libm::hypot(off[0] - part * along[0], off[1] - part * along[1])
-}
-
-/// Draws the arrowhead of the central ray.
-fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = libm::hypot(along[0], along[1]).max(1e-9);
-    let [a, b] = along.map(|a| a / length);
-    let wings = [-3.5, 3.5].map(|wing| [to[0] - 9.0 * a - wing * b, to[1] - 9.0 * b + wing * a]);
-    svg.polygon(&[to, wings[0], wings[1]], INK);
 }
 
 /// A scale bar.

@@ -88,14 +88,9 @@ impl CreatureScene {
 
     fn shown<'a>(&self, values: &'a Array2<f64>) -> Picture<'a> {
         let [w, h] = self.camera.size.map(|n| n as f64);
-        Picture {
-            x: Axis::edges("column", "pixels", [0.0, w]),
-            y: Axis {
-                is_reversed: true,
-                ..Axis::edges("row", "pixels", [0.0, h])
-            },
-            values: values.view(),
-        }
+        let columns = Axis::edges("column", "pixels", [0.0, w]);
+        let rows = Axis::edges("row", "pixels", [0.0, h]).reversed();
+        Picture::new([columns, rows], values.view())
     }
 }
 
@@ -133,20 +128,15 @@ impl CreatureRow<'_> {
         let pictures = self.panels.iter().map(|panel| scene.shown(panel.values));
         let heads = self.panels.iter().map(|panel| panel.head.to_owned());
         let feet = self.panels.iter().map(|panel| vec![panel.foot.clone()]);
+        let (quantity, pictures) = (self.quantity.clone(), pictures.collect());
+        let row = PlateRow::new("", quantity, self.scale, self.shared, pictures);
         let of = Plate {
             title: self.title,
             note: self.note,
             heads: heads.collect(),
-            rows: vec![PlateRow {
-                name: "",
-                quantity: self.quantity.clone(),
-                scale: self.scale,
-                shared: self.shared,
-                pictures: pictures.collect(),
-            }],
+            rows: vec![row],
             feet: feet.filter(|lines| !lines[0].is_empty()).collect(),
-            bars: None,
-            side: None,
+            ..Plate::default()
         };
         plate(&of, style).map_err(Failure::cannot_run)
     }

@@ -92,31 +92,27 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let axes = |names: [&str; 2], unit: &str, end: f64| {
         names.map(|name| Axis::edges(name, unit, [-end, end]))
     };
-    let picture = |[x, y]: [Axis; 2], values| Picture { x, y, values };
+    let in_slope = axes(["*u*", "*v*"], "slope", slopes);
+    let in_frequency = axes(["*Ω*_{u}", "*Ω*_{v}"], "cycles/slope", frequencies);
     let pictures = vec![
-        picture(axes(["*u*", "*v*"], "slope", slopes), value.view()),
-        picture(
-            axes(["*Ω*_{u}", "*Ω*_{v}"], "cycles/slope", frequencies),
-            transform.view(),
-        ),
+        Picture::new(in_slope, value.view()),
+        Picture::new(in_frequency, transform.view()),
     ];
+    let quantity = AxisQuantity::new("value", "");
     taken.plate(&Plate {
         title: "In 3D",
-        note: "",
         heads: vec![
             "(c) *G*(*u*, *v*)".to_owned(),
             "(d) its transform".to_owned(),
         ],
-        rows: vec![PlateRow {
-            name: "theory",
-            quantity: AxisQuantity::new("value", ""),
-            scale: Scale::Linear,
-            shared: false,
+        rows: vec![PlateRow::new(
+            "theory",
+            quantity,
+            Scale::Linear,
+            false,
             pictures,
-        }],
-        feet: Vec::new(),
-        bars: None,
-        side: None,
+        )],
+        ..Plate::default()
     })
 }
 

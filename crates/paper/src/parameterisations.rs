@@ -1,12 +1,12 @@
 //! Draws Fig. 8: the spectrum at the receiver over slopes, the spectrum over angles, and the
 //! difference of both.
 
-use crate::rows::{DECIBEL, Seen, feet, lettered, row};
+use crate::rows::{feet, lettered, spectra};
 use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, PlaneComparison};
 use etendue_field::{Orientation, Slices, percent, uncertain};
 use etendue_figures::{Figure, Plate};
-use etendue_report::pictures::spectrum_quantity;
+use etendue_report::pictures::Seen;
 use etendue_report::table::off_by;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
@@ -14,8 +14,8 @@ use ndarray::{Array2, Axis};
 /// Draws Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles.
 /// The paper states that treating slopes as angles causes no significant error.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let slopes = Seen::at(&taken.shots[0], "slopes")?;
-    let angles = Seen::at(&taken.shots[0], "angles")?;
+    let slopes = taken.shots[0].at("slopes")?;
+    let angles = taken.shots[0].at("angles")?;
     let measured = panels(
         [&slopes.found.measured, &angles.found.measured],
         [&slopes.found.radial.power, &angles.found.radial.power],
@@ -28,14 +28,14 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
         ],
     );
     let planes = [&slopes, &angles, &slopes];
-    let pictures = [&measured, &predicted].map(|panels| {
+    let rows = [("measured", &measured), ("predicted", &predicted)].map(|(name, panels)| {
         let both = planes.iter().zip(panels);
-        both.map(|(seen, power)| seen.spectrum(power.view()))
-            .collect()
+        spectra(
+            name,
+            true,
+            both.map(|(seen, power)| seen.spectrum(power.view())),
+        )
     });
-    let names = ["measured", "predicted"].into_iter().zip(pictures);
-    let rows =
-        names.map(|(name, pictures)| row(name, spectrum_quantity(), DECIBEL, true, pictures));
     let mut feet = feet(&[slopes, angles]);
     for (foot, seen) in feet.iter_mut().zip([&slopes, &angles]) {
         foot.extend(bandwidths(seen));
@@ -45,10 +45,9 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
         title: "Two parameterisations",
         note: "*ρ* runs along X in all panels. The difference is the mean of |*S*_{θ} − *S*_{u}|^{2} over azimuths, with each frequency of (b) at its place in (a). *B*: 95 % bandwidths in the azimuth where they are largest.",
         heads: lettered(&["by slopes *u*", "by angles *θ*", "difference"]),
-        rows: rows.collect(),
+        rows: rows.into(),
         feet,
-        bars: None,
-        side: None,
+        ..Plate::default()
     })?;
     // The pictures of the first row are measured; the last of them is the difference.
     figure.pictures[2].sigma = Some(difference_error(slopes.found, angles.found));

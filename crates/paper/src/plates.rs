@@ -1,13 +1,13 @@
 //! Draws figures that show several scenes, or several kinds of spectra, side by side.
 
 use crate::flat::Flat;
-use crate::rows::{DECIBEL, Seen, compared, feet, lettered, phase, power, row};
+use crate::rows::{compared, feet, lettered, light_fields, phase, power};
 use crate::scene_run::Shot;
 use crate::subject::FigureData;
 use etendue_field::{VirtualPlane, percent};
-use etendue_figures::{AxisQuantity, Bars, Figure, Plate, Scale};
+use etendue_figures::{AxisQuantity, Bars, Figure, Plate, PlateRow, Scale};
 use etendue_predict::Theory;
-use etendue_report::pictures::light_field_quantity;
+use etendue_report::pictures::{DECIBEL, Seen};
 use etendue_store::Failure;
 use etendue_theory::Operator;
 use ndarray::Array2;
@@ -15,10 +15,10 @@ use ndarray::Array2;
 /// Draws Fig. 4: the light of a point and the light of a spot, each at its source and after travel.
 pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
-        Seen::at(&taken.shots[0], "light")?,
-        Seen::at(&taken.shots[1], "receiver")?,
-        Seen::at(&taken.shots[2], "light")?,
-        Seen::at(&taken.shots[2], "receiver")?,
+        taken.shots[0].at("light")?,
+        taken.shots[1].at("receiver")?,
+        taken.shots[2].at("light")?,
+        taken.shots[2].at("receiver")?,
     ];
     let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {
@@ -27,8 +27,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),
-        bars: None,
-        side: None,
+        ..Plate::default()
     })
 }
 
@@ -42,8 +41,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "irradiance",
         "leaving",
     ];
-    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
-    let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
+    let seen = taken.shots[0].each(&names)?;
     let heads = [
         "1 emission",
         "2 travel",
@@ -62,24 +60,21 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let pictures = both.map(|(seen, power)| seen.spectrum(power.view()));
     let quantity = AxisQuantity::new("|*S*_{2D}|^{2}", "");
     let mut rows = compared(&seen, false);
-    rows.insert(1, row("2D", quantity, DECIBEL, false, pictures.collect()));
+    let pictures = pictures.collect();
+    rows.insert(1, PlateRow::new("2D", quantity, DECIBEL, false, pictures));
     taken.plate(&Plate {
         title: "The steps of diffuse shading",
         note: "Top: the scene in 2D (flatland), computed, with a row of blockers without jitter. Below: the scene in 3D with jittered blockers; its radial spectra are means over azimuths.",
         heads: heads.map(str::to_owned).to_vec(),
         rows,
         feet: feet(&seen),
-        bars: None,
-        side: None,
+        ..Plate::default()
     })
 }
 
 /// Draws Fig. 7: occluders that together block all light.
 pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let seen = taken
-        .shots
-        .iter()
-        .map(|shot| Seen::at(shot, "after_occluders"));
+    let seen = taken.shots.iter().map(|shot| shot.at("after_occluders"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
     let found = seen
         .iter()
@@ -91,22 +86,11 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             .collect()
     };
     let power = AxisQuantity::new("|*S*_{0}|^{2}", "");
+    let phase = AxisQuantity::new("arg *S*_{0}", "degrees");
     let rows = vec![
-        row(
-            "light field",
-            light_field_quantity(),
-            Scale::Linear,
-            true,
-            seen.iter().map(Seen::light_field).collect(),
-        ),
-        row("power", power, DECIBEL, true, pictures(0)),
-        row(
-            "phase",
-            AxisQuantity::new("arg *S*_{0}", "degrees"),
-            Scale::Phase,
-            true,
-            pictures(1),
-        ),
+        light_fields("light field", &seen, true),
+        PlateRow::new("power", power, DECIBEL, true, pictures(0)),
+        PlateRow::new("phase", phase, Scale::Phase, true, pictures(1)),
     ];
     taken.plate(&Plate {
         title: "Two occluders that together block all light",
@@ -116,8 +100,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             .to_vec(),
         rows,
         feet: feet(&seen),
-        bars: None,
-        side: None,
+        ..Plate::default()
     })
 }
 
@@ -141,9 +124,9 @@ fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
 
 /// Draws Fig. 9: blockers of three sizes.
 pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let seen = taken.shots.iter().map(|shot| Seen::at(shot, "receiver"));
+    let seen = taken.shots.iter().map(|shot| shot.at("receiver"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
-    let leaving = taken.shots.iter().map(|shot| Seen::at(shot, "leaving"));
+    let leaving = taken.shots.iter().map(|shot| shot.at("leaving"));
     let leaving: Vec<Seen<'_>> = leaving.collect::<Result<_, _>>()?;
     let mut feet = feet(&seen);
     for ((foot, seen), shot) in feet.iter_mut().zip(&seen).zip(taken.shots) {

@@ -1,53 +1,14 @@
 //! Collects the pictures of the planes of a figure's scenes, row by row.
 
-use crate::scene_run::Shot;
-use etendue_compare::PlaneComparison;
-use etendue_field::{Complex, Slices, VirtualPlane};
-use etendue_figures::{AxisQuantity, CurvePanel, Picture, PlateRow, Scale};
+use etendue_field::{Complex, Slices};
+use etendue_figures::{CurvePanel, Picture, PlateRow, Scale};
 use etendue_report::pictures::{
-    full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
-    spectrum_quantity, verdict_lines,
+    DECIBEL, Seen, full_radials, light_field_quantity, spectrum_quantity, verdict_lines,
 };
-use etendue_store::Failure;
-use ndarray::{Array2, ArrayView2, Axis as Along};
+use ndarray::{Array2, Axis as Along};
 
-/// Lowest level of a spectrum's colors, in decibels below its peak.
-pub(crate) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
 /// The phase is not shown where the power is below this share of the largest power.
 pub(crate) const MIN_POWER: f64 = 1e-5;
-
-/// A plane of a scene with its results.
-#[derive(Clone, Copy)]
-pub(crate) struct Seen<'a> {
-    pub(crate) plane: &'a VirtualPlane,
-    pub(crate) found: &'a PlaneComparison,
-}
-
-impl<'a> Seen<'a> {
-    pub(crate) fn all(shot: &'a Shot) -> impl Iterator<Item = Self> {
-        let both = shot.scene.planes.iter().zip(&shot.planes);
-        both.map(|(plane, found)| Self { plane, found })
-    }
-
-    /// Returns the plane with the given name.
-    pub(crate) fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
-        let missing = || Failure::cannot_run(format!("{} has no plane {name}", shot.scene.name));
-        Self::all(shot)
-            .find(|seen| seen.plane.name == name)
-            .ok_or_else(missing)
-    }
-
-    pub(crate) fn light_field(&self) -> Picture<'a> {
-        let values = self.found.projection.mean.values.view();
-        let [x, y] = light_field_axes(self.plane, &self.found.projection.mean.grid);
-        Picture { x, y, values }
-    }
-
-    pub(crate) fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
-        let [x, y] = spectrum_axes(self.plane);
-        Picture { x, y, values }
-    }
-}
 
 /// Returns the power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
 pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
@@ -72,50 +33,57 @@ pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     })
 }
 
-pub(crate) fn row<'a>(
-    name: &'a str,
-    quantity: AxisQuantity,
-    scale: Scale,
-    shared: bool,
-    pictures: Vec<Picture<'a>>,
-) -> PlateRow<'a> {
-    PlateRow {
+/// Returns a row of light fields.
+pub(crate) fn light_fields<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
+    let pictures = seen.iter().map(Seen::light_field).collect();
+    PlateRow::new(
         name,
-        quantity,
-        scale,
+        light_field_quantity(),
+        Scale::Linear,
         shared,
         pictures,
-    }
+    )
+}
+
+/// Returns a row of spectra.
+pub(crate) fn spectra<'a>(
+    name: &'a str,
+    shared: bool,
+    pictures: impl Iterator<Item = Picture<'a>>,
+) -> PlateRow<'a> {
+    PlateRow::new(
+        name,
+        spectrum_quantity(),
+        DECIBEL,
+        shared,
+        pictures.collect(),
+    )
+}
+
+/// Returns a row of measured spectra.
+pub(crate) fn measured<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
+    let power = seen
+        .iter()
+        .map(|seen| seen.spectrum(seen.found.radial.power.view()));
+    spectra(name, shared, power)
 }
 
 /// Returns the light fields and the measured and predicted spectra of some planes, and their full
 /// radial spectra if there are any.
 pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
-    let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
-    let measured = pictures(&|seen| seen.spectrum(seen.found.radial.power.view()));
-    let predicted = pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view()));
-    let spectra = |name, pictures| row(name, spectrum_quantity(), DECIBEL, shared, pictures);
+    let predicted = seen
+        .iter()
+        .map(|seen| seen.spectrum(seen.found.predicted_radial.view()));
     let mut rows = vec![
-        row(
-            "light field",
-            light_field_quantity(),
-            Scale::Linear,
-            shared,
-            pictures(&Seen::light_field),
-        ),
-        spectra("measured", measured),
-        spectra("predicted", predicted),
+        light_fields("light field", seen, shared),
+        measured("measured", seen, shared),
+        spectra("predicted", shared, predicted),
     ];
-    let full = seen.iter().map(|seen| {
-        let full = seen.found.full_radial.as_ref()?;
-        Some(full_radial(seen.plane, full))
-    });
-    let full: Option<Vec<[Picture<'a>; 2]>> = full.collect();
-    for (i, name) in ["full radial", "prediction"].into_iter().enumerate() {
-        let Some(full) = &full else { break };
-        let pictures = full.iter().map(|both| both[i].clone()).collect();
-        rows.push(row(name, full_radial_quantity(), DECIBEL, shared, pictures));
-    }
+    rows.extend(
+        full_radials(seen.iter().copied(), shared)
+            .into_iter()
+            .flatten(),
+    );
     rows
 }
 

@@ -5,6 +5,7 @@ use etendue_compare::{PlaneComparison, TESTS};
 use etendue_field::FrequencyAxis;
 use etendue_pipeline::{Reporter, Run, field, judged};
 use etendue_predict::{Applicability, test_each};
+use etendue_report::pictures::Seen;
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::{Failure, Method, machine};
 use std::path::Path;
@@ -51,6 +52,26 @@ impl Shot {
             theories: case.theories,
             planes,
         })
+    }
+}
+
+impl Shot {
+    /// Returns all planes with their results.
+    pub(crate) fn all(&self) -> impl Iterator<Item = Seen<'_>> {
+        let both = self.scene.planes.iter().zip(&self.planes);
+        both.map(|(plane, found)| Seen { plane, found })
+    }
+
+    /// Returns the plane with the given name.
+    pub(crate) fn at(&self, name: &str) -> Result<Seen<'_>, Failure> {
+        let missing = || Failure::cannot_run(format!("{} has no plane {name}", self.scene.name));
+        let mut all = self.all();
+        all.find(|seen| seen.plane.name == name).ok_or_else(missing)
+    }
+
+    /// Returns the planes with the given names.
+    pub(crate) fn each(&self, names: &[&str]) -> Result<Vec<Seen<'_>>, Failure> {
+        names.iter().map(|name| self.at(name)).collect()
     }
 }
 

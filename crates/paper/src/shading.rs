@@ -3,16 +3,16 @@
 
 use crate::criteria::criteria;
 use crate::product::{Explanation, ShadedCylinder};
-use crate::rows::{Seen, compared, feet, letter_panels, lettered};
+use crate::rows::{compared, feet, letter_panels, lettered};
 use crate::subject::FigureData;
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, stacked};
+use etendue_report::pictures::Seen;
 use etendue_store::Failure;
 
 /// Draws Fig. 14: a diffuse sphere in an environment.
 pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["environment", "curvature", "cosine", "reflection"];
-    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
-    let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
+    let seen = taken.shots[0].each(&names)?;
     let steps = taken.plate(&Plate {
         title: "Diffuse shading under an environment map",
         note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears the spectrum onto *ρ* = *kν*, the cosine blurs it along *ν*, and the light that leaves \
@@ -20,8 +20,7 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: lettered(&names),
         rows: compared(&seen, false),
         feet: feet(&seen),
-        bars: None,
-        side: None,
+        ..Plate::default()
     })?;
     Ok(stacked(&[steps, product(taken)?]))
 }
@@ -70,7 +69,7 @@ fn product(taken: &FigureData<'_>) -> Result<Figure, Failure> {
 
 /// Draws Fig. 15: the steps of section 6.2, and the criteria of this section compared with photons.
 pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
+    let seen: Vec<Seen<'_>> = taken.shots[0].all().collect();
     let heads = [
         "incidence",
         "curvature",
@@ -86,8 +85,8 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),
-        bars: None,
         side: Some(54.0),
+        ..Plate::default()
     })?;
     Ok(stacked(&[steps, criteria(taken, 'h')?]))
 }

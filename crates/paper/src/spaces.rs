@@ -1,15 +1,15 @@
 //! Draws Figs. 3 and 13: coordinates of rays, and the error if one kind of coordinates is treated
 //! as another.
 
-use crate::rows::{Seen, compared, feet, letter_panels, lettered, row};
+use crate::rows::{compared, feet, letter_panels, lettered};
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_field::percent;
 use etendue_figures::{
-    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Scale, stacked,
+    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, PlateRow, stacked,
 };
 use etendue_predict::{Applicability, Convergence, ConvergenceStep, converge};
-use etendue_report::pictures::{across, across_axes, light_field_quantity};
+use etendue_report::pictures::across;
 use etendue_store::Failure;
 use ndarray::Array2;
 
@@ -17,16 +17,15 @@ use ndarray::Array2;
 /// travel.
 pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["two_plane", "travel", "plane_sphere"];
-    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
-    let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
+    let seen = taken.shots[0].each(&names)?;
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and the effect of travel",
         note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears the stripes along *x*; angles are measured along T, which is opposite to X.",
         heads: lettered(&["slopes", "slopes, after 0.5 m", "angles, there"]),
         rows: compared(&seen, false),
         feet: feet(&seen),
-        bars: None,
         side: Some(88.0),
+        ..Plate::default()
     })?;
     let panels = shrunk(&taken.also[0], &["angles"])?;
     let error = orders(
@@ -43,11 +42,10 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
 pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let [mirror, copper] = [&taken.shots[0], &taken.shots[1]];
     let seen = [
-        Seen::at(mirror, "curvature")?,
-        Seen::at(mirror, "outgoing")?,
-        Seen::at(copper, "reflection")?,
-        Seen::at(copper, "outgoing")?,
-    ];
+        mirror.each(&["curvature", "outgoing"])?,
+        copper.each(&["reflection", "outgoing"])?,
+    ]
+    .concat();
     let others = seen.iter().map(|seen| {
         let half = seen.found.projection.mean.grid;
         across(&seen.found.measured, [half.half_x, half.half_u])
@@ -55,17 +53,14 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let others: Vec<Array2<f64>> = others.collect::<Option<_>>().unwrap_or_default();
     let mut rows = compared(&seen, false);
     rows[0].name = "along";
-    let pictures = seen.iter().zip(&others).map(|(seen, values)| {
-        let [x, y] = across_axes(seen.plane, &seen.found.projection.mean.grid);
-        etendue_figures::Picture {
-            x,
-            y,
-            values: values.view(),
-        }
-    });
-    let pictures = pictures.collect();
-    let quantity = light_field_quantity();
-    rows.insert(1, row("across", quantity, Scale::Linear, false, pictures));
+    let pictures = seen.iter().zip(&others);
+    let pictures = pictures.map(|(seen, values)| seen.across(values.view()));
+    let across = PlateRow {
+        name: "across",
+        pictures: pictures.collect(),
+        ..rows[0].clone()
+    };
+    rows.insert(1, across);
     let mut feet = feet(&seen);
     for (lines, seen) in feet.iter_mut().zip(&seen) {
         if let Some(first_order) = &seen.found.report.first_order {
@@ -84,8 +79,8 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         ]),
         rows,
         feet,
-        bars: None,
         side: Some(76.0),
+        ..Plate::default()
     })?;
     let panels = shrunk(
         &("twist", etendue_scenes::TABLE1_TWIST),

@@ -1,9 +1,9 @@
 //! Draws Table 1: for each operator, the light before the operator and the light after it.
 
-use crate::rows::{DECIBEL, Seen, row};
+use crate::rows::{light_fields, measured};
 use crate::subject::FigureData;
-use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
-use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
+use etendue_figures::{Figure, Plate, stacked};
+use etendue_report::pictures::Seen;
 use etendue_store::Failure;
 
 /// An operator of Table 1. The first text is the name of the operator, a line break and the formula
@@ -81,7 +81,7 @@ pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
                 let [scene, plane] = planes[side];
                 let shot = taken.shots.iter().find(|shot| shot.scene.name == scene);
                 let missing = || Failure::cannot_run(format!("no scene {scene}"));
-                Seen::at(shot.ok_or_else(missing)?, plane)
+                shot.ok_or_else(missing)?.at(plane)
             });
             seen.collect::<Result<Vec<Seen<'_>>, Failure>>()
         });
@@ -91,28 +91,15 @@ pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             title,
             note: if i == 0 { NOTE } else { "" },
             heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),
-            rows: rows(&before, &after),
-            feet: Vec::new(),
-            bars: None,
+            rows: vec![
+                light_fields("before", &before, false),
+                light_fields("after", &after, false),
+                measured("before", &before, false),
+                measured("after", &after, false),
+            ],
             side: Some(SIDE),
+            ..Plate::default()
         })
     });
     Ok(stacked(&parts.collect::<Result<Vec<Figure>, _>>()?))
-}
-
-fn rows<'a>(before: &[Seen<'a>], after: &[Seen<'a>]) -> Vec<PlateRow<'a>> {
-    let light = |seen: &[Seen<'a>]| seen.iter().map(Seen::light_field).collect();
-    let power = |seen: &[Seen<'a>]| -> Vec<Picture<'a>> {
-        let pictures = seen
-            .iter()
-            .map(|seen| seen.spectrum(seen.found.radial.power.view()));
-        pictures.collect()
-    };
-    let (fields, spectra) = (light_field_quantity, spectrum_quantity);
-    vec![
-        row("before", fields(), Scale::Linear, false, light(before)),
-        row("after", fields(), Scale::Linear, false, light(after)),
-        row("before", spectra(), DECIBEL, false, power(before)),
-        row("after", spectra(), DECIBEL, false, power(after)),
-    ]
 }

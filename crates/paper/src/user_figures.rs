@@ -2,13 +2,13 @@
 //! are shown side by side at a plane.
 
 use crate::request::{FigureRequest, Wanted};
-use crate::rows::{Seen, compared, feet};
+use crate::rows::{compared, feet};
 use crate::subject::{FigureData, Subject};
 use etendue_field::grouped;
 use etendue_figures::{Figure, Plate};
 use etendue_pipeline::limits;
 use etendue_pipeline::load::{self, SceneSource};
-use etendue_report::pictures::spectra_are;
+use etendue_report::pictures::{Seen, spectra_are};
 use etendue_report::shell_word;
 use etendue_report::table::spaced;
 use etendue_scene::Scene;
@@ -128,7 +128,7 @@ fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
 fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen
-        .map(|(shot, plane)| Seen::at(shot, plane))
+        .map(|(shot, plane)| shot.at(plane))
         .collect::<Result<_, _>>()?;
     let heads = taken.shots.iter().map(|shot| spaced(&shot.scene.name));
     let photons = taken.shots.iter().map(|shot| grouped(shot.photons));
@@ -143,8 +143,7 @@ fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: heads.collect(),
         rows: compared(&seen, true),
         feet: feet(&seen),
-        bars: None,
-        side: None,
+        ..Plate::default()
     })
 }
 

@@ -10,9 +10,6 @@ use etendue_scene::Scene;
 use etendue_spectrum::CrossPower;
 use etendue_store::Failure;
 
-/// Lowest level of the colors of a spectrum, in decibels below the spectrum's peak.
-const FLOOR: f64 = -50.0;
-
 /// Returns the spectrum of plane number `index` at azimuth 0 with the ellipses of the spectrum's
 /// second moments.
 pub fn drawn(scene: &Scene, found: &SceneCovariances, index: usize) -> Result<Figure, Failure> {
@@ -20,7 +17,6 @@ pub fn drawn(scene: &Scene, found: &SceneCovariances, index: usize) -> Result<Fi
     let report = &found.reports[index];
     let power = CrossPower::of_slice(measurement, index, 0).map_err(Failure::cannot_run)?;
     let power = power.power();
-    let [x, y] = pictures::spectrum_axes(plane);
     let ellipse = |name: &str, of: fn(&SliceMoment) -> Option<f64>| {
         let [a, b, c] = report.slice.each_ref().map(of);
         let covariance = [a?, b?, c?];
@@ -43,13 +39,9 @@ pub fn drawn(scene: &Scene, found: &SceneCovariances, index: usize) -> Result<Fi
     ellipses(&Ellipses {
         title: &title,
         note: &note,
-        picture: Picture {
-            x,
-            y,
-            values: power.view(),
-        },
+        picture: Picture::new(pictures::spectrum_axes(plane), power.view()),
         quantity: AxisQuantity::new("|*S*_{0}|^{2}", ""),
-        floor: FLOOR,
+        scale: pictures::DECIBEL,
         ellipses: all,
     })
     .map_err(Failure::cannot_run)

@@ -4,15 +4,15 @@
 mod chance;
 mod cross_section;
 mod finer;
+mod seen;
 mod strip;
 mod words;
 
 pub use cross_section::across;
-pub use strip::{full_radial, path, spectra_are, strip_of};
-pub use words::{
-    across_axes, full_radial_axes, full_radial_quantity, light_field_axes, light_field_quantity,
-    spectrum_axes, spectrum_quantity,
-};
+pub use seen::{Seen, full_radials};
+pub use strip::{path, spectra_are, strip_of};
+pub(crate) use words::{light_field_axes, spectrum_axes};
+pub use words::{light_field_quantity, spectrum_quantity};
 
 use crate::drawing;
 use crate::table::{self, spaced, word};
@@ -28,8 +28,8 @@ use finer::{Finer, finer_power};
 use std::path::Path;
 use words::CoordinateNames;
 
-/// Lowest level of a spectrum's colors, in decibels below its peak.
-const FLOOR: f64 = -50.0;
+/// The colors of a spectrum, in decibels below its peak.
+pub const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
 
 /// The picture files of a plane, and the numbers behind them.
 pub const NAMES: [&str; 6] = [
@@ -80,7 +80,7 @@ fn primal(
 ) -> Result<Figure, Failure> {
     let words = CoordinateNames::of(at);
     let measured = &plane.projection.mean;
-    let [x, u] = words.projection_axes(&measured.grid);
+    let [x, u] = light_field_axes(at, &measured.grid);
     let difference = z(
         &measured.values,
         &prediction.projection.values,
@@ -118,8 +118,7 @@ fn spectrum(
     at: &VirtualPlane,
     plane: &PlaneComparison,
 ) -> Result<Figure, Failure> {
-    let words = CoordinateNames::of(at);
-    let [rho, nu] = words.frequency_axes(&plane.measured.grid);
+    let [rho, nu] = spectrum_axes(at);
     let difference = radial_z(plane);
     let finer = Finer::new(&plane.measured.grid, &at.window);
     let finer = finer.map(|finer| {
@@ -142,7 +141,7 @@ fn spectrum(
         x: rho,
         y: nu,
         quantity: spectrum_quantity(),
-        scale: Scale::Decibel { floor: FLOOR },
+        scale: DECIBEL,
         sides,
         measured: plane.radial.power.view(),
         predicted: plane.predicted_radial.view(),
@@ -191,39 +190,27 @@ pub fn drawn_scene(scene: &Scene, path: &Path) -> Result<Vec<u8>, Failure> {
 pub struct PictureFiles {
     name: String,
     png: Vec<u8>,
-    svg: String,
-    csv: String,
+    figure: Figure,
 }
 
 impl PictureFiles {
     /// Draws the pixels of a figure. `name` is the path of its files, without their extensions.
     pub fn new(name: String, figure: Figure) -> Result<Self, Failure> {
         let png = figure.png().map_err(Failure::cannot_run)?;
-        let Figure { svg, csv, .. } = figure;
-        Ok(Self {
-            name,
-            png,
-            svg,
-            csv,
-        })
+        Ok(Self { name, png, figure })
     }
 
     /// Returns the figure as SVG.
     pub fn svg(&self) -> &str {
-        &self.svg
+        &self.figure.svg
     }
 
     /// Writes the files.
     pub fn write(&self, results: &mut Results) -> Result<(), Failure> {
-        let Self {
-            name,
-            png,
-            svg,
-            csv,
-        } = self;
+        let Self { name, png, figure } = self;
         results.write(&format!("{name}.png"), png)?;
-        results.write(&format!("{name}.svg"), svg.as_bytes())?;
-        results.write(&format!("{name}.csv"), csv.as_bytes())
+        results.write(&format!("{name}.svg"), figure.svg.as_bytes())?;
+        results.write(&format!("{name}.csv"), figure.csv.as_bytes())
     }
 }
 

@@ -11,7 +11,7 @@ use base64::Engine;
 use etendue_field::Side;
 use etendue_figures::{
     Axis, AxisQuantity, Bars, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow,
-    Scale, Section, Segment, SegmentKind, Strip, StripColumn, Style, comparison, plate, strip,
+    Scale, Section, Segment, SegmentKind, Strip, Style, comparison, plate, strip,
 };
 use ndarray::{Array2, ArrayView2};
 
@@ -120,38 +120,34 @@ pub fn scene(count: usize) -> Section {
 }
 
 pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
-    let picture = || Picture {
-        x: Axis::edges("*x*", "m", [-1.0, 1.0]),
-        y: Axis::edges("*u*", "", [-1.0, 1.0]),
-        values,
+    let ends = |name, unit| Axis::edges(name, unit, [-1.0, 1.0]);
+    let picture = || Picture::new([ends("*x*", "m"), ends("*u*", "")], values);
+    let guide = Guide {
+        through: [0.0, 0.0],
+        slope: -1.0,
+        is_across: false,
     };
-    let column = || StripColumn {
-        light_field: picture(),
-        spectrum: picture(),
-        finer: None,
-        across: None,
-        predicted: None,
-        full_radial: None,
-        off_chain: None,
-        verdict: vec![
-            "*p* = 0.5, pass".to_owned(),
-            "*χ*^{2}/dof = 1.01".to_owned(),
-        ],
-        guides: vec![Guide {
-            through: [0.0, 0.0],
-            slope: -1.0,
-            is_across: false,
-        }],
+    let spectrum = || Picture {
+        guides: vec![guide],
+        ..picture()
     };
+    let planes = || section.planes.iter();
+    let row = |name, scale, unit, pictures| {
+        let quantity = AxisQuantity::new("*L*", unit);
+        PlateRow::new(name, quantity, scale, false, pictures)
+    };
+    let verdict = ["*p* = 0.5, pass", "*χ*^{2}/dof = 1.01"].map(str::to_owned);
+    let light_fields = planes().map(|_| picture()).collect();
+    let spectra = planes().map(|_| spectrum()).collect();
     let path = Strip {
         title: "The path",
         note: "",
         section,
-        columns: section.planes.iter().map(|_| column()).collect(),
-        light_field: AxisQuantity::new("*L*", "W m⁻² sr⁻¹"),
-        spectrum: AxisQuantity::new("|*S*|^{2}", "W²"),
-        full_radial: AxisQuantity::new("|*S*|^{2}", "W²"),
-        floor: -60.0,
+        rows: vec![
+            row("light field", Scale::Linear, "W m⁻² sr⁻¹", light_fields),
+            row("spectrum", DECIBEL, "W²", spectra),
+        ],
+        verdicts: planes().map(|_| verdict.to_vec()).collect(),
     };
     strip(&path, &Style::default()).unwrap()
 }
@@ -178,18 +174,14 @@ pub fn uneven_grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
 fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 2]) -> Figure {
     let picture = |i| {
         let [x, y] = ends(i);
-        Picture {
-            x: Axis::edges("*ρ*", "cycles/m", [-x, x]),
-            y: Axis::edges("*ν*", "cycles per unit slope", [-y, y]),
-            values,
-        }
+        let x = Axis::edges("*ρ*", "cycles/m", [-x, x]);
+        let y = Axis::edges("*ν*", "cycles per unit slope", [-y, y]);
+        Picture::new([x, y], values)
     };
-    let row = |name: &'static str, scale, shared| PlateRow {
-        name,
-        quantity: AxisQuantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m"),
-        scale,
-        shared,
-        pictures: (0..count).map(picture).collect(),
+    let row = |name: &'static str, scale, shared| {
+        let quantity = AxisQuantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m");
+        let pictures = (0..count).map(picture).collect();
+        PlateRow::new(name, quantity, scale, shared, pictures)
     };
     let some = |value: f64| vec![Some(value); count];
     let rows = Plate {

@@ -2,15 +2,13 @@
 
 use super::cross_section::{across, differs_across};
 use super::finer::{Finer, finer_power};
-use super::words::{
-    CoordinateNames, across_axes, full_radial_axes, full_radial_quantity, light_field_quantity,
-    spectrum_quantity,
-};
-use super::{FLOOR, PictureFiles, verdict_lines};
+use super::seen::{Seen, full_radials};
+use super::words::{light_field_quantity, spectrum_quantity};
+use super::{DECIBEL, PictureFiles, verdict_lines};
 use crate::drawing;
-use etendue_compare::{Class, FullRadialComparison, PlaneComparison, Verdict};
+use etendue_compare::{Class, PlaneComparison, Verdict};
 use etendue_field::{Side, Slices, VirtualPlane, grouped};
-use etendue_figures::{AcrossPictures, Figure, Guide, Picture, Strip, StripColumn, Style, strip};
+use etendue_figures::{AxisQuantity, Figure, Guide, Picture, PlateRow, Scale, Strip, Style, strip};
 use etendue_pipeline::MeasuredScene;
 use etendue_predict::{Applicability, Theory, stands_before};
 use etendue_scene::Scene;
@@ -38,39 +36,56 @@ pub fn strip_of(
 ) -> Result<Figure, Failure> {
     let along = in_order(scene, theories, planes);
     let is_figure = style.is_some();
-    let mut columns: Vec<StripColumn<'_>> = along
-        .iter()
-        .map(|at| column(scene, at, is_figure))
-        .collect();
-    let dashed = predicted_lines(&columns, planes);
-    let off_chain = off_chains(&along);
-    for (column, values) in columns.iter_mut().zip(&off_chain) {
-        column.off_chain = Some(Picture {
-            values: values.view(),
-            ..column.spectrum.clone()
-        });
-    }
-    let mut section = drawing::cross_section(scene, along.iter().map(|at| at.plane));
+    let mut section = drawing::cross_section(scene, along.iter().map(|at| at.seen.plane));
     let is_even = |plane: &VirtualPlane| plane.grid.azimuths.is_multiple_of(2);
     let differs = scene.planes.iter().all(is_even)
         && (section.other.is_some() || planes.iter().any(differs_across));
-    let is_seen = !is_figure && differs;
     if is_figure {
         // A figure has no space for a second cut and the light field of this cut.
         section.other = None;
     }
-    let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
+    let dashed = predicted_lines(&along, planes);
+    let both = (differs && !is_figure).then(|| along.iter().map(BothSlices::of).collect());
     let both: Option<Vec<BothSlices>> = both.flatten();
-    for (column, both) in columns.iter_mut().zip(both.iter().flatten()) {
-        both.show(column);
-    }
+    let off_chain = off_chains(&along);
     // Figures are not interpolated, because they were run at finer frequencies.
-    let drawn = along.par_iter().filter(|_| !is_figure && both.is_none());
-    let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
-    for (column, values) in columns.iter_mut().zip(&drawn) {
-        column.finer = values.as_ref().map(|values| Picture {
-            values: values.view(),
-            ..column.spectrum.clone()
+    let finer = along.par_iter().filter(|_| !is_figure && both.is_none());
+    let finer: Vec<_> = finer.map(PlaneOnPath::finer_power).collect();
+    let seen = || along.iter().map(|at| at.seen);
+    let mut rows = vec![fields("light field", seen().map(|seen| seen.light_field()))];
+    if let Some(both) = &both {
+        let sides = || seen().zip(both);
+        let spectra_at = |side| sides().map(move |(seen, both)| both.spectrum(seen, side));
+        rows.push(spectra("spectrum", spectra_at(0)));
+        let across = sides().map(|(seen, both)| seen.across(both.light_field.view()));
+        rows.push(fields("across", across));
+        rows.push(spectra("its spectrum", spectra_at(1)));
+    } else {
+        let finer = finer.iter().map(|values| Some(values.as_ref()?.view()));
+        let finer = finer.chain(std::iter::repeat(None));
+        let means = along.iter().zip(finer).map(|(at, finer)| Picture {
+            finer,
+            ..at.spectrum(&at.seen.found.radial.power)
+        });
+        rows.push(spectra("spectrum", means));
+    }
+    if is_figure {
+        let predicted = along.iter();
+        let predicted = predicted.map(|at| at.spectrum(&at.seen.found.predicted_radial));
+        rows.push(spectra("predicted", predicted));
+    }
+    if let Some([measured, predicted]) = full_radials(seen(), false) {
+        rows.push(measured);
+        rows.extend(is_figure.then_some(predicted));
+    }
+    if !off_chain.is_empty() {
+        let quantity = AxisQuantity::new("off the chain", "% of the peak");
+        let pictures = seen().zip(&off_chain);
+        let pictures = pictures.map(|(seen, values)| seen.spectrum(values.view()));
+        let pictures = pictures.collect();
+        rows.push(PlateRow {
+            bar: Some("|*S* − chain|"),
+            ..PlateRow::new("off the chain", quantity, Scale::Linear, true, pictures)
         });
     }
     let shown = match (&both, is_figure && differs) {
@@ -90,13 +105,27 @@ pub fn strip_of(
             scene.file.run.color.suffix(),
         ),
         section: &section,
-        columns,
-        light_field: light_field_quantity(),
-        spectrum: spectrum_quantity(),
-        full_radial: full_radial_quantity(),
-        floor: FLOOR,
+        rows,
+        verdicts: seen().map(|seen| verdict_lines(seen.found)).collect(),
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
+}
+
+/// Returns a row of light fields, each relative to its largest value.
+fn fields<'a>(name: &'a str, pictures: impl Iterator<Item = Picture<'a>>) -> PlateRow<'a> {
+    let pictures = pictures.collect();
+    PlateRow::new(name, light_field_quantity(), Scale::Linear, false, pictures)
+}
+
+/// Returns a row of spectra, each in decibels below its largest value.
+fn spectra<'a>(name: &'a str, pictures: impl Iterator<Item = Picture<'a>>) -> PlateRow<'a> {
+    PlateRow::new(
+        name,
+        spectrum_quantity(),
+        DECIBEL,
+        false,
+        pictures.collect(),
+    )
 }
 
 /// The note below a strip if the light at azimuth 0 differs from the light at 90°.
@@ -107,11 +136,11 @@ const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*).
 /// differ.
 const MIXED: &str = "; the light differs between azimuths 0 and 90°";
 
-/// A plane with its theory and its comparison.
+/// A plane with its results, along the path.
 struct PlaneOnPath<'a> {
-    plane: &'a VirtualPlane,
-    compared: &'a PlaneComparison,
-    theory: &'a Applicability,
+    seen: Seen<'a>,
+    /// Predicted lines over the spectrum.
+    guides: Vec<Guide>,
 }
 
 /// Returns the planes in the order in which light meets them.
@@ -121,41 +150,51 @@ fn in_order<'a>(
     planes: &'a [PlaneComparison],
 ) -> Vec<PlaneOnPath<'a>> {
     let each = scene.planes.iter().zip(planes).zip(theories);
-    let each = each.map(|((plane, compared), theory)| PlaneOnPath {
-        plane,
-        compared,
-        theory,
+    let each = each.map(|((plane, found), theory)| {
+        let seen = Seen { plane, found };
+        PlaneOnPath {
+            seen,
+            guides: all_guides(scene, seen, theory),
+        }
     });
     let mut along: Vec<_> = each.collect();
-    let place = |at: &PlaneOnPath<'_>| (at.plane.distance, at.plane.side == Side::After);
+    let place = |at: &PlaneOnPath<'_>| (at.seen.plane.distance, at.seen.plane.side == Side::After);
     along.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     along
 }
 
-impl PlaneOnPath<'_> {
+impl<'a> PlaneOnPath<'a> {
+    /// Returns a spectrum with its predicted lines.
+    fn spectrum(&self, power: &'a Array2<f64>) -> Picture<'a> {
+        Picture {
+            guides: self.guides.clone(),
+            ..self.seen.spectrum(power.view())
+        }
+    }
+
     /// Returns the measured radial power between the frequencies of the scene.
     fn finer_power(&self) -> Option<Array2<f64>> {
         let PlaneComparison {
             measured, radial, ..
-        } = self.compared;
-        let finer = Finer::new(&measured.grid, &self.plane.window)?;
+        } = self.seen.found;
+        let finer = Finer::new(&measured.grid, &self.seen.plane.window)?;
         Some(finer_power(&finer.of(measured), measured, &radial.power))
     }
 }
 
-/// The spectra at azimuths 0 and 90°, and the light field in (y, v).
+/// The light field in (y, v), and the spectra at azimuths 0 and 90° with their predicted lines.
 struct BothSlices {
-    axes: [etendue_figures::Axis; 2],
     light_field: Array2<f64>,
     spectra: [Array2<f64>; 2],
     finer: Option<[Array2<f64>; 2]>,
+    guides: [Vec<Guide>; 2],
 }
 
 impl BothSlices {
     /// Returns `None` if there is no slice at 90°.
     fn of(at: &PlaneOnPath<'_>) -> Option<Self> {
-        let measured = &at.compared.measured;
-        let grid = &at.compared.projection.mean.grid;
+        let measured = &at.seen.found.measured;
+        let grid = &at.seen.found.projection.mean.grid;
         let light_field = across(measured, [grid.half_x, grid.half_u])?;
         let powers = |slices: &Slices| {
             let full = slices.full();
@@ -164,66 +203,55 @@ impl BothSlices {
                 slice.mapv(|value| value.norm_sqr())
             })
         };
-        let finer = Finer::new(&measured.grid, &at.plane.window);
+        let finer = Finer::new(&measured.grid, &at.seen.plane.window);
         Some(Self {
-            axes: across_axes(at.plane, grid),
             light_field,
             spectra: powers(measured),
             finer: finer.map(|finer| powers(&finer.of(measured))),
+            guides: by_azimuth(&at.guides),
         })
     }
 
-    /// Replaces the mean over azimuths by the slices at 0 and 90°.
-    fn show<'a>(&'a self, column: &mut StripColumn<'a>) {
-        let spectrum = column.spectrum.clone();
-        let with = |values: &'a Array2<f64>| Picture {
-            values: values.view(),
-            ..spectrum.clone()
-        };
-        let [own, other] = self.spectra.each_ref().map(with);
-        column.spectrum = own;
-        let finer = self.finer.as_ref().map(|both| both.each_ref().map(with));
-        let [finer, other_finer] = finer.map_or([None, None], |both| both.map(Some));
-        column.finer = finer;
-        // If there are two lines through the origin, the first line belongs to the plane of
-        // incidence.
-        let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
-        let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
-        if let [own, other] = shears[..]
-            && other.is_across
-        {
-            column
-                .guides
-                .retain(|guide| *guide != other || own == other);
+    /// Returns the spectrum at azimuth 0 (side 0) or 90° (side 1).
+    fn spectrum<'a>(&'a self, seen: Seen<'_>, side: usize) -> Picture<'a> {
+        Picture {
+            finer: self.finer.as_ref().map(|finer| finer[side].view()),
+            guides: self.guides[side].clone(),
+            ..seen.spectrum(self.spectra[side].view())
         }
-        let [x, y] = self.axes.clone();
-        column.across = Some(AcrossPictures {
-            light_field: Picture {
-                x,
-                y,
-                values: self.light_field.view(),
-            },
-            spectrum: other,
-            finer: other_finer,
-            // Behind parallel planes, each line belongs to a light, and to both pictures.
-            guides: if shears.iter().all(|guide| !guide.is_across) {
-                shears
-            } else {
-                shears.last().copied().into_iter().collect()
-            },
-        });
     }
+}
+
+/// Returns the lines over the spectra at azimuths 0 and 90°. If there are two lines through the
+/// origin, the first line belongs to the plane of incidence.
+fn by_azimuth(guides: &[Guide]) -> [Vec<Guide>; 2] {
+    let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
+    let shears: Vec<Guide> = guides.iter().filter(is_shear).copied().collect();
+    let mut own = guides.to_vec();
+    if let [first, other] = shears[..]
+        && other.is_across
+    {
+        own.retain(|guide| *guide != other || first == other);
+    }
+    // Behind parallel planes, each line belongs to a light, and to both pictures.
+    let is_shared = shears.iter().all(|guide| !guide.is_across);
+    let across = if is_shared {
+        shears
+    } else {
+        shears.last().copied().into_iter().collect()
+    };
+    [own, across]
 }
 
 /// Returns the differences between the photons and the first-order chains, if the map of one chain
 /// is wrong.
 fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     let fails = along.iter().any(|at| {
-        let chain = at.compared.report.first_order.as_ref();
+        let chain = at.seen.found.report.first_order.as_ref();
         chain.is_some_and(|chain| chain.verdict == Verdict::Fail)
     });
     let each = along.iter().filter(|_| fails);
-    each.map(|at| off_chain(at.compared)).collect()
+    each.map(|at| off_chain(at.seen.found)).collect()
 }
 
 /// Describes which spectra of planes are drawn.
@@ -237,8 +265,8 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
 }
 
 /// Returns a description of the predicted lines of a strip.
-fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
-    let mut guides = columns.iter().flat_map(|column| &column.guides);
+fn predicted_lines(along: &[PlaneOnPath<'_>], planes: &[PlaneComparison]) -> &'static str {
+    let mut guides = along.iter().flat_map(|at| &at.guides);
     let has_replicas = guides.clone().any(|guide| guide.through != [0.0, 0.0]);
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
     match (guides.next(), is_exact) {
@@ -262,71 +290,27 @@ fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     }
 }
 
-/// Returns the full radial spectrum of a plane, measured and predicted.
-pub fn full_radial<'a>(
-    plane: &VirtualPlane,
-    compared: &'a FullRadialComparison,
-) -> [Picture<'a>; 2] {
-    let [x, y] = full_radial_axes(plane, &compared.measured);
-    [&compared.measured.power, &compared.predicted].map(|power| Picture {
-        x: x.clone(),
-        y: y.clone(),
-        values: power.view(),
-    })
-}
-
-/// Returns the column of pictures under a plane.
-fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColumn<'a> {
-    let PlaneOnPath {
-        plane,
-        compared,
-        theory,
-    } = *at;
-    let projection = &compared.projection.mean;
-    let words = CoordinateNames::of(plane);
-    let [x, u] = words.projection_axes(&projection.grid);
-    let [rho, nu] = words.frequency_axes(&compared.measured.grid);
-    let spectrum = |power: &'a Array2<f64>| Picture {
-        x: rho.clone(),
-        y: nu.clone(),
-        values: power.view(),
-    };
-    StripColumn {
-        light_field: Picture {
-            x,
-            y: u,
-            values: projection.values.view(),
-        },
-        spectrum: spectrum(&compared.radial.power),
-        finer: None,
-        across: None,
-        predicted: is_figure.then(|| spectrum(&compared.predicted_radial)),
-        full_radial: compared
-            .full_radial
-            .as_ref()
-            .map(|full| full_radial(plane, full)),
-        off_chain: None,
-        verdict: verdict_lines(compared),
-        guides: match (&theory.theory, &compared.report.first_order) {
-            (Theory::Parallel(_), _) if compared.report.in_window > 0 => {
-                let lights = theory.of_lights(scene, plane);
-                let lights = lights.filter(|(.., of, _)| matches!(of.theory, Theory::Parallel(_)));
-                let mut all: Vec<Guide> = Vec::new();
-                for guide in lights.flat_map(|(of, seen, ..)| guides(of, seen)) {
-                    // Lights in one plane have the same lines.
-                    if !all.contains(&guide) {
-                        all.push(guide);
-                    }
+/// Returns the predicted lines over the spectrum of a plane.
+fn all_guides(scene: &Scene, seen: Seen<'_>, theory: &Applicability) -> Vec<Guide> {
+    let report = &seen.found.report;
+    match (&theory.theory, &report.first_order) {
+        (Theory::Parallel(_), _) if report.in_window > 0 => {
+            let lights = theory.of_lights(scene, seen.plane);
+            let lights = lights.filter(|(.., of, _)| matches!(of.theory, Theory::Parallel(_)));
+            let mut all: Vec<Guide> = Vec::new();
+            for guide in lights.flat_map(|(of, seen, ..)| guides(of, seen)) {
+                // Lights in one plane have the same lines.
+                if !all.contains(&guide) {
+                    all.push(guide);
                 }
-                all
             }
-            // After a mirror, the power of the spectrum lies along a line; after a lobe, it does
-            // not.
-            (Theory::Path(view), Some(first_order)) if view.system.scatterers() == 0 => {
-                ridges(scene, &first_order.chain.matrix)
-            }
-            _ => Vec::new(),
-        },
+            all
+        }
+        // After a mirror, the power of the spectrum lies along a line; after a lobe, it does not.
+        (Theory::Path(view), Some(first_order)) if view.system.scatterers() == 0 => {
+            ridges(scene, &first_order.chain.matrix)
+        }
+        _ => Vec::new(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Names the coordinates of a plane, and returns axes with these names.
 
-use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
+use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_figures::{Axis, AxisQuantity};
 use etendue_spectrum::field::FullRadial;
 
@@ -38,37 +38,41 @@ impl CoordinateNames {
         }
     }
 
-    pub(super) fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
-        [
-            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
-            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
-        ]
-    }
-
-    pub(super) fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
-        let axis = |name, unit, axis: &FrequencyAxis| {
-            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
-        };
-        [
-            axis("*ρ*", "cycles/m", &grid.rho),
-            axis("*ν*", self.per_angle, &grid.nu),
-        ]
-    }
-
+    /// Returns the quantity of a light field that is integrated over the other two coordinates.
     pub(super) fn light_field_quantity(&self) -> AxisQuantity {
         let [a, b] = self.across;
         AxisQuantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
     }
 }
 
+fn projection_axes([x, u]: [&str; 2], plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    let angle = CoordinateNames::of(plane).angle;
+    [
+        Axis::edges(x, "m", [-grid.half_x, grid.half_x]),
+        Axis::edges(u, angle, [-grid.half_u, grid.half_u]),
+    ]
+}
+
 /// Returns the axes of the light field of a plane, (x, u) across its ray.
 pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    CoordinateNames::of(plane).projection_axes(grid)
+    projection_axes(CoordinateNames::of(plane).along, plane, grid)
+}
+
+/// Returns the axes of the light field across the other two coordinates, (y, v).
+pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    projection_axes(CoordinateNames::of(plane).across, plane, grid)
 }
 
 /// Returns the axes of the spectrum of a plane, (ρ, ν).
 pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
-    CoordinateNames::of(plane).frequency_axes(&plane.grid)
+    let axis = |name, unit, axis: &FrequencyAxis| {
+        Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+    };
+    let per_angle = CoordinateNames::of(plane).per_angle;
+    [
+        axis("*ρ*", "cycles/m", &plane.grid.rho),
+        axis("*ν*", per_angle, &plane.grid.nu),
+    ]
 }
 
 /// Returns the axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each
@@ -90,16 +94,6 @@ pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
 /// Returns the quantity of a full radial spectrum.
 pub fn full_radial_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
-}
-
-/// Returns the axes of the light field across the other two coordinates, (y, v).
-pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    let words = CoordinateNames::of(plane);
-    CoordinateNames {
-        along: words.across,
-        ..words
-    }
-    .projection_axes(grid)
 }
 
 /// Returns the quantity of a light field across the ray.

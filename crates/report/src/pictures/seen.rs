@@ -1,0 +1,65 @@
+//! A plane with its results, and pictures of both.
+
+use super::DECIBEL;
+use super::words::{
+    across_axes, full_radial_axes, full_radial_quantity, light_field_axes, spectrum_axes,
+};
+use etendue_compare::PlaneComparison;
+use etendue_field::VirtualPlane;
+use etendue_figures::{Picture, PlateRow};
+use ndarray::ArrayView2;
+
+/// A plane of a scene with its results.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The plane.
+    pub plane: &'a VirtualPlane,
+    /// Its results.
+    pub found: &'a PlaneComparison,
+}
+
+impl<'a> Seen<'a> {
+    /// Returns the measured light field in (x, u).
+    pub fn light_field(&self) -> Picture<'a> {
+        let field = &self.found.projection.mean;
+        Picture::new(
+            light_field_axes(self.plane, &field.grid),
+            field.values.view(),
+        )
+    }
+
+    /// Returns a light field in (y, v) in cells that fill the same half-widths.
+    pub fn across<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
+        Picture::new(
+            across_axes(self.plane, &self.found.projection.mean.grid),
+            values,
+        )
+    }
+
+    /// Returns a spectrum at the frequencies of the plane.
+    pub fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
+        Picture::new(spectrum_axes(self.plane), values)
+    }
+
+    /// Returns the full radial spectrum, measured and predicted, if there is one.
+    fn full_radial(&self) -> Option<[Picture<'a>; 2]> {
+        let full = self.found.full_radial.as_ref()?;
+        let axes = || full_radial_axes(self.plane, &full.measured);
+        Some(
+            [&full.measured.power, &full.predicted].map(|power| Picture::new(axes(), power.view())),
+        )
+    }
+}
+
+/// Returns the rows of full radial spectra, measured and predicted, if each plane has such a
+/// spectrum.
+pub fn full_radials<'a>(
+    seen: impl Iterator<Item = Seen<'a>>,
+    shared: bool,
+) -> Option<[PlateRow<'a>; 2]> {
+    let each: Option<Vec<_>> = seen.map(|seen| seen.full_radial()).collect();
+    let (measured, predicted) = each?.into_iter().map(Into::into).unzip();
+    let row =
+        |name, pictures| PlateRow::new(name, full_radial_quantity(), DECIBEL, shared, pictures);
+    Some([row("full radial", measured), row("prediction", predicted)])
+}
